@@ -1,0 +1,34 @@
+/// @file
+/// Room `instrument`: collision shapes with their meshes read, ready for contact detection.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/scene/scene.h"
+
+namespace tissue_contact {
+
+/// A triangle surface, vertices in the shape's frame S (m, scale applied), coincident vertices merged so that triangles
+/// share them, outward orientation (positive enclosed volume) when it is closed.
+struct TriangleMesh {
+  NodalVectors vertices;
+  std::vector<Triangle> triangles;
+};
+
+/// Reads STL, OBJ or DAE (assimp), applies the node transforms and then `scale`, merges coincident vertices, drops
+/// degenerate triangles. @throws std::invalid_argument naming the file: unreadable, no triangles, non-finite vertices.
+TriangleMesh loadTriangleMesh(const std::string& file, const Vector3& scale);
+
+struct CollisionShape {
+  ShapeGeometry geometry;
+  Pose X_LS = Pose::Identity();
+  std::shared_ptr<const TriangleMesh> mesh;  ///< set exactly when `geometry` holds a MeshGeometry
+};
+
+/// Completes a description: checks sizes and reads the mesh if there is one. @throws std::invalid_argument.
+CollisionShape makeCollisionShape(const ShapeDescription& description);
+
+}  // namespace tissue_contact

@@ -1,0 +1,54 @@
+/// @file
+/// Room `instrument`: one instrument of a scene: kinematic model, base pose, joint-name map, touching links.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/instrument/collision_shape.h"
+#include "tissue_contact/instrument/robot_model.h"
+#include "tissue_contact/scene/scene.h"
+
+namespace tissue_contact {
+
+/// A link that touches tissue, with all its shapes.
+struct ContactLink {
+  std::string name;
+  int link = -1;  ///< index into RobotModel::links()
+  std::vector<CollisionShape> shapes;
+};
+
+/// Const after construction.
+class Instrument {
+ public:
+  /// @param X_WB pose of the URDF root link in the world (tf already looked up).
+  /// @throws std::invalid_argument naming the instrument and the link or joint: unknown tip or contact link, contact link
+  ///   without any shape, joint map to an unknown or mimic joint, initial position of an unknown joint, a moving URDF
+  ///   without joint-state topics or a rigid one with them.
+  Instrument(const InstrumentDescription& description, RobotModel model, const Pose& X_WB);
+
+  const std::string& name() const { return name_; }
+  const RobotModel& model() const { return model_; }
+  bool isObstacle() const { return model_.joints().empty(); }  ///< its URDF has no moving joint
+  int tipLink() const { return tip_link_; }
+  const std::vector<ContactLink>& contactLinks() const { return contact_links_; }
+  const VectorX& initialPositions() const { return initial_positions_; }
+
+  /// Independent joint meant by a recorded name (through the map, or the URDF's own name); -1 when it means none.
+  int jointOfRecordedName(const std::string& recorded) const;
+
+  /// Poses of all links in the world frame; `X_WL` is resized to model().links().size().
+  void linkPoses(const VectorX& positions, std::vector<Pose>& X_WL) const;
+
+ private:
+  std::string name_;
+  RobotModel model_;
+  Pose X_WB_;
+  int tip_link_ = -1;
+  std::vector<ContactLink> contact_links_;
+  VectorX initial_positions_;
+  std::map<std::string, int> joint_of_recorded_name_;
+};
+
+}  // namespace tissue_contact

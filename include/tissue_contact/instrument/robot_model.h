@@ -1,0 +1,60 @@
+/// @file
+/// Room `instrument`: the kinematic tree of a URDF. URDF text in; poses of all links from joint positions out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/scene/scene.h"
+
+namespace tissue_contact {
+
+/// A joint that moves by itself. Positions: rad (revolute, continuous) or m (prismatic).
+struct IndependentJoint {
+  std::string name;
+  double lower = 0.0;  ///< URDF limits, for reference only: positions outside are simulated as they were recorded
+  double upper = 0.0;
+};
+
+/// Collision geometry of one link as the URDF gives it (mesh paths resolved, meshes not yet read).
+struct LinkGeometry {
+  std::vector<ShapeDescription> collision;
+  std::vector<ShapeDescription> visual;
+};
+
+/// Kinematic tree, const after construction; built by parseUrdf().
+class RobotModel {
+ public:
+  struct Link {
+    std::string name;
+    int parent = -1;                  ///< index of the parent link, always smaller than this link's; -1 for the root
+    Pose X_PJ = Pose::Identity();     ///< joint frame in the parent link at joint position 0
+    enum class Motion { kFixed, kRevolute, kPrismatic } motion = Motion::kFixed;
+    Vector3 axis = Vector3::UnitX();  ///< unit, in the joint frame
+    int joint = -1;                   ///< independent joint that drives this one (through mimic chains), -1 if fixed
+    double multiplier = 1.0;          ///< joint position = multiplier * position[joint] + offset, chains composed
+    double offset = 0.0;
+    LinkGeometry geometry;
+  };
+
+  RobotModel(std::string name, std::vector<Link> links, std::vector<IndependentJoint> joints);
+
+  const std::string& name() const { return name_; }
+  const std::vector<Link>& links() const { return links_; }  ///< parents before children, root first
+  const std::vector<IndependentJoint>& joints() const { return joints_; }
+  /// Index of a link or independent joint by name, -1 when there is none.
+  int findLink(const std::string& name) const;
+  int findJoint(const std::string& name) const;
+
+  /// Pose of every link in the root link's frame B. `positions`: one per independent joint (rad or m).
+  /// `X_BL` is resized to links().size(). No allocation once sized. Formula: X_BL = X_BP * X_PJ * motion(position).
+  void forwardKinematics(const VectorX& positions, std::vector<Pose>& X_BL) const;
+
+ private:
+  std::string name_;
+  std::vector<Link> links_;
+  std::vector<IndependentJoint> joints_;
+};
+
+}  // namespace tissue_contact

@@ -1,0 +1,19 @@
+/// @file
+/// Room `solver`: how far an answer is from the contact problem, computed on the final velocities and impulses.
+#pragma once
+
+namespace tissue_contact {
+
+/// Worst values over all contacts of one step. Lengths and speeds are compared with the step's own scales by the solver's
+/// stopping rule, never with absolute numbers.
+struct Residuals {
+  double momentum = 0.0;             ///< |A v - b - J'lambda| / |J'lambda|, dimensionless; 0 without contact
+  double penetration_m = 0.0;        ///< how deep the linearised gap at the end of the step is below 0, m
+  double adhesion_n = 0.0;           ///< pulling normal force, N
+  double complementarity_w = 0.0;    ///< normal force times separation speed, W
+  double cone_violation_n = 0.0;     ///< tangential force beyond its limit, N
+  double static_slip_m_per_s = 0.0;  ///< sliding speed of contacts called static, m/s
+  double kinetic_angle_rad = 0.0;    ///< between friction force and the opposite of sliding, over sliding contacts, rad
+};
+
+}  // namespace tissue_contact
