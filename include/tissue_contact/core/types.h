@@ -2,10 +2,9 @@
 /// Room `core`: the Eigen aliases and index types every other room is written in. SI units throughout.
 #pragma once
 
-#include <array>
-
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 
 namespace tissue_contact {
 

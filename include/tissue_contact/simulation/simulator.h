@@ -1,8 +1,8 @@
 /// @file
-/// Room `simulation`: a whole scene and its time step. Scene in; positions, contacts and wrenches out. No clock, no ROS.
+/// Room `simulation`: a whole scene and its time step. Scene in; positions, contacts and wrenches out. No clock, no
+/// ROS.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,32 +11,26 @@
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/friction/coulomb.h"
 #include "tissue_contact/instrument/instrument.h"
-#include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/scene/scene.h"
+#include "tissue_contact/simulation/build_scene.h"
 #include "tissue_contact/solver/residuals.h"
 #include "tissue_contact/tissue/tissue.h"
 
 namespace tissue_contact {
 
-/// What a scene refers to outside its own file. Members may be empty when the scene needs none of them; a scene that does
-/// need one is refused with a message that names it.
-struct SceneEnvironment {
-  PackagePath package_path;                                            ///< directory of a ROS package
-  std::function<std::string(const std::string& parameter)> urdf_text;  ///< URDF held by a parameter; throws if missing
-  std::function<Pose(const std::string& tf_frame)> frame_pose;         ///< X_WF of a tf frame; throws if unknown
-};
-
 /// A contact with the answer of the last step.
 struct SolvedContact {
-  Contact contact;  ///< as detected at the start of the step
+  Contact contact;  ///< as detected at the start of the step, but p_WC moved along to its end
   ContactState state = ContactState::kOpen;
   Vector3 force_on_tissue_n = Vector3::Zero();  ///< world frame, N; the instrument feels the opposite
 };
 
 /// How the last step went.
 struct StepReport {
-  int substeps = 0;    ///< implicit steps taken for the last advance
-  int iterations = 0;  ///< ICA iterations of its last step
+  int substeps = 0;        ///< implicit steps taken for the last advance
+  bool jumped = false;     ///< an instrument moved too far for sub-stepping: it was put at its new place without a path
+  bool discarded = false;  ///< a step gave no finite answer: tissues were stopped where they were
+  int iterations = 0;      ///< ICA iterations of its last step
   bool converged = false;
   Residuals residuals;  ///< of its last step, computed after the last sweep
   int open_contacts = 0;
@@ -66,11 +60,12 @@ class Simulator {
   /// Advances by `duration_s` (> 0) while the joints move linearly to `joint_positions` (one vector per instrument).
   /// Cuts the interval into equal implicit steps no longer than scene.step.max_step_s, and shorter where an instrument
   /// moves so far that it could pass through tissue.
-  /// @throws std::invalid_argument when duration or positions are not finite or of the wrong size; nothing has moved then.
+  /// @throws std::invalid_argument when duration or positions are not finite or of the wrong size; nothing has moved
+  /// then.
   void advance(double duration_s, const std::vector<VectorX>& joint_positions);
 
-  /// What the tissues exert on the instrument: mean over the last implicit step, at the origin of the tip link and in its
-  /// axes (N, N m). Zero before the first advance.
+  /// What the tissues exert on the instrument: mean over the last implicit step, at the origin of the tip link and in
+  /// its axes (N, N m). Zero before the first advance.
   Wrench wrench(int instrument) const;
 
   const VectorX& jointPositions(int instrument) const;
@@ -82,6 +77,8 @@ class Simulator {
   long stepCount() const;  ///< implicit steps since the last reset
 
  private:
+  void requireJointPositions(int instrument, const VectorX& joint_positions) const;
+
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };

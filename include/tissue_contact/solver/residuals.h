@@ -2,10 +2,11 @@
 /// Room `solver`: how far an answer is from the contact problem, computed on the final velocities and impulses.
 #pragma once
 
+#include "tissue_contact/solver/contact_problem.h"
+
 namespace tissue_contact {
 
-/// Worst values over all contacts of one step. Lengths and speeds are compared with the step's own scales by the solver's
-/// stopping rule, never with absolute numbers.
+/// Worst values over all contacts of one step.
 struct Residuals {
   double momentum = 0.0;             ///< |A v - b - J'lambda| / |J'lambda|, dimensionless; 0 without contact
   double penetration_m = 0.0;        ///< how deep the linearised gap at the end of the step is below 0, m
@@ -15,5 +16,9 @@ struct Residuals {
   double static_slip_m_per_s = 0.0;  ///< sliding speed of contacts called static, m/s
   double kinetic_angle_rad = 0.0;    ///< between friction force and the opposite of sliding, over sliding contacts, rad
 };
+
+/// Evaluates the answer. `scratch` holds one nodal vector per body (overwritten; sized by the caller).
+Residuals computeResiduals(const ContactProblem& problem, const ContactSolution& solution,
+                           std::vector<NodalVectors>& scratch);
 
 }  // namespace tissue_contact

@@ -29,6 +29,10 @@ class Tissue {
   const Elasticity& elasticity() const { return elasticity_; }
 
  private:
+  struct PlacedMesh;
+  static PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT);
+  Tissue(const TissueDescription& description, const PlacedMesh& placed);
+
   std::string name_;
   NodalVectors rest_;
   std::vector<Tetrahedron> tetrahedra_;

@@ -1,0 +1,43 @@
+/// @file
+/// Room `core`: sparse symmetric matrix of 3x3 blocks over the nodes of a mesh, rows compressed, diagonal apart.
+#pragma once
+
+#include <vector>
+
+#include "tissue_contact/core/types.h"
+
+namespace tissue_contact {
+
+/// Rows and columns are nodes. Both triangles are stored, so that a row is all a Gauss-Seidel sweep needs to read.
+struct BlockMatrix {
+  std::vector<Matrix3> diagonal;  ///< one per node
+  std::vector<int> row_start;     ///< nodes + 1 offsets into `columns` and `values`
+  std::vector<int> columns;       ///< ascending within a row, never the row itself
+  std::vector<Matrix3> values;
+
+  int rows() const { return static_cast<int>(diagonal.size()); }
+
+  /// Index into `values` of block (row, column), -1 when it is not stored.
+  int find(int row, int column) const;
+
+  /// Zero matrix with a block for every pair of free nodes that share a tetrahedron. Fixed nodes get no off-diagonal.
+  static BlockMatrix forTetrahedra(const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed);
+
+  void setZero();
+
+  /// Sum over off-diagonal blocks of row `i`: sum_j values * v_j.
+  Vector3 offDiagonalProduct(int i, const NodalVectors& v) const {
+    double a = 0.0, b = 0.0, c = 0.0;
+    const double* const velocity = v.data();
+    for (int k = row_start[i]; k < row_start[i + 1]; ++k) {
+      const double* const m = values[k].data();
+      const double* const w = velocity + 3 * static_cast<std::ptrdiff_t>(columns[k]);
+      a += m[0] * w[0] + m[3] * w[1] + m[6] * w[2];
+      b += m[1] * w[0] + m[4] * w[1] + m[7] * w[2];
+      c += m[2] * w[0] + m[5] * w[1] + m[8] * w[2];
+    }
+    return {a, b, c};
+  }
+};
+
+}  // namespace tissue_contact

@@ -1,0 +1,66 @@
+/// @file
+/// Room `simulation`: where the instruments are during an interval. Joint targets in; link poses at both ends of each
+/// implicit step, velocities of material points and the number of steps the motion needs out.
+#pragma once
+
+#include <vector>
+
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/instrument/instrument.h"
+
+namespace tissue_contact {
+
+class InstrumentMotion {
+ public:
+  /// @param instruments must outlive this object.
+  explicit InstrumentMotion(const std::vector<Instrument>& instruments);
+
+  void reset();                                          ///< all instruments at their initial joint positions
+  void place(int instrument, const VectorX& positions);  ///< there at once, at rest
+
+  /// Prepares the interval to `targets` (sizes checked by the caller) and returns the number of equal steps to cut it
+  /// into: none longer than max_step_s, none in which a shape moves more than half its smallest half extent, so that it
+  /// cannot pass through a feature thinner than itself. A motion that would need more than kMaxTravelSteps steps is a
+  /// jump: the instruments are placed at the targets.
+  int begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets);
+  bool jumped() const { return jumped_; }  ///< by the last begin()
+
+  /// Sets the poses at the end of a step to those at this fraction (0..1] of the interval.
+  void moveTo(double fraction);
+  void finishStep();  ///< the end of the step becomes the start of the next
+
+  const VectorX& positions(int instrument) const { return states_[instrument].positions; }
+  const std::vector<std::vector<Pose>>& startPoses() const { return X_WL_; }  ///< [instrument][link of its model]
+  const std::vector<std::vector<Pose>>& endPoses() const { return X_WL_end_; }
+
+  /// Mean velocity (m/s, world) over the step of the material point of a touching link that is at p_W at its start.
+  Vector3 pointVelocity(int instrument, int contact_link, const Vector3& p_W, double dt_s) const;
+
+  double longestTravel() const;  ///< bound on how far any point of any shape moves in the step, m
+  double smallestHalfExtent(int instrument, int contact_link, int shape) const;
+
+  static constexpr double kMaxTravelSteps = 2000.0;
+
+ private:
+  struct MovingShape {
+    Vector3 center;               ///< in the link frame
+    double smallest_half_extent;  ///< m
+    double bounding_radius;       ///< of the shape about `center`, m
+  };
+  struct MovingLink {
+    int link;  ///< index into the model's links
+    std::vector<MovingShape> shapes;
+  };
+  struct State {
+    std::vector<MovingLink> links;
+    VectorX start, target, positions;
+  };
+  double longestTravelPerExtent() const;
+
+  const std::vector<Instrument>& instruments_;
+  std::vector<State> states_;
+  std::vector<std::vector<Pose>> X_WL_, X_WL_end_;
+  bool jumped_ = false;
+};
+
+}  // namespace tissue_contact

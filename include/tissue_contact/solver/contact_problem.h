@@ -1,0 +1,62 @@
+/// @file
+/// Room `solver`: the contact problem of one step. Linear systems of the tissues and contact rows in; velocities,
+/// impulses and states out.
+///
+///   A v = b + J' lambda,   u = J v - u_tool,   0 <= lambda_n  _|_  u_n + gap/dt >= 0,   Coulomb friction per contact.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "tissue_contact/core/block_matrix.h"
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/friction/coulomb.h"
+
+namespace tissue_contact {
+
+/// Linear system of one tissue, A = diag(mass) + stiffness_scale * K. K is not copied, so a change of dt costs nothing.
+/// For an implicit Euler step with Rayleigh damping D = alpha M + beta K: mass_i = (1 + alpha dt) m_i,
+/// stiffness_scale = dt (dt + beta), b = M v0 + dt f(x0).
+struct BodySystem {
+  const BlockMatrix* K = nullptr;            ///< N/m
+  const std::vector<bool>* fixed = nullptr;  ///< per node: its velocity is 0
+  double stiffness_scale = 0.0;              ///< s^2
+  VectorX mass;                              ///< kg, per node
+  NodalVectors b;                            ///< N s
+};
+
+/// One contact as the solver sees it.
+struct ContactRow {
+  int body = 0;  ///< index into ContactProblem::bodies
+  std::array<int, 3> nodes = {0, 0, 0};
+  Vector3 weights = Vector3::Zero();   ///< barycentric
+  Matrix3 R_WC = Matrix3::Identity();  ///< columns (n, t1, t2), n from the instrument into the tissue
+  double gap_m = 0.0;                  ///< at the start of the step
+  double required_u_n = 0.0;           ///< u_n must be at least this, m/s: -gap/dt, limited when penetrating deeply
+  Vector3 u_tool = Vector3::Zero();    ///< velocity of the instrument's material point, contact frame, m/s
+  CoulombLaw law;
+  bool was_sliding = false;  ///< it was kinetic at the end of the previous step
+};
+
+struct ContactProblem {
+  double dt_s = 0.0;
+  std::vector<BodySystem> bodies;
+  std::vector<ContactRow> contacts;
+};
+
+/// Also the warm start: a solver begins from what it finds here.
+struct ContactSolution {
+  std::vector<NodalVectors> v;       ///< per body, m/s
+  std::vector<Vector3> impulses;     ///< per contact, contact frame, N s, acting on the tissue
+  std::vector<ContactState> states;  ///< per contact
+};
+
+/// Relative velocity u = J v - u_tool of a contact in its frame, m/s.
+inline Vector3 relativeVelocity(const ContactRow& row, const std::vector<NodalVectors>& v) {
+  const NodalVectors& nodes = v[row.body];
+  const Vector3 tissue = row.weights[0] * nodes.col(row.nodes[0]) + row.weights[1] * nodes.col(row.nodes[1]) +
+                         row.weights[2] * nodes.col(row.nodes[2]);
+  return row.R_WC.transpose() * tissue - row.u_tool;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,66 @@
+#include "tissue_contact/simulation/build_scene.h"
+
+#include <stdexcept>
+
+#include "tissue_contact/instrument/parse_urdf.h"
+
+namespace tissue_contact {
+namespace {
+
+Pose placeInWorld(const PoseDescription& pose, const std::string& owner, const SceneEnvironment& environment) {
+  if (pose.tf_frame.empty()) return pose.X;
+  if (!environment.frame_pose) {
+    throw std::invalid_argument(owner + " is placed in tf frame '" + pose.tf_frame +
+                                "', but no tf is available here; give position_m and rpy_rad without tf_frame");
+  }
+  return environment.frame_pose(pose.tf_frame) * pose.X;
+}
+
+RobotModel readUrdf(const InstrumentDescription& instrument, const SceneEnvironment& environment) {
+  if (!instrument.urdf_file.empty()) return loadUrdf(instrument.urdf_file, environment.package_path);
+  const std::string& parameter = instrument.robot_description_parameter;
+  if (!environment.urdf_text) {
+    throw std::invalid_argument("instrument '" + instrument.name + "' takes its URDF from parameter '" + parameter +
+                                "', but no parameters are available here; name a file with the key 'urdf'");
+  }
+  return parseUrdf(environment.urdf_text(parameter), "parameter '" + parameter + "'", "", environment.package_path);
+}
+
+template <typename Description>
+std::size_t indexOf(const std::vector<Description>& all, const std::string& name, const char* kind) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].name == name) return i;
+  }
+  throw std::invalid_argument(std::string("friction names the unknown ") + kind + " '" + name + "'");
+}
+
+}  // namespace
+
+std::vector<Instrument> buildInstruments(const Scene& scene, const SceneEnvironment& environment) {
+  std::vector<Instrument> instruments;
+  for (const InstrumentDescription& description : scene.instruments) {
+    const Pose X_WB = placeInWorld(description.base_pose, "instrument '" + description.name + "'", environment);
+    instruments.emplace_back(description, readUrdf(description, environment), X_WB);
+  }
+  return instruments;
+}
+
+std::vector<Tissue> buildTissues(const Scene& scene, const SceneEnvironment& environment) {
+  std::vector<Tissue> tissues;
+  for (const TissueDescription& description : scene.tissues) {
+    tissues.emplace_back(description, placeInWorld(description.pose, "tissue '" + description.name + "'", environment));
+  }
+  return tissues;
+}
+
+std::vector<std::vector<CoulombLaw>> buildFrictionTable(const Scene& scene) {
+  std::vector<std::vector<CoulombLaw>> laws(scene.instruments.size(), std::vector<CoulombLaw>(scene.tissues.size()));
+  for (const FrictionDescription& pair : scene.friction) {
+    const std::size_t i = indexOf(scene.instruments, pair.instrument, "instrument");
+    const std::size_t t = indexOf(scene.tissues, pair.tissue, "tissue");
+    laws[i][t] = {pair.static_coefficient, pair.kinetic_coefficient};
+  }
+  return laws;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,130 @@
+#include "tissue_contact/simulation/instrument_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tissue_contact/contact/contact_detector.h"
+
+namespace tissue_contact {
+namespace {
+
+/// Share of its smallest half extent that a shape may move in one step.
+constexpr double kTravelPerStep = 0.5;
+
+/// Distance from the shape's origin to its farthest point, m.
+double boundingRadius(const CollisionShape& shape) {
+  if (const auto* sphere = std::get_if<SphereGeometry>(&shape.geometry)) return sphere->radius_m;
+  if (const auto* box = std::get_if<BoxGeometry>(&shape.geometry)) return 0.5 * box->size_m.norm();
+  if (const auto* cylinder = std::get_if<CylinderGeometry>(&shape.geometry)) {
+    return std::hypot(cylinder->radius_m, 0.5 * cylinder->length_m);
+  }
+  return shape.mesh->vertices.colwise().norm().maxCoeff();
+}
+
+double travel(const Vector3& center, double bounding_radius, const Pose& X_start, const Pose& X_end) {
+  const double angle = Eigen::AngleAxisd(X_start.linear().transpose() * X_end.linear()).angle();
+  return (X_end * center - X_start * center).norm() + angle * bounding_radius;
+}
+
+}  // namespace
+
+InstrumentMotion::InstrumentMotion(const std::vector<Instrument>& instruments)
+    : instruments_(instruments), states_(instruments.size()), X_WL_(instruments.size()), X_WL_end_(instruments.size()) {
+  for (std::size_t i = 0; i < instruments.size(); ++i) {
+    for (const ContactLink& contact_link : instruments[i].contactLinks()) {
+      MovingLink link{contact_link.link, {}};
+      for (const CollisionShape& shape : contact_link.shapes) {
+        link.shapes.push_back(
+            {shape.X_LS.translation(), tissue_contact::smallestHalfExtent(shape), boundingRadius(shape)});
+      }
+      states_[i].links.push_back(link);
+    }
+  }
+  reset();
+}
+
+void InstrumentMotion::reset() {
+  for (std::size_t i = 0; i < instruments_.size(); ++i) place(static_cast<int>(i), instruments_[i].initialPositions());
+}
+
+void InstrumentMotion::place(int instrument, const VectorX& positions) {
+  State& state = states_[instrument];
+  state.start = state.target = state.positions = positions;
+  instruments_[instrument].linkPoses(positions, X_WL_[instrument]);
+  X_WL_end_[instrument] = X_WL_[instrument];
+}
+
+int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets) {
+  // A duration that is a whole number of steps up to round-off of the stamps must not get one step more.
+  constexpr double kRoundOff = 1e-9;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    states_[i].start = states_[i].positions;
+    states_[i].target = targets[i];
+  }
+  const double by_time = std::max(1.0, std::ceil(duration_s / max_step_s - kRoundOff));
+  double longest = 0.0;
+  const std::vector<std::vector<Pose>> X_WL_before = X_WL_;
+  for (int k = 1; k <= static_cast<int>(by_time); ++k) {
+    moveTo(k / by_time);
+    longest = std::max(longest, longestTravelPerExtent());
+    finishStep();
+  }
+  X_WL_ = X_WL_before;
+  const double steps = by_time * std::max(1.0, std::ceil(longest / kTravelPerStep));
+  jumped_ = !(steps <= std::max(by_time, kMaxTravelSteps));
+  if (!jumped_) return static_cast<int>(steps);
+  for (std::size_t i = 0; i < states_.size(); ++i) place(static_cast<int>(i), targets[i]);
+  return static_cast<int>(by_time);
+}
+
+void InstrumentMotion::moveTo(double fraction) {
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    State& state = states_[i];
+    if (instruments_[i].isObstacle()) continue;
+    // The last step must end exactly at the target, whatever round-off the interpolation has.
+    state.positions = fraction < 1.0 ? VectorX(state.start + fraction * (state.target - state.start)) : state.target;
+    instruments_[i].linkPoses(state.positions, X_WL_end_[i]);
+  }
+}
+
+void InstrumentMotion::finishStep() {
+  for (std::size_t i = 0; i < states_.size(); ++i) X_WL_[i] = X_WL_end_[i];
+}
+
+Vector3 InstrumentMotion::pointVelocity(int instrument, int contact_link, const Vector3& p_W, double dt_s) const {
+  const int link = states_[instrument].links[contact_link].link;
+  const Pose& start = X_WL_[instrument][link];
+  return (X_WL_end_[instrument][link] * (start.inverse() * p_W) - p_W) / dt_s;
+}
+
+double InstrumentMotion::longestTravel() const {
+  double longest = 0.0;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    for (const MovingLink& link : states_[i].links) {
+      for (const MovingShape& shape : link.shapes) {
+        longest = std::max(longest,
+                           travel(shape.center, shape.bounding_radius, X_WL_[i][link.link], X_WL_end_[i][link.link]));
+      }
+    }
+  }
+  return longest;
+}
+
+double InstrumentMotion::longestTravelPerExtent() const {
+  double longest = 0.0;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    for (const MovingLink& link : states_[i].links) {
+      for (const MovingShape& shape : link.shapes) {
+        const double moved = travel(shape.center, shape.bounding_radius, X_WL_[i][link.link], X_WL_end_[i][link.link]);
+        longest = std::max(longest, moved / shape.smallest_half_extent);
+      }
+    }
+  }
+  return longest;
+}
+
+double InstrumentMotion::smallestHalfExtent(int instrument, int contact_link, int shape) const {
+  return states_[instrument].links[contact_link].shapes[shape].smallest_half_extent;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,166 @@
+#include "tissue_contact/tissue/elasticity.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <cmath>
+
+#include "tissue_contact/core/check.h"
+
+namespace tissue_contact {
+namespace {
+
+Quaternion rotationBySvd(const Matrix3& F) {
+  const Eigen::JacobiSVD<Matrix3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Matrix3 U = svd.matrixU();
+  if ((U * svd.matrixV().transpose()).determinant() < 0.0) U.col(2) = -U.col(2);
+  return Quaternion(U * svd.matrixV().transpose());
+}
+
+/// Gradients of the four shape functions, columns, 1/m.
+Eigen::Matrix<double, 3, 4> shapeGradients(const Matrix3& rest_inverse) {
+  Eigen::Matrix<double, 3, 4> gradients;
+  gradients.rightCols<3>() = rest_inverse.transpose();
+  gradients.col(0) = -gradients.rightCols<3>().rowwise().sum();
+  return gradients;
+}
+
+}  // namespace
+
+Quaternion nearestRotation(const Matrix3& F, const Quaternion& guess) {
+  // At the nearest rotation S = R'F is symmetric. With S = R'F and R <- R exp([w]), symmetry to first order asks for
+  // (tr(S) I - sym(S)) w = axial(S - S'). The step is quadratic, so one below sqrt(epsilon) is the last one needed.
+  constexpr int kMaxSteps = 8;
+  constexpr double kLastStepSquared = 1e-17;
+  Quaternion q = guess;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const Matrix3 S = q.toRotationMatrix().transpose() * F;
+    const Vector3 axial(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1));
+    Matrix3 H = -0.5 * (S + S.transpose());
+    H.diagonal().array() += S.trace();
+    // Positive definite exactly at a maximum of tr(R'F): elsewhere (inverted, far guess) Newton must not be trusted.
+    const double minor = H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0);
+    const double determinant = H.determinant();
+    if (!(H(0, 0) > 0.0 && minor > 0.0 && determinant > 0.0)) break;
+    Matrix3 inverse;
+    inverse.col(0) = H.col(1).cross(H.col(2));
+    inverse.col(1) = H.col(2).cross(H.col(0));
+    inverse.col(2) = H.col(0).cross(H.col(1));
+    const Vector3 w = inverse.transpose() * axial / determinant;
+    const double squared = w.squaredNorm();
+    if (!(squared < 1.0)) break;
+    q = q * Quaternion(1.0, 0.5 * w.x(), 0.5 * w.y(), 0.5 * w.z());
+    q.normalize();
+    if (squared < kLastStepSquared) return q;
+  }
+  return rotationBySvd(F);
+}
+
+Elasticity::Elasticity(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
+                       const std::vector<bool>& fixed, const MaterialDescription& material)
+    : corotational_(material.model == ElasticModel::kCorotational) {
+  const double E = requirePositive("youngs_modulus_pa", material.youngs_modulus_pa, "Pa");
+  const double nu = requireInside("poissons_ratio", material.poissons_ratio, -1.0, 0.5);
+  lame_lambda_ = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+  lame_mu_ = E / (2.0 * (1.0 + nu));
+  pattern_ = BlockMatrix::forTetrahedra(tetrahedra, fixed);
+  elements_.reserve(tetrahedra.size());
+  for (const Tetrahedron& tet : tetrahedra) {
+    Element element;
+    element.nodes = tet;
+    Matrix3 D;
+    for (int i = 0; i < 3; ++i) D.col(i) = rest.col(tet[i + 1]) - rest.col(tet[0]);
+    element.rest_inverse = D.inverse();
+    element.volume = D.determinant() / 6.0;
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) {
+        element.at[i][j] = i == j ? (fixed[tet[i]] ? -1 : tet[i]) : pattern_.find(tet[i], tet[j]);
+      }
+    }
+    elements_.push_back(element);
+  }
+}
+
+Elasticity::State Elasticity::makeState() const {
+  State state;
+  state.rotations.assign(elements_.size(), Quaternion::Identity());
+  state.tangent_rotations = state.rotations;
+  state.stiffness = pattern_;
+  for (const Element& element : elements_) addStiffness(element, Quaternion::Identity(), 1.0, state.stiffness);
+  return state;
+}
+
+Matrix3 Elasticity::deformationGradient(const Element& element, const NodalVectors& x) const {
+  Matrix3 D;
+  for (int i = 0; i < 3; ++i) D.col(i) = x.col(element.nodes[i + 1]) - x.col(element.nodes[0]);
+  return D * element.rest_inverse;
+}
+
+Matrix3 Elasticity::stress(const Matrix3& R, const Matrix3& F) const {
+  const Matrix3 S = R.transpose() * F;
+  Matrix3 strain = 0.5 * (S + S.transpose());
+  strain.diagonal().array() -= 1.0;
+  Matrix3 rotated = 2.0 * lame_mu_ * strain;
+  rotated.diagonal().array() += lame_lambda_ * strain.trace();
+  return R * rotated;
+}
+
+void Elasticity::addStiffness(const Element& element, const Quaternion& rotation, double sign, BlockMatrix& K) const {
+  const Eigen::Matrix<double, 3, 4> c = rotation.toRotationMatrix() * shapeGradients(element.rest_inverse);
+  const double lambda = sign * element.volume * lame_lambda_;
+  const double mu = sign * element.volume * lame_mu_;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = i; j < 4; ++j) {
+      if (element.at[i][j] < 0) continue;
+      Matrix3 block = (lambda * c.col(i)) * c.col(j).transpose() + (mu * c.col(j)) * c.col(i).transpose();
+      block.diagonal().array() += mu * c.col(i).dot(c.col(j));
+      if (i == j) {
+        K.diagonal[element.at[i][i]] += block;
+      } else {
+        K.values[element.at[i][j]] += block;
+        K.values[element.at[j][i]] += block.transpose();
+      }
+    }
+  }
+}
+
+void Elasticity::update(const NodalVectors& x, State& state, NodalVectors& forces) const {
+  // |vec(q conj(p))| = sin(angle/2), and the angle threshold is small.
+  constexpr double kThreshold = 0.25 * kTangentAngle * kTangentAngle;
+  forces.setZero();
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const Element& element = elements_[e];
+    const Matrix3 F = deformationGradient(element, x);
+    Matrix3 R = Matrix3::Identity();
+    if (corotational_) {
+      Quaternion& q = state.rotations[e];
+      q = nearestRotation(F, q);
+      R = q.toRotationMatrix();
+      Quaternion& tangent = state.tangent_rotations[e];
+      if ((q * tangent.conjugate()).vec().squaredNorm() > kThreshold) {
+        addStiffness(element, tangent, -1.0, state.stiffness);
+        addStiffness(element, q, 1.0, state.stiffness);
+        tangent = q;
+      }
+    }
+    const Matrix3 H = -element.volume * stress(R, F) * element.rest_inverse.transpose();
+    for (int i = 0; i < 3; ++i) forces.col(element.nodes[i + 1]) += H.col(i);
+    forces.col(element.nodes[0]) -= H.rowwise().sum();
+  }
+}
+
+double Elasticity::energy(const NodalVectors& x) const {
+  double energy = 0.0;
+  for (const Element& element : elements_) {
+    const Matrix3 F = deformationGradient(element, x);
+    const Matrix3 R =
+        corotational_ ? nearestRotation(F, Quaternion::Identity()).toRotationMatrix() : Matrix3(Matrix3::Identity());
+    const Matrix3 S = R.transpose() * F;
+    Matrix3 strain = 0.5 * (S + S.transpose());
+    strain.diagonal().array() -= 1.0;
+    const double trace = strain.trace();
+    energy += element.volume * (lame_mu_ * strain.squaredNorm() + 0.5 * lame_lambda_ * trace * trace);
+  }
+  return energy;
+}
+
+}  // namespace tissue_contact
