@@ -1,6 +1,6 @@
 /// @file
-/// Room `scene`: a scene as plain data in SI units: what the YAML file says, checked, with every path resolved and every
-/// default filled in. Nothing here refers to ROS, FCL or a mesh library. Keys, units and defaults: doc/scene.md.
+/// Room `scene`: a scene as plain data in SI units: what the YAML file says, checked, with every path resolved and
+/// every default filled in. Nothing here refers to ROS, FCL or a mesh library. Keys, units and defaults: doc/scene.md.
 #pragma once
 
 #include <array>
@@ -19,7 +19,8 @@ struct PoseDescription {
   std::string tf_frame;       ///< empty: placed by the scene alone
 };
 
-/// Spacing of the cells of a block along one axis: each cell is `growth` times as long as its neighbour nearer `fine_at`.
+/// Spacing of the cells of a block along one axis: each cell is `growth` times as long as its neighbour nearer
+/// `fine_at`.
 struct AxisGrading {
   enum class FineAt { kMinimum, kCenter, kMaximum };
   double growth = 1.0;  ///< >= 1, dimensionless; 1 = even spacing
@@ -109,13 +110,13 @@ struct ContactLinkDescription {
 
 struct InstrumentDescription {
   std::string name;
-  std::string urdf_file;               ///< absolute path; empty: the URDF comes from `robot_description_parameter`
+  std::string urdf_file;                    ///< absolute path; empty: the URDF comes from `robot_description_parameter`
   std::string robot_description_parameter;  ///< ROS parameter holding the URDF text; empty if `urdf_file` is given
-  PoseDescription base_pose;           ///< of the URDF root link
-  std::vector<std::string> joint_state_topics;           ///< empty for a fixed obstacle
-  std::map<std::string, std::string> joint_names;        ///< recorded joint name -> URDF joint name
-  std::map<std::string, double> initial_joint_positions; ///< URDF joint name -> rad or m; others start at 0
-  std::string tip_link;                ///< wrench origin and frame
+  PoseDescription base_pose;                ///< of the URDF root link
+  std::vector<std::string> joint_state_topics;            ///< empty for a fixed obstacle
+  std::map<std::string, std::string> joint_names;         ///< recorded joint name -> URDF joint name
+  std::map<std::string, double> initial_joint_positions;  ///< URDF joint name -> rad or m; others start at 0
+  std::string tip_link;                                   ///< wrench origin and frame
   std::vector<ContactLinkDescription> contact_links;
 };
 
@@ -133,9 +134,9 @@ struct StepDescription {
 };
 
 struct SolverDescription {
-  int iterations = 10;       ///< upper bound on ICA iterations (relaxation sweep + contact passes) per step
-  int contact_passes = 2;    ///< predictor-corrector passes over the contacts per iteration
-  double tolerance = 1e-5;   ///< stop when the momentum and contact residuals are below this (dimensionless)
+  int iterations = 10;      ///< upper bound on ICA iterations (relaxation sweep + contact passes) per step
+  int contact_passes = 2;   ///< predictor-corrector passes over the contacts per iteration
+  double tolerance = 1e-5;  ///< stop when the momentum and contact residuals are below this (dimensionless)
 };
 
 /// Rates are of simulated (message) time; 0 switches a topic off.

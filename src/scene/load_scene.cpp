@@ -1,0 +1,166 @@
+#include "tissue_contact/scene/load_scene.h"
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "scene_sections.h"
+
+namespace tissue_contact {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Range kGravityRange{-1000.0, 1000.0, "m/s^2"};
+constexpr Range kFrictionRange{0.0, 10.0};
+constexpr Range kMaxStepRange{1e-6, 1.0, "s", "give seconds: 1 ms is 0.001"};
+constexpr Range kMaxGapRange{1e-6, 60.0, "s", "give seconds"};
+constexpr int kMaxIterations = 10000;
+constexpr int kMaxContactPasses = 100;
+// Below the spacing of doubles near 1 a residual can never fall.
+constexpr Range kToleranceRange{1e-16, 0.1};
+constexpr Range kRateRange{0.0, 10000.0, "Hz", "0 switches the topic off"};
+
+/// Where each name was first given. One set for tissues and instruments: both become topics of the same node.
+using NameLines = std::map<std::string, int>;
+
+void addName(const std::string& name, const YamlCursor& cursor, NameLines& lines) {
+  const auto [first, is_new] = lines.emplace(name, cursor.line());
+  if (!is_new) {
+    cursor.fail("the name " + inQuotes(name) + " is already used (line " + std::to_string(first->second) +
+                "); tissues and instruments need different names");
+  }
+}
+
+/// The name under `key`, which must be that of an element of `list`.
+template <typename Element>
+std::string parseReference(const YamlMap& map, const std::string& key, const std::vector<Element>& list) {
+  const YamlCursor& cursor = map.get(key);
+  const std::string name = cursor.text();
+  std::string known;
+  for (const Element& element : list) {
+    if (element.name == name) return name;
+    known += (known.empty() ? "" : ", ") + element.name;
+  }
+  cursor.fail("unknown " + key + " " + inQuotes(name) + "; the scene has " + (known.empty() ? "none" : known));
+}
+
+FrictionDescription parseFriction(const YamlCursor& cursor, const Scene& scene) {
+  const YamlMap map = cursor.map(MapKind::kFriction);
+  FrictionDescription friction;
+  friction.instrument = parseReference(map, "instrument", scene.instruments);
+  friction.tissue = parseReference(map, "tissue", scene.tissues);
+  const YamlCursor& static_cursor = map.get("static");
+  friction.static_coefficient = static_cursor.number(kFrictionRange);
+  friction.kinetic_coefficient = map.get("kinetic").number(kFrictionRange);
+  if (friction.static_coefficient < friction.kinetic_coefficient) {
+    static_cursor.fail(
+        "the static coefficient is smaller than the kinetic one; it must be >= kinetic; swap or equal them");
+  }
+  return friction;
+}
+
+std::vector<FrictionDescription> parseFrictionPairs(const YamlCursor& cursor, const Scene& scene) {
+  std::vector<FrictionDescription> pairs;
+  std::set<std::pair<std::string, std::string>> seen;
+  for (const YamlCursor& element : cursor.list(0)) {
+    pairs.push_back(parseFriction(element, scene));
+    if (!seen.emplace(pairs.back().instrument, pairs.back().tissue).second) {
+      element.fail("the pair " + inQuotes(pairs.back().instrument) + " and " + inQuotes(pairs.back().tissue) +
+                   " is given twice; remove one");
+    }
+  }
+  return pairs;
+}
+
+StepDescription parseStep(const YamlCursor& cursor) {
+  const YamlMap map = cursor.map(MapKind::kStep);
+  StepDescription step;
+  if (const YamlCursor* value = map.find("max_step_s")) step.max_step_s = value->number(kMaxStepRange);
+  if (const YamlCursor* value = map.find("max_gap_s")) step.max_gap_s = value->number(kMaxGapRange);
+  if (step.max_gap_s < step.max_step_s) {
+    cursor.fail("max_gap_s is shorter than max_step_s; it must be at least as long");
+  }
+  return step;
+}
+
+SolverDescription parseSolver(const YamlCursor& cursor) {
+  const YamlMap map = cursor.map(MapKind::kSolver);
+  SolverDescription solver;
+  if (const YamlCursor* value = map.find("iterations")) solver.iterations = value->integer(1, kMaxIterations);
+  if (const YamlCursor* value = map.find("contact_passes")) {
+    solver.contact_passes = value->integer(1, kMaxContactPasses);
+  }
+  if (const YamlCursor* value = map.find("tolerance")) solver.tolerance = value->number(kToleranceRange);
+  return solver;
+}
+
+PublishDescription parsePublish(const YamlCursor& cursor) {
+  const YamlMap map = cursor.map(MapKind::kPublish);
+  PublishDescription publish;
+  const std::pair<const char*, double*> rates[] = {{"mesh_rate_hz", &publish.mesh_rate_hz},
+                                                   {"contacts_rate_hz", &publish.contacts_rate_hz},
+                                                   {"status_rate_hz", &publish.status_rate_hz},
+                                                   {"markers_rate_hz", &publish.markers_rate_hz}};
+  for (const auto& [key, rate] : rates) {
+    if (const YamlCursor* value = map.find(key)) *rate = value->number(kRateRange);
+  }
+  if (const YamlCursor* value = map.find("tf")) publish.tf = value->boolean();
+  return publish;
+}
+
+void parseBodies(const YamlMap& map, const PathContext& paths, Scene& scene) {
+  NameLines lines;
+  for (const YamlCursor& element : map.get("tissues").list(1)) {
+    scene.tissues.push_back(parseTissue(element, paths));
+    addName(scene.tissues.back().name, element, lines);
+  }
+  if (const YamlCursor* instruments = map.find("instruments")) {
+    for (const YamlCursor& element : instruments->list(0)) {
+      scene.instruments.push_back(parseInstrument(element, paths));
+      addName(scene.instruments.back().name, element, lines);
+    }
+  }
+}
+
+std::string readText(const std::string& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) {
+    throw std::invalid_argument(file + ": scene file does not exist; correct the path");
+  }
+  // A device or a pipe might never end.
+  if (!fs::is_regular_file(file, error))
+    throw std::invalid_argument(file + ": is not a file; give a scene file (YAML)");
+  std::ifstream stream(file, std::ios::binary);
+  std::string text(kMaxSceneBytes + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!stream.is_open() || stream.bad()) {
+    throw std::invalid_argument(file + ": scene file cannot be read; check its permissions");
+  }
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
+}
+
+}  // namespace
+
+Scene parseScene(const std::string& yaml, const std::string& file, const PackagePath& package_path) {
+  const YamlMap map = parseYaml(yaml, file).map(MapKind::kScene);
+  const PathContext paths{fs::path(file).parent_path().string(), package_path};
+  Scene scene;
+  scene.file = file;
+  if (const YamlCursor* value = map.find("world_frame")) scene.world_frame = parseFrame(*value);
+  if (const YamlCursor* value = map.find("gravity_m_per_s2")) scene.gravity_m_per_s2 = value->vector3(kGravityRange);
+  parseBodies(map, paths, scene);
+  if (const YamlCursor* value = map.find("friction")) scene.friction = parseFrictionPairs(*value, scene);
+  if (const YamlCursor* value = map.find("step")) scene.step = parseStep(*value);
+  if (const YamlCursor* value = map.find("solver")) scene.solver = parseSolver(*value);
+  if (const YamlCursor* value = map.find("publish")) scene.publish = parsePublish(*value);
+  return scene;
+}
+
+Scene loadScene(const std::string& file, const PackagePath& package_path) {
+  return parseScene(readText(file), file, package_path);
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,79 @@
+#include <set>
+
+#include "scene_sections.h"
+
+namespace tissue_contact {
+namespace {
+
+constexpr Range kJointPositionRange{-1000.0, 1000.0, "rad or m", "give radians (revolute) or metres (prismatic)"};
+constexpr const char* kDefaultParameter = "robot_description";
+
+void parseUrdfSource(const YamlMap& map, const PathContext& paths, InstrumentDescription& instrument) {
+  map.atMostOne({"urdf", "robot_description"});
+  if (const YamlCursor* value = map.find("urdf")) {
+    instrument.urdf_file = parseFile(*value, paths, {".urdf", ".xml"});
+  } else if (const YamlCursor* parameter = map.find("robot_description")) {
+    instrument.robot_description_parameter = parseRosName(*parameter);
+  } else {
+    instrument.robot_description_parameter = kDefaultParameter;
+  }
+}
+
+std::vector<std::string> parseTopics(const YamlCursor& cursor) {
+  std::vector<std::string> topics;
+  std::set<std::string> seen;
+  for (const YamlCursor& element : cursor.list(0)) {
+    topics.push_back(parseRosName(element));
+    if (!seen.insert(topics.back()).second) element.fail("topic " + inQuotes(topics.back()) + " is named twice");
+  }
+  return topics;
+}
+
+std::map<std::string, std::string> parseJointNames(const YamlCursor& cursor) {
+  std::map<std::string, std::string> names;
+  std::map<std::string, std::string> recorded_of_urdf;
+  for (const auto& [recorded, value] : cursor.entries()) {
+    const std::string urdf = value.text();
+    const auto [other, is_new] = recorded_of_urdf.emplace(urdf, recorded);
+    if (!is_new) {
+      value.fail("URDF joint " + inQuotes(urdf) + " is already driven by recorded joint " + inQuotes(other->second) +
+                 "; each URDF joint may be named once");
+    }
+    names.emplace(recorded, urdf);
+  }
+  return names;
+}
+
+std::vector<ContactLinkDescription> parseContactLinks(const YamlCursor& cursor, const PathContext& paths) {
+  std::vector<ContactLinkDescription> links;
+  std::set<std::string> seen;
+  for (const YamlCursor& element : cursor.list(1)) {
+    links.push_back(parseContactLink(element, paths));
+    if (!seen.insert(links.back().link).second) {
+      element.fail("link " + inQuotes(links.back().link) + " is named twice; list all its shapes in one place");
+    }
+  }
+  return links;
+}
+
+}  // namespace
+
+InstrumentDescription parseInstrument(const YamlCursor& cursor, const PathContext& paths) {
+  const YamlMap map = cursor.map(MapKind::kInstrument);
+  InstrumentDescription instrument;
+  instrument.name = parseName(map.get("name"));
+  parseUrdfSource(map, paths, instrument);
+  if (const YamlCursor* value = map.find("base_pose")) instrument.base_pose = parsePose(*value, MapKind::kPose);
+  if (const YamlCursor* value = map.find("joint_state_topics")) instrument.joint_state_topics = parseTopics(*value);
+  if (const YamlCursor* value = map.find("joint_names")) instrument.joint_names = parseJointNames(*value);
+  if (const YamlCursor* value = map.find("initial_joint_positions")) {
+    for (const auto& [joint, position] : value->entries()) {
+      instrument.initial_joint_positions.emplace(joint, position.number(kJointPositionRange));
+    }
+  }
+  instrument.tip_link = map.get("tip_link").text();
+  instrument.contact_links = parseContactLinks(map.get("contact_links"), paths);
+  return instrument;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "scene_sections.h"
+
+namespace tissue_contact {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxNameLength = 64;
+// A full turn: angles typed in degrees are mostly beyond it.
+constexpr Range kAngleRange{-6.2832, 6.2832, "rad", "give radians, not degrees"};
+constexpr double kQuaternionNormTolerance = 1e-3;
+
+// Not std::isalpha: a locale may call more letters alphabetic than ROS allows in a name.
+bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+bool isNamePart(const std::string& text) {
+  const auto is_allowed = [](char c) { return isLetter(c) || (c >= '0' && c <= '9') || c == '_'; };
+  return !text.empty() && isLetter(text.front()) && std::all_of(text.begin(), text.end(), is_allowed);
+}
+
+std::string lowerExtension(const std::string& file) {
+  std::string extension = fs::path(file).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+Quaternion parseQuaternion(const YamlCursor& cursor) {
+  const std::vector<YamlCursor> components = cursor.tuple(4);
+  const Range range{-1.0 - kQuaternionNormTolerance, 1.0 + kQuaternionNormTolerance};
+  const Quaternion q(components[3].number(range), components[0].number(range), components[1].number(range),
+                     components[2].number(range));
+  if (!(std::abs(q.norm() - 1.0) <= kQuaternionNormTolerance)) {
+    cursor.fail("has norm " + std::to_string(q.norm()) +
+                "; a rotation must have norm 1 within 0.001; give [x, y, z, w] of a unit quaternion");
+  }
+  return q.normalized();
+}
+
+/// Fixed axes as in URDF: roll about x, then pitch about y, then yaw about z.
+Quaternion fromRollPitchYaw(const Vector3& rpy) {
+  return Eigen::AngleAxisd(rpy.z(), Vector3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vector3::UnitY()) *
+         Eigen::AngleAxisd(rpy.x(), Vector3::UnitX());
+}
+
+}  // namespace
+
+std::string parseName(const YamlCursor& cursor) {
+  const std::string name = cursor.text();
+  if (!isNamePart(name) || name.size() > kMaxNameLength) {
+    cursor.fail("is " + inQuotes(name) +
+                "; a name becomes part of ROS topics, so it must begin with a letter, hold only letters, digits and "
+                "underscores, and have at most 64 characters");
+  }
+  return name;
+}
+
+std::string parseRosName(const YamlCursor& cursor) {
+  const std::string name = cursor.text();
+  std::size_t begin = name.front() == '/' || name.front() == '~' ? 1 : 0;
+  bool is_good = true;
+  while (is_good && begin != std::string::npos) {
+    const std::size_t slash = name.find('/', begin);
+    is_good = isNamePart(name.substr(begin, slash == std::string::npos ? slash : slash - begin));
+    begin = slash == std::string::npos ? slash : slash + 1;
+  }
+  if (!is_good) {
+    cursor.fail("is " + inQuotes(name) +
+                "; a ROS name must be parts joined by '/', each of letters, digits and underscores and beginning with "
+                "a letter, for example /PSM1/measured_js");
+  }
+  return name;
+}
+
+std::string parseFrame(const YamlCursor& cursor) {
+  const std::string frame = cursor.text();
+  if (frame.front() == '/' || frame.find(' ') != std::string::npos) {
+    cursor.fail("is " + inQuotes(frame) + "; a tf frame must not begin with '/' nor hold spaces");
+  }
+  return frame;
+}
+
+std::string parseFile(const YamlCursor& cursor, const PathContext& paths, const std::vector<std::string>& extensions) {
+  const std::string uri = cursor.text();
+  std::string file;
+  try {
+    file = resolvePath(uri, paths.base_directory, paths.package_path);
+  } catch (const std::invalid_argument& error) {
+    cursor.fail(error.what());
+  }
+  std::string allowed;
+  for (const std::string& extension : extensions) allowed += (allowed.empty() ? "" : ", ") + extension;
+  if (std::find(extensions.begin(), extensions.end(), lowerExtension(file)) == extensions.end()) {
+    cursor.fail("file " + inQuotes(uri) + " has none of the allowed endings: " + allowed);
+  }
+  std::error_code error;
+  if (!fs::exists(file, error)) {
+    cursor.fail("file \"" + file + "\" does not exist; correct the path (relative paths start at the scene file)");
+  }
+  if (!fs::is_regular_file(file, error)) cursor.fail("\"" + file + "\" is not a file; give a file");
+  return file;
+}
+
+PoseDescription parsePose(const YamlCursor& cursor, MapKind kind) {
+  const YamlMap map = cursor.map(kind);
+  map.atMostOne({"rpy_rad", "quaternion_xyzw"});
+  PoseDescription pose;
+  if (const YamlCursor* value = map.find("position_m")) pose.X.translation() = value->vector3(kPositionRange);
+  if (const YamlCursor* value = map.find("rpy_rad")) {
+    pose.X.linear() = fromRollPitchYaw(value->vector3(kAngleRange)).toRotationMatrix();
+  }
+  if (const YamlCursor* value = map.find("quaternion_xyzw")) {
+    pose.X.linear() = parseQuaternion(*value).toRotationMatrix();
+  }
+  if (const YamlCursor* value = map.find("tf_frame")) pose.tf_frame = parseFrame(*value);
+  return pose;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,41 @@
+/// @file
+/// Room `scene`, private: the parts of a scene file, each YAML value in, plain data out. All fail as YamlCursor::fail
+/// does.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tissue_contact/scene/load_scene.h"
+#include "yaml_reader.h"
+
+namespace tissue_contact {
+
+/// What the paths in a scene are resolved with.
+struct PathContext {
+  std::string base_directory;
+  const PackagePath& package_path;
+};
+
+/// Any coordinate of a position: far beyond an operating room, near enough to find millimetres typed for metres.
+constexpr Range kPositionRange{-1000.0, 1000.0, "m"};
+/// Edge or radius of a shape or region.
+constexpr Range kShapeSizeRange{1e-6, 100.0, "m", "give metres"};
+
+/// A name that may become part of a ROS topic: [A-Za-z][A-Za-z0-9_]*, at most 64 characters.
+std::string parseName(const YamlCursor& cursor);
+/// A name of a ROS topic or parameter: parts as in parseName() joined by '/', which may also begin with '/' or '~'.
+std::string parseRosName(const YamlCursor& cursor);
+/// A tf frame: not beginning with '/' (tf2 refuses that), without spaces.
+std::string parseFrame(const YamlCursor& cursor);
+/// Absolute path of a regular file that exists and whose name ends in one of `extensions` (lower case, with the dot).
+std::string parseFile(const YamlCursor& cursor, const PathContext& paths, const std::vector<std::string>& extensions);
+/// `kind` is kPose or kShapePose (without tf_frame).
+PoseDescription parsePose(const YamlCursor& cursor, MapKind kind);
+
+TissueDescription parseTissue(const YamlCursor& cursor, const PathContext& paths);
+InstrumentDescription parseInstrument(const YamlCursor& cursor, const PathContext& paths);
+/// One link of contact_links.
+ContactLinkDescription parseContactLink(const YamlCursor& cursor, const PathContext& paths);
+
+}  // namespace tissue_contact

@@ -1,0 +1,260 @@
+#include "yaml_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <locale>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+namespace tissue_contact {
+namespace {
+
+constexpr std::size_t kMaxTextBytes = 4096;
+constexpr std::size_t kMaxShownBytes = 80;
+
+int lineOf(const YAML::Node& node, int otherwise) {
+  const YAML::Mark mark = node.Mark();
+  return mark.is_null() ? otherwise : mark.line + 1;
+}
+
+std::string typeName(const YAML::Node& node) {
+  if (node.IsMap()) return "a map";
+  if (node.IsSequence()) return "a list";
+  if (node.IsNull()) return "empty";
+  return inQuotes(node.Scalar());
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+/// Levenshtein distance: insertions, deletions and replacements that turn `a` into `b`.
+std::size_t editDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// The allowed key that was probably meant, or "". A key without its unit suffix counts as close.
+std::string nearestKey(const std::string& key, const std::vector<std::string>& allowed) {
+  if (key.empty() || key.size() > kMaxShownBytes) return "";
+  std::string nearest;
+  std::size_t least = std::max<std::size_t>(2, key.size() / 2);
+  for (const std::string& candidate : allowed) {
+    const bool lacks_suffix = candidate.size() > key.size() && candidate.compare(0, key.size() + 1, key + "_") == 0;
+    const std::size_t distance = lacks_suffix ? 1 : editDistance(key, candidate);
+    if (distance > least || (distance == least && !nearest.empty())) continue;
+    nearest = candidate;
+    least = distance;
+  }
+  return nearest;
+}
+
+/// The number that the whole of `text` spells, independent of the process's locale.
+std::optional<double> toNumber(const std::string& text) {
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  double value = 0.0;
+  stream >> std::noskipws >> value;
+  if (stream.fail() || stream.peek() != std::istringstream::traits_type::eof()) return std::nullopt;
+  return value;
+}
+
+std::string toText(double value) {
+  std::ostringstream stream;
+  stream.imbue(std::locale::classic());
+  stream << value;
+  return stream.str();
+}
+
+std::string describe(const Range& range) {
+  const std::string unit = *range.unit != '\0' ? std::string(" ") + range.unit : "";
+  return (range.low_excluded ? "> " : ">= ") + toText(range.low) + " and " + (range.high_excluded ? "< " : "<= ") +
+         toText(range.high) + unit;
+}
+
+bool contains(const Range& range, double value) {
+  const bool above = range.low_excluded ? value > range.low : value >= range.low;
+  const bool below = range.high_excluded ? value < range.high : value <= range.high;
+  return above && below;
+}
+
+/// An explicit type (a quoted text or a !!tag) is never taken for a number or a switch.
+bool isPlain(const YAML::Node& node) { return node.Tag().empty() || node.Tag() == "?"; }
+
+}  // namespace
+
+std::string inQuotes(const std::string& text) {
+  std::string shown = text.substr(0, kMaxShownBytes);
+  // A cut inside a multi-byte character would make the whole message invalid UTF-8.
+  if (shown.size() < text.size()) {
+    while (!shown.empty() && (static_cast<unsigned char>(text[shown.size()]) & 0xC0U) == 0x80U) shown.pop_back();
+  }
+  for (char& c : shown) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  }
+  return "\"" + shown + (shown.size() < text.size() ? "...\"" : "\"");
+}
+
+YamlCursor::YamlCursor(YAML::Node node, std::string file, std::string path, int line)
+    : node_(std::move(node)), file_(std::move(file)), path_(std::move(path)), line_(line) {}
+
+void YamlCursor::fail(const std::string& problem) const {
+  throw std::invalid_argument(file_ + ":" + std::to_string(line_) + ": " + (path_.empty() ? "scene" : path_) + ": " +
+                              problem);
+}
+
+YamlMap YamlCursor::map(MapKind kind) const { return {*this, kind}; }
+
+std::vector<std::pair<std::string, YamlCursor>> YamlCursor::entries() const {
+  if (!node_.IsMap()) fail("is " + typeName(node_) + "; it must be a map (key: value)");
+  std::vector<std::pair<std::string, YamlCursor>> all;
+  std::map<std::string, int> line_of_key;
+  for (const auto& entry : node_) {
+    const int line = lineOf(entry.first, line_);
+    if (!entry.first.IsScalar() || entry.first.Scalar().empty()) {
+      YamlCursor(entry.first, file_, path_, line).fail("has a key that is not text; every key must be plain text");
+    }
+    const std::string key = entry.first.Scalar();
+    const std::string shown = inQuotes(key);
+    const std::string name = shown.substr(1, shown.size() - 2);
+    YamlCursor value(entry.second, file_, path_.empty() ? name : path_ + "." + name, line);
+    const auto [first, is_new] = line_of_key.emplace(key, line);
+    if (!is_new) {
+      value.fail("is given twice (first in line " + std::to_string(first->second) + "); remove one of them");
+    }
+    all.emplace_back(key, std::move(value));
+  }
+  return all;
+}
+
+YamlCursor YamlCursor::element(const YAML::Node& node, std::size_t index) const {
+  // yaml-cpp places an empty element where the next token stands, which may be lines below.
+  const int line = node.IsNull() ? line_ : lineOf(node, line_);
+  return {node, file_, path_ + "[" + std::to_string(index) + "]", line};
+}
+
+std::vector<YamlCursor> YamlCursor::list(std::size_t minimum) const {
+  if (!node_.IsSequence()) fail("is " + typeName(node_) + "; it must be a list");
+  if (node_.size() < minimum) {
+    fail("has " + std::to_string(node_.size()) + " elements; it must have at least " + std::to_string(minimum));
+  }
+  std::vector<YamlCursor> all;
+  for (const auto& node : node_) all.push_back(element(node, all.size()));
+  return all;
+}
+
+std::vector<YamlCursor> YamlCursor::tuple(std::size_t length) const {
+  const std::string wanted = "it must be a list of " + std::to_string(length) + " numbers";
+  if (!node_.IsSequence()) fail("is " + typeName(node_) + "; " + wanted);
+  if (node_.size() != length) fail("has " + std::to_string(node_.size()) + " elements; " + wanted);
+  return list(length);
+}
+
+std::string YamlCursor::scalar(const std::string& wanted) const {
+  if (!node_.IsScalar()) fail("is " + typeName(node_) + "; it must be " + wanted);
+  return node_.Scalar();
+}
+
+double YamlCursor::number(const Range& range) const {
+  const std::string wanted = "a number " + describe(range);
+  const std::string fix = *range.fix != '\0' ? std::string("; ") + range.fix : "";
+  const std::string value = scalar(wanted);
+  if (!isPlain(node_)) fail("is the text " + inQuotes(value) + "; it must be " + wanted + " without quotes or tags");
+  const std::optional<double> parsed = toNumber(value);
+  if (!parsed || !contains(range, *parsed)) fail("is " + inQuotes(value) + "; it must be " + wanted + fix);
+  return *parsed;
+}
+
+int YamlCursor::integer(int low, int high) const {
+  const double value = number({static_cast<double>(low), static_cast<double>(high)});
+  if (value != std::floor(value)) {
+    fail("is " + toText(value) + "; it must be a whole number >= " + std::to_string(low) +
+         " and <= " + std::to_string(high));
+  }
+  return static_cast<int>(value);
+}
+
+Vector3 YamlCursor::vector3(const Range& range) const {
+  const std::vector<YamlCursor> components = tuple(3);
+  return {components[0].number(range), components[1].number(range), components[2].number(range)};
+}
+
+bool YamlCursor::boolean() const {
+  const std::string value = scalar("true or false");
+  if (!isPlain(node_) || (value != "true" && value != "false")) {
+    fail("is " + inQuotes(value) + "; it must be true or false");
+  }
+  return value == "true";
+}
+
+std::string YamlCursor::text() const {
+  const std::string value = scalar("text");
+  if (value.empty()) fail("is empty; it must be text");
+  if (value.size() > kMaxTextBytes) {
+    fail("has " + std::to_string(value.size()) + " bytes; at most " + std::to_string(kMaxTextBytes) + " are allowed");
+  }
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
+  if (std::any_of(value.begin(), value.end(), is_control)) {
+    fail("is " + inQuotes(value) + "; it must not hold control characters or line breaks");
+  }
+  return value;
+}
+
+YamlMap::YamlMap(const YamlCursor& cursor, MapKind kind)
+    : cursor_(cursor), keys_(mapKeys(kind)), entries_(cursor.entries()) {
+  for (const auto& [key, value] : entries_) {
+    if (std::find(keys_.keys.begin(), keys_.keys.end(), key) != keys_.keys.end()) continue;
+    const std::string nearest = nearestKey(key, keys_.keys);
+    value.fail("unknown key" + (nearest.empty() ? "" : "; did you mean " + inQuotes(nearest) + "?") +
+               (nearest.empty() ? "; " : " ") + "allowed here: " + joined(keys_.keys));
+  }
+}
+
+const YamlCursor* YamlMap::find(const std::string& key) const {
+  for (const auto& entry : entries_) {
+    if (entry.first == key) return &entry.second;
+  }
+  return nullptr;
+}
+
+const YamlCursor& YamlMap::get(const std::string& key) const {
+  const YamlCursor* found = find(key);
+  if (found == nullptr) cursor_.fail("required key " + inQuotes(key) + " is missing; add it");
+  return *found;
+}
+
+void YamlMap::atMostOne(const std::vector<std::string>& keys) const {
+  std::string first;
+  for (const std::string& key : keys) {
+    const YamlCursor* found = find(key);
+    if (found != nullptr && !first.empty()) {
+      found->fail("cannot be given together with " + inQuotes(first) + "; give at most one of " + joined(keys));
+    }
+    if (found != nullptr) first = key;
+  }
+}
+
+std::string YamlMap::exactlyOne(const std::vector<std::string>& keys) const {
+  atMostOne(keys);
+  for (const std::string& key : keys) {
+    if (find(key) != nullptr) return key;
+  }
+  cursor_.fail("none of " + joined(keys) + " is given; give exactly one of them");
+}
+
+}  // namespace tissue_contact

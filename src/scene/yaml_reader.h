@@ -1,0 +1,98 @@
+/// @file
+/// Room `scene`, private: YAML text in, values with checked type and range out. Every check is made here once, and
+/// every failure is a std::invalid_argument "<file>:<line>: <key path>: <problem, allowed range, fix>".
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene_keys.h"
+#include "tissue_contact/core/types.h"
+
+namespace tissue_contact {
+
+/// Allowed numbers. An excluded bound is not itself allowed.
+struct Range {
+  double low;
+  double high;
+  const char* unit = "";  ///< named in messages; empty for a dimensionless number
+  const char* fix = "";   ///< what to do about a value outside, or empty
+  bool low_excluded = false;
+  bool high_excluded = false;
+};
+
+/// `text` in quotes, shortened and with control characters replaced, fit for a one-line message.
+std::string inQuotes(const std::string& text);
+
+class YamlMap;
+
+/// One value of the file with the place it stands at. Cheap to copy; the yaml-cpp tree is shared.
+class YamlCursor {
+ public:
+  /// @param path key path such as "tissues[0].name". @param line counted from 1.
+  YamlCursor(YAML::Node node, std::string file, std::string path, int line);
+
+  [[noreturn]] void fail(const std::string& problem) const;
+
+  const std::string& path() const { return path_; }
+  int line() const { return line_; }
+  bool isScalar() const { return node_.IsScalar(); }
+
+  YamlMap map(MapKind kind) const;
+  /// Entries of a map with free keys, in file order; keys given twice are refused.
+  std::vector<std::pair<std::string, YamlCursor>> entries() const;
+  /// Elements of a list of at least `minimum` elements.
+  std::vector<YamlCursor> list(std::size_t minimum) const;
+  /// Elements of a list of exactly `length` elements.
+  std::vector<YamlCursor> tuple(std::size_t length) const;
+
+  /// Plain (unquoted) numbers. NaN and infinity are outside every range.
+  double number(const Range& range) const;
+  int integer(int low, int high) const;
+  Vector3 vector3(const Range& range) const;
+  bool boolean() const;
+  /// Non-empty text of at most 4096 bytes without control characters.
+  std::string text() const;
+
+ private:
+  std::string scalar(const std::string& wanted) const;
+  YamlCursor element(const YAML::Node& node, std::size_t index) const;
+
+  YAML::Node node_;
+  std::string file_;
+  std::string path_;
+  int line_;
+};
+
+/// A map whose keys have been checked against the table of its kind.
+class YamlMap {
+ public:
+  YamlMap(const YamlCursor& cursor, MapKind kind);
+
+  const YamlCursor& cursor() const { return cursor_; }
+  /// Null when the key is not given. The pointer lives as long as this map.
+  const YamlCursor* find(const std::string& key) const;
+  /// Fails when the key is not given.
+  const YamlCursor& get(const std::string& key) const;
+  /// The one key of `keys` that is given; fails when none or several are.
+  std::string exactlyOne(const std::vector<std::string>& keys) const;
+  /// Fails when more than one of `keys` is given.
+  void atMostOne(const std::vector<std::string>& keys) const;
+
+ private:
+  YamlCursor cursor_;
+  const SceneMapKeys& keys_;
+  std::vector<std::pair<std::string, YamlCursor>> entries_;
+};
+
+/// Parses text that must hold exactly one document. Size, depth and the number of values (aliases counted wherever they
+/// are used) are bounded, so that no file can exhaust time, stack or memory.
+YamlCursor parseYaml(const std::string& yaml, const std::string& file);
+
+/// Bytes allowed in a scene file: a hundred times what a big scene needs.
+constexpr std::size_t kMaxSceneBytes = 1U << 20U;
+
+}  // namespace tissue_contact

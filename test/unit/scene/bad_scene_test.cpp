@@ -1,0 +1,244 @@
+/// What is refused, and that each message gives file, line and key path. Each case spoils one place of a good scene.
+#include <chrono>
+
+#include "scene_fixture.h"
+
+namespace tissue_contact {
+namespace {
+
+struct BadScene {
+  const char* from;     ///< what of kFullScene is replaced
+  const char* to;       ///< by what
+  const char* where;    ///< start of the message: line and key path
+  const char* problem;  ///< text the message must hold
+};
+
+class BadSceneTest : public SceneTest, public testing::WithParamInterface<BadScene> {};
+
+TEST_P(BadSceneTest, IsRefusedWithItsPlace) {
+  const BadScene& bad = GetParam();
+  const std::string message = refusal(replaced(kFullScene, bad.from, bad.to));
+  EXPECT_EQ(message.find(std::string("scene.yaml:") + bad.where + ": "), 0U) << message;
+  EXPECT_NE(message.find(bad.problem), std::string::npos) << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+}
+
+const BadScene kKeys[] = {
+    {"world_frame: lab", "word_frame: lab", "1: word_frame", "unknown key; did you mean \"world_frame\"?"},
+    {"youngs_modulus_pa: 5e3", "youngs_modulus: 5e3", "17: tissues[0].material.youngs_modulus",
+     "did you mean \"youngs_modulus_pa\"? allowed here: model, youngs_modulus_pa, poissons_ratio, density_kg_per_m3"},
+    {"  contact_passes: 3", "  zzz: 3", "66: solver.zzz", "unknown key; allowed here: iterations, contact_passes"},
+    {"  iterations: 20", "  iterations: 20\n  iterations: 30", "66: solver.iterations",
+     "given twice (first in line 65)"},
+    {"      outer_pitch: pitch", "      outer_yaw: pitch", "42: instruments[0].joint_names.outer_yaw", "given twice"},
+    {"      stiffness_s: 0.002", "      ? [1, 2]\n      : 0.002", "22: tissues[0].damping", "key that is not text"},
+    {"      density_kg_per_m3: 1060\n", "", "15: tissues[0].material", "required key \"density_kg_per_m3\" is missing"},
+    {"    tip_link: tip\n    contact_links: [jaw]", "    contact_links: [jaw]", "56: instruments[1]",
+     "required key \"tip_link\" is missing"},
+    {"    urdf: package://tissue_contact/arm.urdf",
+     "    urdf: package://tissue_contact/arm.urdf\n    robot_description: x", "37: instruments[0].robot_description",
+     "cannot be given together with \"urdf\""},
+    {"      rpy_rad: [0.1, 0.2, 0.3]", "      rpy_rad: [0.1, 0.2, 0.3]\n      quaternion_xyzw: [0, 0, 0, 1]",
+     "15: tissues[0].pose.quaternion_xyzw", "cannot be given together"},
+    {"{growth: 1.5}", "{fine_at: center}", "10: tissues[0].block.grading.y", "required key \"growth\" is missing"},
+    {"      - sphere: {center_m: [0.1, 0.2, 0.3], radius_m: 0.05}", "      - {}", "26: tissues[0].fixed[2]",
+     "none of box, plane, sphere is given"},
+    {"pose: {position_m: [0, 0, 0.005], rpy_rad: [0, 0, 1.5]}", "pose: {tf_frame: x}",
+     "52: instruments[0].contact_links[1].shapes[1].pose.tf_frame", "unknown key"},
+    {"    damping:", "    \"damp\\ning\":", "20: tissues[0].damp?ing", "did you mean \"damping\"?"},
+};
+INSTANTIATE_TEST_SUITE_P(Keys, BadSceneTest, testing::ValuesIn(kKeys));
+
+const BadScene kTypes[] = {
+    {"[0.1, 0.2, -9.81]", "9.81", "2: gravity_m_per_s2", "is \"9.81\"; it must be a list of 3 numbers"},
+    {"[0.1, 0.2, -9.81]", "[0, 9.81]", "2: gravity_m_per_s2", "has 2 elements; it must be a list of 3 numbers"},
+    {"[0.1, 0.2, -9.81]", "[0, 0, down]", "2: gravity_m_per_s2[2]", "is \"down\"; it must be a number"},
+    {"mass_per_s: 0.5", "mass_per_s: \"0.5\"", "21: tissues[0].damping.mass_per_s", "is the text \"0.5\""},
+    {"mass_per_s: 0.5", "mass_per_s: !!str 0.5", "21: tissues[0].damping.mass_per_s", "is the text"},
+    {"mass_per_s: 0.5", "mass_per_s: 0.5 1/s", "21: tissues[0].damping.mass_per_s", "is \"0.5 1/s\""},
+    {"mass_per_s: 0.5", "mass_per_s: 0,5", "21: tissues[0].damping.mass_per_s", "is \"0,5\""},
+    {"mass_per_s: 0.5", "mass_per_s: 0x10", "21: tissues[0].damping.mass_per_s", "is \"0x10\""},
+    {"mass_per_s: 0.5", "mass_per_s:", "21: tissues[0].damping.mass_per_s", "is empty; it must be a number"},
+    {"mass_per_s: 0.5", "mass_per_s: [0.5]", "21: tissues[0].damping.mass_per_s", "is a list; it must be a number"},
+    {"mass_per_s: 0.5", "mass_per_s: .nan", "21: tissues[0].damping.mass_per_s", "is \".nan\""},
+    {"mass_per_s: 0.5", "mass_per_s: nan", "21: tissues[0].damping.mass_per_s", "is \"nan\""},
+    {"mass_per_s: 0.5", "mass_per_s: .inf", "21: tissues[0].damping.mass_per_s", "is \".inf\""},
+    {"mass_per_s: 0.5", "mass_per_s: 1e999", "21: tissues[0].damping.mass_per_s", "is \"1e999\""},
+    {"  iterations: 20", "  iterations: 2.5", "65: solver.iterations", "whole number >= 1 and <= 10000"},
+    {"  tf: true", "  tf: yes", "73: publish.tf", "is \"yes\"; it must be true or false"},
+    {"  tf: true", "  tf: \"true\"", "73: publish.tf", "it must be true or false"},
+    {"step: {max_step_s: 0.002, max_gap_s: 0.5}", "step: 0.001", "63: step", "is \"0.001\"; it must be a map"},
+    {"    fixed:\n", "    fixed: none\n    damping_:\n", "24: tissues[0].damping_", "did you mean \"damping\"?"},
+    {"    contact_links: [jaw]", "    contact_links: jaw", "59: instruments[1].contact_links", "it must be a list"},
+    {"    contact_links: [jaw]", "    contact_links: []", "59: instruments[1].contact_links", "at least 1"},
+    {"model: linear", "model: neohookean", "16: tissues[0].material.model", "must be linear or corotational"},
+    {"fine_at: minimum", "fine_at: left", "9: tissues[0].block.grading.x.fine_at", "minimum, center or maximum"},
+    {"    tip_link: tip\n    contact_links:\n", "    tip_link: [tip]\n    contact_links:\n",
+     "45: instruments[0].tip_link", "is a list; it must be text"},
+    {"      outer_pitch: pitch", "      outer_pitch: yaw", "42: instruments[0].joint_names.outer_pitch",
+     "already driven by recorded joint \"outer_yaw\""},
+    {"      yaw: 0.25", "      yaw: .inf", "44: instruments[0].initial_joint_positions.yaw", "rad or m"},
+};
+INSTANTIATE_TEST_SUITE_P(Types, BadSceneTest, testing::ValuesIn(kTypes));
+
+const BadScene kRanges[] = {
+    {"[0.1, 0.08, 0.04]", "[100, 80, 40]", "6: tissues[0].block.size_m[0]", "give metres, not millimetres"},
+    {"[0.1, 0.08, 0.04]", "[0.1, 0, 0.04]", "6: tissues[0].block.size_m[1]", ">= 1e-06 and <= 10 m"},
+    {"[10, 8, 4]", "[0, 8, 4]", "7: tissues[0].block.cells[0]", ">= 1 and <= 200"},
+    {"[10, 8, 4]", "[201, 8, 4]", "7: tissues[0].block.cells[0]", ">= 1 and <= 200"},
+    {"[10, 8, 4]", "[200, 200, 11]", "7: tissues[0].block.cells", "2200000 tetrahedra"},
+    {"growth: 1.25", "growth: 0.5", "9: tissues[0].block.grading.x.growth", ">= 1 and <= 3"},
+    {"growth: 1.25", "growth: 3", "9: tissues[0].block.grading.x.growth", "times as long as the smallest"},
+    {"youngs_modulus_pa: 5e3", "youngs_modulus_pa: 0.5", "17: tissues[0].material.youngs_modulus_pa", "give pascals"},
+    {"youngs_modulus_pa: 5e3", "youngs_modulus_pa: 2e12", "17: tissues[0].material.youngs_modulus_pa", "<= 1e+12 Pa"},
+    {"poissons_ratio: 0.45", "poissons_ratio: 0.5", "18: tissues[0].material.poissons_ratio", "> -1 and < 0.5"},
+    {"poissons_ratio: 0.45", "poissons_ratio: -1", "18: tissues[0].material.poissons_ratio", "> -1 and < 0.5"},
+    {"density_kg_per_m3: 1060", "density_kg_per_m3: 0.9", "19: tissues[0].material.density_kg_per_m3",
+     "give kilograms per cubic metre"},
+    {"density_kg_per_m3: 1060", "density_kg_per_m3: 2e5", "19: tissues[0].material.density_kg_per_m3", "<= 100000"},
+    {"mass_per_s: 0.5", "mass_per_s: -0.5", "21: tissues[0].damping.mass_per_s", ">= 0 and <= 10000 1/s"},
+    {"stiffness_s: 0.002", "stiffness_s: 20", "22: tissues[0].damping.stiffness_s", "give seconds"},
+    {"rpy_rad: [0.1, 0.2, 0.3]", "rpy_rad: [0, 0, 90]", "14: tissues[0].pose.rpy_rad[2]", "not degrees"},
+    {"[0, 0, 1, 0]", "[0, 0, 1, 1]", "32: tissues[1].pose.quaternion_xyzw", "norm 1"},
+    {"[0, 0, 1, 0]", "[0, 0, 0, 0]", "32: tissues[1].pose.quaternion_xyzw", "norm 1"},
+    {"position_m: [1, 2, 3]", "position_m: [1, 2, 3e4]", "13: tissues[0].pose.position_m[2]", "<= 1000 m"},
+    {"min_m: [-1, -2, -3]", "min_m: [2, -2, -3]", "24: tissues[0].fixed[0].box", "min_m greater than its max_m"},
+    {"normal: [0, 0, 2]", "normal: [0, 0, 0]", "25: tissues[0].fixed[1].plane.normal", "must point somewhere"},
+    {"radius_m: 0.05", "radius_m: 0", "26: tissues[0].fixed[2].sphere.radius_m", ">= 1e-06"},
+    {"scale_m_per_unit: 0.01", "scale_m_per_unit: 0", "30: tissues[1].mesh.scale_m_per_unit", "m per file unit"},
+    {"length_m: 0.1", "length_m: -0.1", "53: instruments[0].contact_links[1].shapes[2].cylinder.length_m", ">= 1e-06"},
+    {"scale: 0.001", "scale: -0.001", "55: instruments[0].contact_links[1].shapes[4].mesh.scale", ">= 1e-09"},
+    {"static: 0.6", "static: 0.3", "61: friction[0].static", "smaller than the kinetic one"},
+    {"static: 0.6", "static: .nan", "61: friction[0].static", ">= 0 and <= 10"},
+    {"kinetic: 0.4", "kinetic: -0.1", "61: friction[0].kinetic", ">= 0 and <= 10"},
+    {"max_step_s: 0.002", "max_step_s: 2", "63: step.max_step_s", "give seconds"},
+    {"max_step_s: 0.002", "max_step_s: 0.6", "63: step", "max_gap_s is shorter than max_step_s"},
+    {"iterations: 20", "iterations: 0", "65: solver.iterations", ">= 1 and <= 10000"},
+    {"contact_passes: 3", "contact_passes: 101", "66: solver.contact_passes", ">= 1 and <= 100"},
+    {"tolerance: 1.0e-7", "tolerance: 0", "67: solver.tolerance", ">= 1e-16 and <= 0.1"},
+    {"markers_rate_hz: 0", "markers_rate_hz: -1", "72: publish.markers_rate_hz", "0 switches the topic off"},
+};
+INSTANTIATE_TEST_SUITE_P(Ranges, BadSceneTest, testing::ValuesIn(kRanges));
+
+const BadScene kNames[] = {
+    {"name: pad", "name: 2pad", "4: tissues[0].name", "must begin with a letter"},
+    {"name: pad", "name: my-pad", "4: tissues[0].name", "must begin with a letter"},
+    {"name: pad", "name: p\303\244d", "4: tissues[0].name", "must begin with a letter"},
+    {"name: pad", "name: \"\"", "4: tissues[0].name", "is empty"},
+    {"name: pad", "name: a_name_that_is_far_too_long_to_be_read_in_any_list_of_topics_of_a_node", "4: tissues[0].name",
+     "at most 64 characters"},
+    {"name: organ", "name: pad", "27: tissues[1]", "already used (line 4)"},
+    {"name: arm2", "name: pad", "56: instruments[1]", "already used (line 4)"},
+    {"world_frame: lab", "world_frame: /lab", "1: world_frame", "must not begin with '/'"},
+    {"tf_frame: operating_table", "tf_frame: \"a\\tb\"", "32: tissues[1].pose.tf_frame", "control characters"},
+    {"/PSM2/jaw/measured_js", "/PSM2//measured_js", "39: instruments[0].joint_state_topics[1]", "a ROS name must be"},
+    {"/PSM2/jaw/measured_js", "/PSM2/measured_js/", "39: instruments[0].joint_state_topics[1]", "a ROS name must be"},
+    {"/PSM2/jaw/measured_js", "/PSM2/measured_js", "39: instruments[0].joint_state_topics[1]", "is named twice"},
+    {"      - shaft", "      - jaw", "48: instruments[0].contact_links[1]", "link \"jaw\" is named twice"},
+    {"instrument: arm, tissue: pad", "instrument: leg, tissue: pad", "61: friction[0].instrument",
+     "unknown instrument \"leg\"; the scene has arm, arm2"},
+    {"instrument: arm, tissue: pad", "instrument: arm, tissue: pat", "61: friction[0].tissue",
+     "unknown tissue \"pat\"; the scene has pad, organ"},
+    {"instrument: arm, tissue: organ", "instrument: arm, tissue: pad", "62: friction[1]", "is given twice"},
+};
+INSTANTIATE_TEST_SUITE_P(Names, BadSceneTest, testing::ValuesIn(kNames));
+
+const BadScene kFiles[] = {
+    {"file: organ.vtk", "file: other.vtk", "29: tissues[1].mesh.file", "other.vtk\" does not exist"},
+    {"file: organ.vtk", "file: organ.stl", "29: tissues[1].mesh.file", "allowed endings: .msh, .vtk"},
+    {"urdf: package://tissue_contact/arm.urdf", "urdf: package://tissue_contact/leg.urdf", "36: instruments[0].urdf",
+     "leg.urdf\" does not exist"},
+    {"urdf: package://tissue_contact/arm.urdf", "urdf: package://nowhere/arm.urdf", "36: instruments[0].urdf",
+     "ROS package \"nowhere\""},
+    {"urdf: package://tissue_contact/arm.urdf", "urdf: http://host/arm.urdf", "36: instruments[0].urdf",
+     "unknown scheme \"http\""},
+    {"scale: [0.001, 0.002, 0.003]", "scale: [0.001, 0.002]",
+     "54: instruments[0].contact_links[1].shapes[3].mesh.scale", "has 2 elements"},
+    {"file: jaw.STL, scale: 0.001", "file: claw.stl, scale: 0.001",
+     "55: instruments[0].contact_links[1].shapes[4].mesh.file", "claw.stl\" does not exist"},
+};
+INSTANTIATE_TEST_SUITE_P(Files, BadSceneTest, testing::ValuesIn(kFiles));
+
+const BadScene kSyntax[] = {
+    {"    contact_links: [jaw]", "    contact_links: [jaw", "60: (YAML syntax)", "check indentation"},
+    {"  iterations: 20", "  iterations: 20\n contact", "67: (YAML syntax)", "column"},
+    {"      poissons_ratio: 0.45", "\t  poissons_ratio: 0.45", "18: (YAML syntax)", "column"},
+    {"tf_frame: operating_table", "tf_frame: *nowhere", "32: (YAML syntax)", "column"},
+    {"world_frame: lab", "--- {}\n---\nworld_frame: lab", "1: scene", "2 YAML documents"},
+};
+INSTANTIATE_TEST_SUITE_P(Syntax, BadSceneTest, testing::ValuesIn(kSyntax));
+
+TEST_F(SceneTest, RefusesAFileWithoutTissue) {
+  for (const char* yaml : {"", "\n# nothing\n", "---\n", "~"}) {
+    EXPECT_EQ(refusal(yaml).find("scene.yaml:1: scene: is empty"), 0U) << yaml;
+  }
+  EXPECT_EQ(refusal("{}"), "scene.yaml:1: scene: required key \"tissues\" is missing; add it");
+  EXPECT_EQ(refusal("tissues: []").find("scene.yaml:1: tissues: has 0 elements"), 0U);
+  EXPECT_EQ(refusal("\ntissues:\n\n").find("scene.yaml:2: tissues: is empty; it must be a list"), 0U);
+  EXPECT_EQ(refusal("- tissues").find("scene.yaml:1: scene: is a list; it must be a map"), 0U);
+  EXPECT_EQ(refusal("tissues").find("scene.yaml:1: scene: is \"tissues\"; it must be a map"), 0U);
+}
+
+std::string repeated(const std::string& text, std::size_t times) {
+  std::string all;
+  for (std::size_t i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+TEST_F(SceneTest, BoundsWhatAFileCanCost) {
+  std::string laughs = "a0: &a0 [lol, lol, lol, lol, lol, lol, lol, lol, lol, lol]\n";
+  for (int level = 1; level < 30; ++level) {
+    const std::string below = "*a" + std::to_string(level - 1);
+    laughs +=
+        "a" + std::to_string(level) + ": &a" + std::to_string(level) + " [" + below + repeated(", " + below, 9) + "]\n";
+  }
+  const std::pair<std::string, std::string> costly[] = {
+      {laughs, "more than 100000 values"},
+      {"tissues: &t [*t]", "alias of itself"},
+      {"tissues: " + repeated("[", 40) + repeated("]", 40), "more than 32 levels"},
+      {repeated("[", 200000), "nested too deeply"},
+      {repeated("{", 200000), "nested too deeply"},
+      {repeated("- ", 200000), "nested too deeply"},
+      {"tissues: [" + repeated("1,", 200000) + "]", "more than 100000 values"},
+      {std::string(3U << 20U, '#'), "at most 1048576 are allowed"},
+      {std::string(500, 'k') + ": 1", "unknown key"},
+  };
+  for (const auto& [yaml, problem] : costly) {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::string message = refusal(yaml);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    EXPECT_NE(message.find(problem), std::string::npos) << message;
+    EXPECT_LT(message.size(), 1000U);
+    EXPECT_LT(seconds.count(), 20.0) << problem;  // a hang, not a slow machine
+  }
+}
+
+TEST_F(SceneTest, SurvivesDamagedText) {
+  const std::string good = kFullScene;
+  unsigned state = 12345;
+  const auto random = [&state](std::size_t below) {
+    state = state * 1664525U + 1013904223U;
+    return static_cast<std::size_t>(state >> 8U) % below;
+  };
+  int refused = 0;
+  for (int round = 0; round < 2000; ++round) {
+    std::string damaged = good;
+    for (std::size_t i = 0, changes = 1 + random(4); i < changes; ++i) {
+      const std::size_t at = random(damaged.size());
+      if (random(3) == 0) {
+        damaged.erase(at, 1 + random(30));
+      } else {
+        damaged[at] = static_cast<char>(random(2) == 0 ? random(256) : "{}[]:-,&*!|>'\"%@\n\t #?"[random(22)]);
+      }
+    }
+    try {
+      parse(damaged);
+    } catch (const std::invalid_argument&) {  // anything else would end the test
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 1000);
+}
+
+}  // namespace
+}  // namespace tissue_contact

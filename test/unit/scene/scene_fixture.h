@@ -1,0 +1,149 @@
+/// @file
+/// A scene that sets every key once, with the files it names, and helpers to spoil one line of it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+#include "tissue_contact/scene/load_scene.h"
+
+namespace tissue_contact {
+
+/// A directory of its own for each test, removed afterwards.
+class SceneTest : public testing::Test {
+ protected:
+  SceneTest() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "scene_test_XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary directory");
+    directory_ = pattern;
+    for (const char* name : {"arm.urdf", "organ.vtk", "jaw.STL"}) write(name, "x");
+  }
+  ~SceneTest() override { std::filesystem::remove_all(directory_); }
+
+  std::string path(const std::string& name) const { return (directory_ / name).string(); }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+
+  Scene parse(const std::string& yaml) const {
+    return parseScene(yaml, path("scene.yaml"), [this](const std::string& package) {
+      return package == "tissue_contact" ? directory_.string() : std::string();
+    });
+  }
+
+  /// What parse() refuses `yaml` with, the directory taken out; fails the test when it is accepted.
+  std::string refusal(const std::string& yaml) const {
+    try {
+      parse(yaml);
+    } catch (const std::invalid_argument& error) {
+      std::string message = error.what();
+      if (message.compare(0, directory_.string().size(), directory_.string()) == 0) {
+        message.erase(0, directory_.string().size() + 1);
+      }
+      return message;
+    }
+    ADD_FAILURE() << "accepted:\n" << yaml;
+    return "";
+  }
+
+  std::filesystem::path directory_;
+};
+
+/// `text` with its only occurrence of `from` replaced.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos || text.find(from, at + 1) != std::string::npos) {
+    throw std::logic_error("\"" + from + "\" does not occur exactly once");
+  }
+  return text.replace(at, from.size(), to);
+}
+
+/// Line numbers matter to the tests: keep them in step.
+inline const char* const kFullScene = R"(world_frame: lab
+gravity_m_per_s2: [0.1, 0.2, -9.81]
+tissues:
+  - name: pad
+    block:
+      size_m: [0.1, 0.08, 0.04]
+      cells: [10, 8, 4]
+      grading:
+        x: {growth: 1.25, fine_at: minimum}
+        y: {growth: 1.5}
+        z: {growth: 2, fine_at: maximum}
+    pose:
+      position_m: [1, 2, 3]
+      rpy_rad: [0.1, 0.2, 0.3]
+    material:
+      model: linear
+      youngs_modulus_pa: 5e3
+      poissons_ratio: 0.45
+      density_kg_per_m3: 1060
+    damping:
+      mass_per_s: 0.5
+      stiffness_s: 0.002
+    fixed:
+      - box: {min_m: [-1, -2, -3], max_m: [1, 2, 3]}
+      - plane: {point_m: [0, 0, 0.01], normal: [0, 0, 2]}
+      - sphere: {center_m: [0.1, 0.2, 0.3], radius_m: 0.05}
+  - name: organ
+    mesh:
+      file: organ.vtk
+      scale_m_per_unit: 0.01
+      remove_unreferenced_nodes: true
+    pose: {tf_frame: operating_table, quaternion_xyzw: [0, 0, 1, 0]}
+    material: {model: corotational, youngs_modulus_pa: 2000, poissons_ratio: 0.3, density_kg_per_m3: 1000}
+instruments:
+  - name: arm
+    urdf: package://tissue_contact/arm.urdf
+    base_pose:
+      position_m: [0.2, 0, 0]
+    joint_state_topics: [/PSM2/measured_js, /PSM2/jaw/measured_js]
+    joint_names:
+      outer_yaw: yaw
+      outer_pitch: pitch
+    initial_joint_positions:
+      yaw: 0.25
+    tip_link: tip
+    contact_links:
+      - shaft
+      - link: jaw
+        shapes:
+          - sphere: {radius_m: 0.002}
+          - box: {size_m: [0.01, 0.02, 0.03]}
+            pose: {position_m: [0, 0, 0.005], rpy_rad: [0, 0, 1.5]}
+          - cylinder: {radius_m: 0.004, length_m: 0.1}
+          - mesh: {file: jaw.STL, scale: [0.001, 0.002, 0.003]}
+          - mesh: {file: jaw.STL, scale: 0.001}
+  - name: arm2
+    robot_description: /arm2/robot_description
+    tip_link: tip
+    contact_links: [jaw]
+friction:
+  - {instrument: arm, tissue: pad, static: 0.6, kinetic: 0.4}
+  - {instrument: arm, tissue: organ, static: 0.3, kinetic: 0.3}
+step: {max_step_s: 0.002, max_gap_s: 0.5}
+solver:
+  iterations: 20
+  contact_passes: 3
+  tolerance: 1.0e-7
+publish:
+  mesh_rate_hz: 1
+  contacts_rate_hz: 2
+  status_rate_hz: 3
+  markers_rate_hz: 0
+  tf: true
+)";
+
+inline const char* const kSmallestScene = R"(tissues:
+  - name: pad
+    block: {size_m: [0.1, 0.1, 0.04], cells: [2, 2, 1]}
+    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.45, density_kg_per_m3: 1000}
+instruments:
+  - name: arm
+    tip_link: tip
+    contact_links: [tip]
+)";
+
+}  // namespace tissue_contact
