@@ -1,0 +1,50 @@
+/// @file
+/// Test support: scenes written as text inside a test, with their URDFs beside them.
+#pragma once
+
+#include <map>
+#include <stdexcept>
+#include <string>
+
+#include "tissue_contact/scene/load_scene.h"
+#include "tissue_contact/simulation/simulator.h"
+
+namespace tissue_contact::test {
+
+/// Builds a simulator from scene text; `robot_description: <name>` in it means entry <name> of `urdfs`.
+inline Simulator makeSimulator(const std::string& yaml, const std::map<std::string, std::string>& urdfs) {
+  SceneEnvironment environment;
+  environment.package_path = [](const std::string& package) {
+    return package == "tissue_contact" ? std::string(TISSUE_CONTACT_SOURCE_DIR) : std::string();
+  };
+  environment.urdf_text = [urdfs](const std::string& name) {
+    const auto urdf = urdfs.find(name);
+    if (urdf == urdfs.end()) throw std::invalid_argument("the test has no URDF '" + name + "'");
+    return urdf->second;
+  };
+  return Simulator(parseScene(yaml, "test scene", environment.package_path), environment);
+}
+
+/// A sphere on three prismatic joints x, y, z along the axes of its base; link `tip` at the sphere's centre.
+inline std::string probeUrdf(double radius_m) {
+  std::string urdf = "<robot name='probe'><link name='base'/>";
+  const std::string axes[3] = {"1 0 0", "0 1 0", "0 0 1"};
+  const std::string names[3] = {"x", "y", "z"};
+  const std::string links[4] = {"base", "x_link", "y_link", "tip"};
+  for (int i = 0; i < 3; ++i) {
+    if (i < 2) urdf += "<link name='" + links[i + 1] + "'/>";
+    urdf += "<joint name='" + names[i] + "' type='prismatic'><parent link='" + links[i] + "'/><child link='" +
+            links[i + 1] + "'/><axis xyz='" + axes[i] +
+            "'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>";
+  }
+  return urdf + "<link name='tip'><collision><geometry><sphere radius='" + std::to_string(radius_m) +
+         "'/></geometry></collision></link></robot>";
+}
+
+/// A box that does not move: table or incline. The box's upper face is at z = 0 of the link.
+inline std::string tableUrdf() {
+  return "<robot name='table'><link name='table'><collision><origin xyz='0 0 -0.05'/><geometry>"
+         "<box size='2 2 0.1'/></geometry></collision></link></robot>";
+}
+
+}  // namespace tissue_contact::test

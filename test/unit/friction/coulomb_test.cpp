@@ -1,0 +1,128 @@
+/// One contact: the corrector against closed forms and against the law it has to satisfy.
+#include "tissue_contact/friction/coulomb.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <random>
+
+namespace tissue_contact {
+namespace {
+
+/// Round-off of a handful of operations on numbers of order 1.
+constexpr double kRoundOff = 1e-14;
+
+Matrix3 randomCompliance(std::mt19937& random, double coupling) {
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Matrix3 B;
+  for (int i = 0; i < 9; ++i) B.data()[i] = coupling * uniform(random);
+  return B * B.transpose() + Matrix3::Identity();
+}
+
+// Form A of the validation list: W = I/2, mu = 0.5.
+TEST(SolveCoulombContact, SticksExactlyAsInTheClosedForm) {
+  const Matrix3 W = 0.5 * Matrix3::Identity();
+  const ContactAnswer answer = solveCoulombContact(W, Vector3(-1.0, 0.2, 0.1), {0.5, 0.5}, false);
+  EXPECT_EQ(answer.state, ContactState::kStatic);
+  EXPECT_LE((answer.impulse - Vector3(2.0, -0.4, -0.2)).norm(), kRoundOff);
+}
+
+TEST(SolveCoulombContact, SlidesExactlyAsInTheClosedForm) {
+  const Matrix3 W = 0.5 * Matrix3::Identity();
+  const Vector3 q(-1.0, 1.2, 1.6);
+  const ContactAnswer answer = solveCoulombContact(W, q, {0.5, 0.5}, false);
+  EXPECT_EQ(answer.state, ContactState::kKinetic);
+  EXPECT_LE((answer.impulse - Vector3(2.0, -0.6, -0.8)).norm(), kRoundOff);
+  EXPECT_LE((W * answer.impulse + q - Vector3(0.0, 0.9, 1.2)).norm(), kRoundOff);
+}
+
+TEST(SolveCoulombContact, SeparatingContactGetsNoImpulse) {
+  const ContactAnswer answer = solveCoulombContact(Matrix3::Identity(), Vector3(0.1, 5.0, 0.0), {0.5, 0.5}, false);
+  EXPECT_EQ(answer.state, ContactState::kOpen);
+  EXPECT_EQ(answer.impulse, Vector3::Zero());
+}
+
+TEST(SolveCoulombContact, FrictionlessContactIsNormalOnly) {
+  Matrix3 W;
+  W << 2.0, 0.3, 0.1, 0.3, 1.0, 0.2, 0.1, 0.2, 1.5;
+  const ContactAnswer answer = solveCoulombContact(W, Vector3(-1.0, 3.0, -2.0), {0.0, 0.0}, false);
+  EXPECT_EQ(answer.impulse, Vector3(0.5, 0.0, 0.0));
+}
+
+// The stopping impulse needs 0.4 of the normal one: between mu_k and mu_s the past decides.
+TEST(SolveCoulombContact, HysteresisBetweenKineticAndStaticLimit) {
+  const Matrix3 W = Matrix3::Identity();
+  const Vector3 q(-1.0, 0.4, 0.0);
+  const CoulombLaw law{0.6, 0.3};
+  EXPECT_EQ(solveCoulombContact(W, q, law, false).state, ContactState::kStatic);
+  const ContactAnswer sliding = solveCoulombContact(W, q, law, true);
+  EXPECT_EQ(sliding.state, ContactState::kKinetic);
+  EXPECT_LE((sliding.impulse - Vector3(1.0, -0.3, 0.0)).norm(), kRoundOff);
+  // Slow enough for kinetic friction to stop it: it sticks again.
+  EXPECT_EQ(solveCoulombContact(W, Vector3(-1.0, 0.25, 0.0), law, true).state, ContactState::kStatic);
+}
+
+TEST(SolveCoulombContact, RandomContactsSatisfySignoriniAndCoulomb) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int slid = 0;
+  int stuck = 0;
+  for (int sample = 0; sample < 20000; ++sample) {
+    const Matrix3 W = randomCompliance(random, 0.4);
+    const Vector3 q(uniform(random), 0.7 * uniform(random), 0.7 * uniform(random));
+    const double mu = 0.5 * (1.0 + uniform(random));
+    const ContactAnswer answer = solveCoulombContact(W, q, {mu, mu}, false);
+    const Vector3 u = W * answer.impulse + q;
+    const Vector2 r_t = answer.impulse.tail<2>();
+    const Vector2 u_t = u.tail<2>();
+    ASSERT_GE(answer.impulse[0], 0.0);
+    // Fixed-point iteration to 1e-15 in the direction; errors of a few 1e-13 on numbers of order 1 remain.
+    constexpr double kTolerance = 1e-12;
+    if (answer.state == ContactState::kOpen) {
+      ASSERT_GE(u[0], 0.0);
+      continue;
+    }
+    ASSERT_LE(std::abs(u[0]), kTolerance);
+    ASSERT_LE(r_t.norm(), mu * answer.impulse[0] + kTolerance);
+    if (answer.state == ContactState::kStatic) {
+      ++stuck;
+      ASSERT_LE(u_t.norm(), kTolerance);
+    } else {
+      ++slid;
+      ASSERT_LE(r_t.dot(u_t), 0.0);
+      ASSERT_LE((r_t * u_t.norm() + mu * answer.impulse[0] * u_t).norm(), kTolerance * (1.0 + u_t.norm()));
+    }
+  }
+  EXPECT_GT(slid, 1000);
+  EXPECT_GT(stuck, 1000);
+}
+
+TEST(MinimizeOnDisc, InteriorMinimumIsExact) {
+  Matrix2 W;
+  W << 2.0, 0.5, 0.5, 1.0;
+  const Vector2 expected(0.1, -0.2);
+  EXPECT_LE((minimizeOnDisc(W, -(W * expected), 1.0) - expected).norm(), kRoundOff);
+}
+
+TEST(MinimizeOnDisc, RimMinimumOpposesTheGradient) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int sample = 0; sample < 2000; ++sample) {
+    const Matrix2 W = randomCompliance(random, 1.0).bottomRightCorner<2, 2>();
+    const Vector2 s(uniform(random), uniform(random));
+    const double radius = 0.1 * (1.0 + uniform(random)) * (W.inverse() * s).norm();
+    if (!(radius > 0.0)) continue;
+    const Vector2 x = minimizeOnDisc(W, s, radius);
+    ASSERT_NEAR(x.norm() / radius, 1.0, 1e-13);
+    const Vector2 gradient = W * x + s;
+    ASSERT_LE(std::abs(gradient.x() * x.y() - gradient.y() * x.x()), 1e-12 * gradient.norm() * x.norm());
+    ASSERT_LT(gradient.dot(x), 0.0);
+  }
+}
+
+TEST(MinimizeOnDisc, ZeroRadiusGivesZero) {
+  EXPECT_EQ(minimizeOnDisc(Matrix2::Identity(), Vector2(1.0, 1.0), 0.0), Vector2::Zero());
+}
+
+}  // namespace
+}  // namespace tissue_contact
