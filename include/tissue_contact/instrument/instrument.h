@@ -2,6 +2,7 @@
 /// Room `instrument`: one instrument of a scene: kinematic model, base pose, joint-name map, touching links.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 

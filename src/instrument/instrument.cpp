@@ -1,0 +1,152 @@
+#include "tissue_contact/instrument/instrument.h"
+
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+namespace tissue_contact {
+namespace {
+
+/// "a, b, c" for messages, cut short when there are many.
+template <typename Named>
+std::string listNames(const std::vector<Named>& named) {
+  constexpr std::size_t kMax = 20;
+  std::string list;
+  for (std::size_t i = 0; i < named.size() && i < kMax; ++i) list += (i == 0 ? "" : ", ") + named[i].name;
+  if (named.size() > kMax) list += ", ...";
+  return list.empty() ? "none" : list;
+}
+
+/// The checks of one description against one model; every message starts with the instrument's name.
+class Builder {
+ public:
+  Builder(const InstrumentDescription& description, const RobotModel& model)
+      : description_(description), model_(model) {}
+
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw std::invalid_argument("instrument '" + description_.name + "': " + what);
+  }
+
+  int findLink(const std::string& role, const std::string& name) const {
+    const int link = model_.findLink(name);
+    if (link < 0) {
+      refuse(role + " '" + name + "' is not a link of robot '" + model_.name() +
+             "'; its links are: " + listNames(model_.links()));
+    }
+    return link;
+  }
+
+  int findJoint(const std::string& role, const std::string& name) const {
+    const int joint = model_.findJoint(name);
+    if (joint < 0) {
+      refuse(role + " '" + name + "', which is not an independent joint of robot '" + model_.name() +
+             "' (fixed and mimic joints cannot be set); its independent joints are: " + listNames(model_.joints()));
+    }
+    return joint;
+  }
+
+  void checkTopics() const {
+    const bool moves = !model_.joints().empty();
+    if (moves && description_.joint_state_topics.empty()) {
+      refuse("its URDF has moving joints (" + listNames(model_.joints()) +
+             ") but no joint-state topic is given; name one in joint_state_topics");
+    }
+    if (!moves && !description_.joint_state_topics.empty()) {
+      refuse("joint_state_topics names '" + description_.joint_state_topics.front() +
+             "' but its URDF has no moving joint; leave the key out for a fixed obstacle");
+    }
+  }
+
+  ContactLink makeContactLink(const ContactLinkDescription& contact) const {
+    ContactLink result;
+    result.name = contact.link;
+    result.link = findLink("contact link", contact.link);
+    const LinkGeometry& geometry = model_.links()[static_cast<std::size_t>(result.link)].geometry;
+    const auto& [shapes, origin] = !contact.shapes.empty() ? std::make_pair(&contact.shapes, "shape of the scene")
+                                   : !geometry.collision.empty()
+                                       ? std::make_pair(&geometry.collision, "<collision> of the URDF")
+                                       : std::make_pair(&geometry.visual, "<visual> of the URDF");
+    if (shapes->empty()) {
+      refuse("contact link '" + contact.link +
+             "' has neither <collision> nor <visual> in its URDF; name its shapes in the scene or drop it from "
+             "contact_links");
+    }
+    for (std::size_t i = 0; i < shapes->size(); ++i) {
+      try {
+        result.shapes.push_back(makeCollisionShape((*shapes)[i]));
+      } catch (const std::invalid_argument& error) {
+        refuse("contact link '" + contact.link + "', " + origin + " number " + std::to_string(i + 1) + ": " +
+               error.what());
+      }
+    }
+    return result;
+  }
+
+  std::vector<ContactLink> makeContactLinks() const {
+    std::vector<ContactLink> links;
+    std::set<std::string> seen;
+    for (const ContactLinkDescription& contact : description_.contact_links) {
+      if (!seen.insert(contact.link).second) refuse("contact link '" + contact.link + "' is listed twice");
+      links.push_back(makeContactLink(contact));
+    }
+    return links;
+  }
+
+  VectorX makeInitialPositions() const {
+    VectorX positions = VectorX::Zero(static_cast<Eigen::Index>(model_.joints().size()));
+    for (const auto& [name, position] : description_.initial_joint_positions) {
+      const int joint = findJoint("an initial position is given for joint", name);
+      if (!std::isfinite(position)) {
+        refuse("initial position of joint '" + name + "' is " + std::to_string(position) +
+               "; it must be finite (rad or m)");
+      }
+      positions[joint] = position;
+    }
+    return positions;
+  }
+
+  /// Own names first, then the map, which may give an own name another meaning.
+  std::map<std::string, int> makeJointMap() const {
+    std::map<std::string, int> joint_of;
+    for (std::size_t i = 0; i < model_.joints().size(); ++i) joint_of[model_.joints()[i].name] = static_cast<int>(i);
+    std::map<int, std::string> recorded_as;
+    for (const auto& [recorded, name] : description_.joint_names) {
+      const int joint = findJoint("the joint map sends '" + recorded + "' to", name);
+      const auto [it, is_new] = recorded_as.emplace(joint, recorded);
+      if (!is_new) refuse("the joint map sends both '" + it->second + "' and '" + recorded + "' to '" + name + "'");
+      joint_of[recorded] = joint;
+    }
+    return joint_of;
+  }
+
+ private:
+  const InstrumentDescription& description_;
+  const RobotModel& model_;
+};
+
+}  // namespace
+
+Instrument::Instrument(const InstrumentDescription& description, RobotModel model, const Pose& X_WB)
+    : name_(description.name), model_(std::move(model)), X_WB_(X_WB) {
+  const Builder builder(description, model_);
+  if (!X_WB.matrix().allFinite()) builder.refuse("its base pose is not finite");
+  builder.checkTopics();
+  tip_link_ = builder.findLink("tip link", description.tip_link);
+  contact_links_ = builder.makeContactLinks();
+  initial_positions_ = builder.makeInitialPositions();
+  joint_of_recorded_name_ = builder.makeJointMap();
+}
+
+int Instrument::jointOfRecordedName(const std::string& recorded) const {
+  const auto found = joint_of_recorded_name_.find(recorded);
+  return found == joint_of_recorded_name_.end() ? -1 : found->second;
+}
+
+void Instrument::linkPoses(const VectorX& positions, std::vector<Pose>& X_WL) const {
+  model_.forwardKinematics(positions, X_WL);
+  for (Pose& X : X_WL) X = X_WB_ * X;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,238 @@
+#include "tissue_contact/instrument/parse_urdf.h"
+
+#include <urdf_model/model.h>
+#include <urdf_world/types.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "read_file.h"
+#include "urdfdom_document.h"
+
+namespace tissue_contact {
+namespace {
+
+constexpr std::uintmax_t kMaxUrdfBytes = 16u << 20;
+
+/// Position of a moving joint as a function of one independent joint: multiplier * position[joint] + offset.
+struct Drive {
+  int joint = -1;
+  double multiplier = 1.0;
+  double offset = 0.0;
+};
+
+/// Turns urdfdom's model into links in tree order. One instance per parse.
+class UrdfReader {
+ public:
+  UrdfReader(const urdf::ModelInterface& urdf, std::string source, std::string base_directory,
+             const PackagePath& package_path)
+      : urdf_(urdf),
+        source_(std::move(source)),
+        base_directory_(std::move(base_directory)),
+        package_path_(package_path) {}
+
+  RobotModel read() {
+    orderLinks();
+    collectIndependentJoints();
+    std::vector<RobotModel::Link> links;
+    links.reserve(order_.size());
+    for (const urdf::LinkConstSharedPtr& link : order_) links.push_back(readLink(*link));
+    return RobotModel(urdf_.getName(), std::move(links), std::move(joints_));
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& what) const { throw std::invalid_argument(source_ + ": " + what); }
+
+  /// Breadth-first from the root, so that parents come first. urdfdom does not notice a link with two parents nor links
+  /// that form a ring apart from the root.
+  void orderLinks() {
+    std::map<std::string, std::string> joint_above;
+    for (const auto& [name, joint] : urdf_.joints_) {
+      const auto [it, is_new] = joint_above.emplace(joint->child_link_name, name);
+      if (!is_new) {
+        refuse("link '" + joint->child_link_name + "' is the child of two joints, '" + it->second + "' and '" + name +
+               "'; a URDF is a tree, each link has one parent");
+      }
+    }
+    order_.push_back(urdf_.getRoot());
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      index_[order_[i]->name] = static_cast<int>(i);
+      for (const urdf::JointSharedPtr& joint : order_[i]->child_joints) {
+        order_.push_back(urdf_.getLink(joint->child_link_name));
+      }
+    }
+    for (const auto& [name, link] : urdf_.links_) {
+      if (index_.count(name) == 0) refuse("link '" + name + "' is not connected to the root '" + order_[0]->name + "'");
+    }
+  }
+
+  void collectIndependentJoints() {
+    for (const urdf::LinkConstSharedPtr& link : order_) {
+      if (!link->parent_joint) continue;
+      const urdf::Joint& joint = *link->parent_joint;
+      checkType(joint);
+      if (joint.type == urdf::Joint::FIXED || joint.mimic) continue;
+      // A continuous joint has no limits; urdfdom demands them of the others.
+      constexpr double kInfinity = std::numeric_limits<double>::infinity();
+      const bool limited = joint.limits && joint.type != urdf::Joint::CONTINUOUS;
+      drives_[joint.name] = Drive{static_cast<int>(joints_.size()), 1.0, 0.0};
+      joints_.push_back(
+          {joint.name, limited ? joint.limits->lower : -kInfinity, limited ? joint.limits->upper : kInfinity});
+    }
+  }
+
+  void checkType(const urdf::Joint& joint) const {
+    const char* type = joint.type == urdf::Joint::PLANAR     ? "planar"
+                       : joint.type == urdf::Joint::FLOATING ? "floating"
+                       : joint.type == urdf::Joint::UNKNOWN  ? "unknown"
+                                                             : nullptr;
+    if (type != nullptr) {
+      refuse("joint '" + joint.name + "' has the unsupported type '" + type +
+             "'; use fixed, revolute, continuous or prismatic");
+    }
+  }
+
+  RobotModel::Link readLink(const urdf::Link& urdf_link) {
+    RobotModel::Link link;
+    link.name = urdf_link.name;
+    for (const urdf::CollisionSharedPtr& shape : urdf_link.collision_array) {
+      link.geometry.collision.push_back(readShape(*shape->geometry, shape->origin, "<collision> of link", link.name));
+    }
+    for (const urdf::VisualSharedPtr& shape : urdf_link.visual_array) {
+      link.geometry.visual.push_back(readShape(*shape->geometry, shape->origin, "<visual> of link", link.name));
+    }
+    if (urdf_link.parent_joint) readJoint(*urdf_link.parent_joint, link);
+    return link;
+  }
+
+  void readJoint(const urdf::Joint& joint, RobotModel::Link& link) {
+    link.parent = index_.at(joint.parent_link_name);
+    link.X_PJ = readPose(joint.parent_to_joint_origin_transform, "joint", joint.name);
+    if (joint.type == urdf::Joint::FIXED) return;
+    link.motion = joint.type == urdf::Joint::PRISMATIC ? RobotModel::Link::Motion::kPrismatic
+                                                       : RobotModel::Link::Motion::kRevolute;
+    const Vector3 axis(joint.axis.x, joint.axis.y, joint.axis.z);
+    if (!axis.allFinite()) refuse("joint '" + joint.name + "' has an <axis> that is not finite");
+    // stableNorm: a tiny or huge but usable axis must not vanish or overflow when squared.
+    const double length = axis.stableNorm();
+    if (!(length > 0.0))
+      refuse("joint '" + joint.name + "' has a zero <axis>; give it a direction, e.g. xyz=\"0 0 1\"");
+    link.axis = (axis / length).normalized();
+    const Drive drive = driveOf(joint);
+    link.joint = drive.joint;
+    link.multiplier = drive.multiplier;
+    link.offset = drive.offset;
+  }
+
+  /// The joint that `joint` mimics. @throws when it does not exist or never moves.
+  const urdf::Joint& mimicked(const urdf::Joint& joint) const {
+    const auto found = urdf_.joints_.find(joint.mimic->joint_name);
+    if (found == urdf_.joints_.end()) {
+      refuse("joint '" + joint.name + "' mimics the unknown joint '" + joint.mimic->joint_name + "'");
+    }
+    if (found->second->type == urdf::Joint::FIXED) {
+      refuse("joint '" + joint.name + "' mimics '" + found->first + "', which is fixed; make '" + joint.name +
+             "' fixed too or let it mimic a moving joint");
+    }
+    return *found->second;
+  }
+
+  /// Follows a chain of mimics to its independent joint and composes them: with q = M p + O for the mimicked joint,
+  /// m q + o = (m M) p + (m O + o). Results are kept, so a chain is walked once.
+  Drive driveOf(const urdf::Joint& joint) {
+    std::vector<const urdf::Joint*> chain;
+    std::set<std::string> seen;
+    const urdf::Joint* at = &joint;
+    for (; drives_.count(at->name) == 0; at = &mimicked(*at)) {
+      if (!seen.insert(at->name).second) refuse("joint '" + at->name + "' mimics itself through a cycle of mimics");
+      chain.push_back(at);
+    }
+    Drive drive = drives_.at(at->name);
+    for (auto it = chain.rbegin(); it != chain.rend(); ++it) {
+      const urdf::JointMimic& mimic = *(*it)->mimic;
+      drive.offset = mimic.multiplier * drive.offset + mimic.offset;
+      drive.multiplier *= mimic.multiplier;
+      if (!std::isfinite(drive.offset) || !std::isfinite(drive.multiplier)) {
+        refuse("joint '" + (*it)->name + "' has a <mimic> whose multiplier or offset is not finite");
+      }
+      drives_[(*it)->name] = drive;
+    }
+    return drive;
+  }
+
+  Pose readPose(const urdf::Pose& pose, const std::string& what, const std::string& name) const {
+    const Vector3 p(pose.position.x, pose.position.y, pose.position.z);
+    const Quaternion q(pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z);
+    if (!p.allFinite() || !q.coeffs().allFinite()) {
+      refuse(what + " '" + name + "' has an <origin> that is not finite");
+    }
+    Pose X = Pose::Identity();
+    X.linear() = q.normalized().toRotationMatrix();
+    X.translation() = p;
+    return X;
+  }
+
+  ShapeDescription readShape(const urdf::Geometry& geometry, const urdf::Pose& origin, const std::string& what,
+                             const std::string& link) const {
+    ShapeDescription shape;
+    shape.X_LS = readPose(origin, what, link);
+    if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(&geometry)) {
+      shape.geometry = SphereGeometry{sphere->radius};
+    } else if (const auto* box = dynamic_cast<const urdf::Box*>(&geometry)) {
+      shape.geometry = BoxGeometry{Vector3(box->dim.x, box->dim.y, box->dim.z)};
+    } else if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(&geometry)) {
+      shape.geometry = CylinderGeometry{cylinder->radius, cylinder->length};
+    } else if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(&geometry)) {
+      shape.geometry = MeshGeometry{meshPath(mesh->filename), Vector3(mesh->scale.x, mesh->scale.y, mesh->scale.z)};
+    } else {
+      refuse(what + " '" + link + "' has a geometry other than sphere, box, cylinder and mesh");
+    }
+    return shape;
+  }
+
+  /// A URDF may show meshes of packages that are not installed where the simulation runs; that matters only for links
+  /// that touch tissue. So a path that cannot be resolved (a relative one in a URDF that is no file, too) is kept as
+  /// written, and makeCollisionShape() refuses it.
+  std::string meshPath(const std::string& uri) const {
+    const bool relative = uri.find("://") == std::string::npos && uri.rfind('/', 0) != 0;
+    if (relative && base_directory_.empty()) return uri;
+    try {
+      return resolvePath(uri, base_directory_, package_path_);
+    } catch (const std::invalid_argument&) {
+      return uri;
+    }
+  }
+
+  const urdf::ModelInterface& urdf_;
+  std::string source_;
+  std::string base_directory_;
+  const PackagePath& package_path_;
+  std::vector<urdf::LinkConstSharedPtr> order_;
+  std::map<std::string, int> index_;
+  std::vector<IndependentJoint> joints_;
+  std::map<std::string, Drive> drives_;
+};
+
+}  // namespace
+
+RobotModel parseUrdf(const std::string& xml, const std::string& source, const std::string& base_directory,
+                     const PackagePath& package_path) {
+  const urdf::ModelInterfaceSharedPtr urdf = parseWithUrdfdom(xml, source);
+  return UrdfReader(*urdf, source, base_directory, package_path).read();
+}
+
+RobotModel loadUrdf(const std::string& file, const PackagePath& package_path) {
+  const std::string directory = std::filesystem::absolute(file).parent_path().string();
+  return parseUrdf(readFile(file, "URDF file", kMaxUrdfBytes), file, directory, package_path);
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,96 @@
+#include "tissue_contact/instrument/robot_model.h"
+
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+namespace tissue_contact {
+namespace {
+
+using Motion = RobotModel::Link::Motion;
+
+void checkLink(const RobotModel::Link& link, int index, int joint_count) {
+  const std::string who = "link '" + link.name + "'";
+  // The root alone has parent -1; every other parent must have been placed before its child.
+  if (index == 0 ? link.parent != -1 : !(link.parent >= 0 && link.parent < index)) {
+    throw std::invalid_argument(who + " has parent index " + std::to_string(link.parent) + " at position " +
+                                std::to_string(index) + "; parents come before children, the root (-1) first");
+  }
+  if (!link.X_PJ.matrix().allFinite()) throw std::invalid_argument(who + " has a joint origin that is not finite");
+  if (link.motion == Motion::kFixed) return;
+  if (!(link.joint >= 0 && link.joint < joint_count)) {
+    throw std::invalid_argument(who + " moves with joint index " + std::to_string(link.joint) + "; the model has " +
+                                std::to_string(joint_count) + " independent joints");
+  }
+  constexpr double kUnitTolerance = 1e-9;  // dimensionless; a longer axis would scale the motion
+  if (!(std::abs(link.axis.norm() - 1.0) < kUnitTolerance)) {
+    throw std::invalid_argument(who + " has a joint axis of length " + std::to_string(link.axis.norm()) +
+                                "; it must be 1");
+  }
+  if (!std::isfinite(link.multiplier) || !std::isfinite(link.offset)) {
+    throw std::invalid_argument(who + " has a mimic multiplier or offset that is not finite");
+  }
+}
+
+/// Applies the joint's own motion to the joint frame: X * Rot(axis, q) or X * Trans(q axis).
+void applyMotion(const RobotModel::Link& link, double position, Pose& X) {
+  if (link.motion == Motion::kRevolute) {
+    X.linear() = X.linear() * Eigen::AngleAxisd(position, link.axis).toRotationMatrix();
+  } else {
+    X.translation() += X.linear() * (position * link.axis);
+  }
+}
+
+}  // namespace
+
+RobotModel::RobotModel(std::string name, std::vector<Link> links, std::vector<IndependentJoint> joints)
+    : name_(std::move(name)), links_(std::move(links)), joints_(std::move(joints)) {
+  if (links_.empty()) throw std::invalid_argument("robot '" + name_ + "' has no link; it needs at least a root link");
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    checkLink(links_[i], static_cast<int>(i), static_cast<int>(joints_.size()));
+    if (!names.insert(links_[i].name).second) {
+      throw std::invalid_argument("robot '" + name_ + "' has two links named '" + links_[i].name + "'");
+    }
+  }
+  names.clear();
+  for (const IndependentJoint& joint : joints_) {
+    if (!names.insert(joint.name).second) {
+      throw std::invalid_argument("robot '" + name_ + "' has two joints named '" + joint.name + "'");
+    }
+  }
+}
+
+int RobotModel::findLink(const std::string& name) const {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (links_[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+int RobotModel::findJoint(const std::string& name) const {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (joints_[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+void RobotModel::forwardKinematics(const VectorX& positions, std::vector<Pose>& X_BL) const {
+  if (positions.size() != static_cast<Eigen::Index>(joints_.size())) {
+    throw std::invalid_argument("forward kinematics of robot '" + name_ + "' got " + std::to_string(positions.size()) +
+                                " joint positions; it has " + std::to_string(joints_.size()) + " independent joints");
+  }
+  X_BL.resize(links_.size());
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Link& link = links_[i];
+    Pose& X = X_BL[i];
+    X = link.parent < 0 ? link.X_PJ : X_BL[static_cast<std::size_t>(link.parent)] * link.X_PJ;
+    if (link.motion != Motion::kFixed) {
+      applyMotion(link, link.multiplier * positions[link.joint] + link.offset, X);
+    }
+  }
+}
+
+}  // namespace tissue_contact

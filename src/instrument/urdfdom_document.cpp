@@ -1,0 +1,100 @@
+#include "urdfdom_document.h"
+
+#include <console_bridge/console.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <cstddef>
+#include <exception>
+#include <mutex>
+#include <stdexcept>
+
+#include "xml_tags.h"
+
+namespace tissue_contact {
+namespace {
+
+// A URDF needs 5 levels (robot, link, visual, geometry, mesh); extensions such as gazebo's nest a little deeper.
+constexpr std::size_t kMaxDepth = 64;
+// urdfdom frees a chain of links recursively, so an endless chain overflows the stack. The largest humanoids have some
+// hundred links.
+constexpr std::size_t kMaxLinks = 10000;
+constexpr std::size_t kMaxBytes = 16u << 20;  // PSM-sized URDFs have 20 kB, whole operating theatres below 1 MB
+constexpr std::size_t kMaxReasonLength = 600;
+
+std::mutex& consoleBridgeMutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// While it lives, collects the errors that urdfdom logs and keeps them off stderr.
+class CapturedErrors : public console_bridge::OutputHandler {
+ public:
+  CapturedErrors()
+      : lock_(consoleBridgeMutex()),
+        previous_(console_bridge::getOutputHandler()),
+        previous_level_(console_bridge::getLogLevel()) {
+    console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
+    console_bridge::useOutputHandler(this);
+  }
+  ~CapturedErrors() override {
+    console_bridge::useOutputHandler(previous_);
+    console_bridge::setLogLevel(previous_level_);
+  }
+  CapturedErrors(const CapturedErrors&) = delete;
+  CapturedErrors& operator=(const CapturedErrors&) = delete;
+
+  void log(const std::string& text, console_bridge::LogLevel /*level*/, const char* /*file*/, int /*line*/) override {
+    if (errors_.size() < kMaxReasonLength) errors_ += (errors_.empty() ? "" : "; ") + text;
+  }
+
+  const std::string& errors() const { return errors_; }
+
+ private:
+  std::lock_guard<std::mutex> lock_;
+  console_bridge::OutputHandler* previous_;
+  console_bridge::LogLevel previous_level_;
+  std::string errors_;
+};
+
+void checkText(const std::string& xml, const std::string& source) {
+  if (xml.empty()) throw std::invalid_argument(source + ": the URDF is empty");
+  if (xml.size() > kMaxBytes) {
+    throw std::invalid_argument(source + ": the URDF has " + std::to_string(xml.size()) + " bytes; at most " +
+                                std::to_string(kMaxBytes) + " are read");
+  }
+  const std::size_t zero = xml.find('\0');
+  if (zero != std::string::npos) {
+    throw std::invalid_argument(source + ":" + std::to_string(lineOf(xml, zero)) +
+                                ": malformed XML: a zero byte; is this a text file?");
+  }
+  checkXmlNesting(xml, source, kMaxDepth);
+  std::size_t links = 0;
+  XmlTagScanner scanner(xml);
+  for (XmlTag tag; scanner.next(tag);) links += tag.kind != XmlTag::Kind::kClose && tag.name == "link" ? 1 : 0;
+  if (links > kMaxLinks) {
+    throw std::invalid_argument(source + ": the URDF has " + std::to_string(links) + " links; at most " +
+                                std::to_string(kMaxLinks) + " are read");
+  }
+}
+
+}  // namespace
+
+urdf::ModelInterfaceSharedPtr parseWithUrdfdom(const std::string& xml, const std::string& source) {
+  checkText(xml, source);
+  CapturedErrors captured;
+  urdf::ModelInterfaceSharedPtr model;
+  std::string reason;
+  try {
+    // TinyXML 2.6.2 loops for ever on a text that ends inside a byte-order mark (CVE-2021-42260); blank lines prevent
+    // it.
+    model = urdf::parseURDF(xml + "\n\n\n");
+  } catch (const std::exception& error) {
+    reason = error.what();
+  }
+  if (model) return model;
+  if (!captured.errors().empty()) reason += (reason.empty() ? "" : "; ") + captured.errors();
+  if (reason.empty()) reason = "no reason given";
+  throw std::invalid_argument(source + ": urdfdom refuses this URDF: " + reason);
+}
+
+}  // namespace tissue_contact
