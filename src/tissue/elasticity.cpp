@@ -27,30 +27,36 @@ Eigen::Matrix<double, 3, 4> shapeGradients(const Matrix3& rest_inverse) {
 }  // namespace
 
 Quaternion nearestRotation(const Matrix3& F, const Quaternion& guess) {
-  // At the nearest rotation S = R'F is symmetric. With S = R'F and R <- R exp([w]), symmetry to first order asks for
-  // (tr(S) I - sym(S)) w = axial(S - S'). The step is quadratic, so one below sqrt(epsilon) is the last one needed.
+  // At the nearest rotation S = R'F is symmetric. With R <- R exp([w]), symmetry to first order asks for
+  // (tr(S) I - sym(S)) w = axial(S - S'). The step is quadratic: after one of 1e-7 rad the error is round-off.
   constexpr int kMaxSteps = 8;
-  constexpr double kLastStepSquared = 1e-17;
+  constexpr double kLastStepSquared = 1e-14;
+  constexpr double kRoundOffSquared = 1e-31;
   Quaternion q = guess;
   for (int step = 0; step < kMaxSteps; ++step) {
     const Matrix3 S = q.toRotationMatrix().transpose() * F;
     const Vector3 axial(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1));
-    Matrix3 H = -0.5 * (S + S.transpose());
-    H.diagonal().array() += S.trace();
-    // Positive definite exactly at a maximum of tr(R'F): elsewhere (inverted, far guess) Newton must not be trusted.
-    const double minor = H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0);
-    const double determinant = H.determinant();
-    if (!(H(0, 0) > 0.0 && minor > 0.0 && determinant > 0.0)) break;
-    Matrix3 inverse;
-    inverse.col(0) = H.col(1).cross(H.col(2));
-    inverse.col(1) = H.col(2).cross(H.col(0));
-    inverse.col(2) = H.col(0).cross(H.col(1));
-    const Vector3 w = inverse.transpose() * axial / determinant;
-    const double squared = w.squaredNorm();
-    if (!(squared < 1.0)) break;
-    q = q * Quaternion(1.0, 0.5 * w.x(), 0.5 * w.y(), 0.5 * w.z());
+    const double trace = S(0, 0) + S(1, 1) + S(2, 2);
+    const Vector3 diagonal(trace - S(0, 0), trace - S(1, 1), trace - S(2, 2));
+    const Vector3 off(-0.5 * (S(1, 2) + S(2, 1)), -0.5 * (S(0, 2) + S(2, 0)), -0.5 * (S(0, 1) + S(1, 0)));
+    // Cofactors of the symmetric matrix tr(S) I - sym(S). It is positive definite exactly at a maximum of tr(R'F):
+    // elsewhere (inverted element, far guess) Newton must not be trusted.
+    const Vector3 minors(diagonal.y() * diagonal.z() - off.x() * off.x(), diagonal.x() * diagonal.z() - off.y() * off.y(),
+                         diagonal.x() * diagonal.y() - off.z() * off.z());
+    const Vector3 mixed(off.y() * off.z() - off.x() * diagonal.x(), off.x() * off.z() - off.y() * diagonal.y(),
+                        off.x() * off.y() - off.z() * diagonal.z());
+    const double determinant = diagonal.x() * minors.x() + off.z() * mixed.z() + off.y() * mixed.y();
+    if (!(diagonal.x() > 0.0 && minors.z() > 0.0 && determinant > 0.0)) break;
+    if (axial.squaredNorm() < kRoundOffSquared * trace * trace) return q;
+    const double scale = 0.5 / determinant;
+    const Vector3 half(scale * (minors.x() * axial.x() + mixed.z() * axial.y() + mixed.y() * axial.z()),
+                       scale * (mixed.z() * axial.x() + minors.y() * axial.y() + mixed.x() * axial.z()),
+                       scale * (mixed.y() * axial.x() + mixed.x() * axial.y() + minors.z() * axial.z()));
+    const double squared = half.squaredNorm();
+    if (!(squared < 0.25)) break;
+    q = q * Quaternion(1.0, half.x(), half.y(), half.z());
     q.normalize();
-    if (squared < kLastStepSquared) return q;
+    if (squared < 0.25 * kLastStepSquared) return q;
   }
   return rotationBySvd(F);
 }

@@ -1,0 +1,80 @@
+/// Form H, press: rigid sphere of 40 mm radius pressed 0.625 mm without friction into a bonded block of 60 x 60 x 30 mm,
+/// E = 10 kPa, nu = 0.45, linear: P = 0.0613 N. And form J: what the instrument feels is what the tissue does not.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "support/test_scene.h"
+
+namespace tissue_contact {
+namespace {
+
+/// Graded block: `cells` across, half as many deep, cells growing by 1.22 away from the contact.
+Simulator makePress(int cells, double mu) {
+  std::ostringstream yaml;
+  yaml << "tissues:\n  - name: block\n    block:\n      size_m: [0.06, 0.06, 0.03]\n      cells: [" << cells << ", " << cells
+       << ", " << cells / 2 << "]\n      grading: {x: {growth: 1.22, fine_at: center}, y: {growth: 1.22, fine_at: center},"
+       << " z: {growth: 1.22, fine_at: maximum}}\n"
+       << "    material: {model: linear, youngs_modulus_pa: 1.0e4, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n"
+       << "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
+       << "instruments:\n  - name: probe\n    robot_description: probe\n    tip_link: tip\n"
+       << "    joint_state_topics: [/joint_states]\n    base_pose: {position_m: [0, 0, 0.07]}\n    contact_links: [tip]\n"
+       << "friction:\n  - {instrument: probe, tissue: block, static: " << mu << ", kinetic: " << mu << "}\n"
+       << "step: {max_step_s: 0.01}\nsolver: {iterations: 400, tolerance: 1.0e-6}\n";
+  return test::makeSimulator(yaml.str(), {{"probe", test::probeUrdf(0.04)}});
+}
+
+/// Lowers the sphere by `depth_m` in 0.2 s and waits 0.3 s; implicit Euler at 10 ms damps what is left of the motion.
+void press(Simulator& simulator, double depth_m) {
+  for (int k = 1; k <= 50; ++k) {
+    const double share = std::min(1.0, k / 20.0);
+    simulator.advance(0.01, {Vector3(0.0, 0.0, -share * depth_m)});
+  }
+}
+
+TEST(Indentation, PressForceOfTheBenchmarkBlock) {
+  Simulator simulator = makePress(16, 0.0);  // 1.7 mm cells at the contact, 3 per contact radius
+  press(simulator, 0.000625);
+  const Wrench wrench = simulator.wrench(0);
+  EXPECT_NEAR(wrench.force.z(), 0.0613, 0.10 * 0.0613);
+  // Symmetric load, and a grid whose 5-tetrahedron split is not: a few per mille remain sideways.
+  EXPECT_LE(std::hypot(wrench.force.x(), wrench.force.y()), 0.01 * wrench.force.z());
+  RecordProperty("press_force_n", std::to_string(wrench.force.z()));
+}
+
+TEST(Indentation, InstrumentAndTissueWrenchesCancel) {
+  Simulator simulator = makePress(8, 0.3);
+  press(simulator, 0.002);
+  simulator.advance(0.02, {Vector3(0.001, 0.0005, -0.002)});
+  Vector3 force = Vector3::Zero();
+  Vector3 moment = Vector3::Zero();
+  const Vector3 tip = simulator.linkPoses(0).back().translation();
+  for (const SolvedContact& contact : simulator.contacts()) {
+    force += contact.force_on_tissue_n;
+    moment += (contact.contact.p_WC - tip).cross(contact.force_on_tissue_n);
+  }
+  const Wrench wrench = simulator.wrench(0);  // tip axes are world axes here
+  EXPECT_GT(force.norm(), 0.1);
+  EXPECT_LE((force + wrench.force).norm(), 1e-14);
+  EXPECT_LE((moment + wrench.torque).norm(), 1e-14);
+}
+
+TEST(Indentation, SameInputGivesTheSameBits) {
+  Simulator first = makePress(8, 0.3);
+  Simulator second = makePress(8, 0.3);
+  for (int k = 1; k <= 20; ++k) {
+    const VectorX target = Vector3(2e-4 * k, -1e-4 * k, -1e-4 * k);
+    first.advance(0.01, {target});
+    second.advance(0.01, {target});
+  }
+  EXPECT_EQ(first.positions(0), second.positions(0));
+  EXPECT_EQ(first.wrench(0).force, second.wrench(0).force);
+  // A reset puts back everything that could matter.
+  first.reset();
+  for (int k = 1; k <= 20; ++k) first.advance(0.01, {Vector3(2e-4 * k, -1e-4 * k, -1e-4 * k)});
+  EXPECT_EQ(first.positions(0), second.positions(0));
+  EXPECT_EQ(first.wrench(0).torque, second.wrench(0).torque);
+}
+
+}  // namespace
+}  // namespace tissue_contact
