@@ -1,0 +1,57 @@
+/// @file
+/// Room `ros`: between ROS messages and the core's types. Every fill function writes into a message kept by the caller,
+/// so that its vectors and strings are allocated once.
+#pragma once
+
+#include <geometry_msgs/Point.h>
+#include <geometry_msgs/Pose.h>
+#include <geometry_msgs/Transform.h>
+#include <geometry_msgs/Vector3.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/time.h>
+#include <sensor_msgs/JointState.h>
+
+#include <cstdint>
+
+#include "tissue_contact/ContactArray.h"
+#include "tissue_contact/Status.h"
+#include "tissue_contact/TissueMesh.h"
+#include "tissue_contact/TissueTopology.h"
+#include "tissue_contact/simulation/joint_state_player.h"
+#include "tissue_contact/simulation/simulator.h"
+
+namespace tissue_contact {
+
+/// @param stamp_ns > 0 and taken from a ros::Time, so it fits one.
+ros::Time toTime(std::int64_t stamp_ns);
+
+geometry_msgs::Point toPoint(const Vector3& p);
+geometry_msgs::Vector3 toVector(const Vector3& v);
+geometry_msgs::Pose toPose(const Pose& X);
+geometry_msgs::Transform toTransform(const Pose& X);
+
+/// @throws std::invalid_argument when the quaternion is not finite or zero.
+Pose toPose(const geometry_msgs::Transform& transform);
+
+/// Names, positions and stamp; velocity and effort are not used and may be empty.
+JointStateSample toSample(const sensor_msgs::JointState& message);
+
+/// Wrench of the tissues on the instrument at its tip link's origin and in its axes; header.frame_id is the caller's.
+void fillWrench(const Wrench& wrench, std::int64_t stamp_ns, geometry_msgs::WrenchStamped& message);
+
+/// Rest positions, tetrahedra, surface and fixed nodes; all but the header.
+void fillTopology(const Tissue& tissue, TissueTopology& message);
+
+/// Positions now and the step; all but frame_id and tissue, which do not change.
+void fillMesh(const Simulator& simulator, int tissue, std::int64_t stamp_ns, TissueMesh& message);
+
+/// All contacts of the last step; all but frame_id.
+void fillContacts(const Simulator& simulator, std::int64_t stamp_ns, ContactArray& message);
+
+/// The last step's report and the player's counts; all but substeps and step_time, which only the caller can measure.
+void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std::int64_t stamp_ns, Status& message);
+
+/// Whether every tissue position and wrench is finite: what is not is never published.
+bool isFinite(const Simulator& simulator);
+
+}  // namespace tissue_contact

@@ -1,0 +1,30 @@
+/// @file
+/// Room `ros`: where a scene gets what its file only names: package directories, URDF parameters, tf frames.
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <string>
+
+#include "tissue_contact/simulation/simulator.h"
+
+namespace tissue_contact {
+
+/// For a running node: packages through rospack, URDF text from the parameter server, frames through tf2.
+///
+/// URDF parameters are looked up in the private namespace first, then in the node's namespace and upwards to the global
+/// one. Frames are looked up once, when the scene is built, waiting up to the private parameter `~tf_timeout_s` (wall
+/// time; default 10 s: a robot's own start-up takes about that long).
+/// @param private_node handle of the private namespace. @param world_frame frame the poses are wanted in.
+/// @throws std::invalid_argument when ~tf_timeout_s is not a number >= 0; the members throw it, naming what they tried.
+SceneEnvironment nodeEnvironment(const ros::NodeHandle& private_node, const std::string& world_frame);
+
+/// For offline replay: packages through rospack, URDF text from a file, frames from the bag's /tf_static and /tf, each
+/// at the earliest moment it is known. Needs no roscore.
+/// @param bag_file bag to take frames from, opened when the first frame is wanted. @param urdf_file text to use for
+/// every
+///   URDF parameter; empty: a scene that wants one is refused.
+SceneEnvironment bagEnvironment(const std::string& bag_file, const std::string& urdf_file,
+                                const std::string& world_frame);
+
+}  // namespace tissue_contact

@@ -1,0 +1,36 @@
+/// @file
+/// Room `ros`: how often a topic is published, measured in message time, so that a bag gives the same messages at any
+/// playback rate.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace tissue_contact {
+
+class MessageTimeRate {
+ public:
+  /// @param rate_hz messages per second of message time; 0: never.
+  explicit MessageTimeRate(double rate_hz)
+      : period_ns_(rate_hz > 0.0 ? std::llround(std::fmin(1e9 / rate_hz, 1e18)) : 0), off_(!(rate_hz > 0.0)) {}
+
+  /// Whether a message is due at this stamp (ns). Due times lie on a grid that starts at the first stamp asked for, so
+  /// the mean rate holds although stamps fall between; stamps must not go back without reset().
+  bool due(std::int64_t stamp_ns) {
+    if (off_ || (next_ns_ && stamp_ns < *next_ns_)) return false;
+    if (!next_ns_) next_ns_ = stamp_ns;
+    if (period_ns_ > 0) *next_ns_ += ((stamp_ns - *next_ns_) / period_ns_ + 1) * period_ns_;
+    return true;
+  }
+
+  /// The next stamp is due whatever it is (time went backwards).
+  void reset() { next_ns_.reset(); }
+
+ private:
+  std::int64_t period_ns_;
+  bool off_;
+  std::optional<std::int64_t> next_ns_;
+};
+
+}  // namespace tissue_contact

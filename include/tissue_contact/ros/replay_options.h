@@ -1,0 +1,25 @@
+/// @file
+/// Room `ros`: command line of tissue_contact_replay.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tissue_contact {
+
+struct ReplayOptions {
+  std::string scene_file;
+  std::string bag_file;
+  std::string csv_file;
+  std::string urdf_file;  ///< empty: no scene parameter holds a URDF
+  bool help = false;      ///< show the usage and do nothing
+};
+
+/// What --help prints.
+std::string replayUsage();
+
+/// @param arguments without the program's name; `--key value` and `--key=value`.
+/// @throws std::invalid_argument naming the argument that is unknown, given twice, missing or without a value.
+ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments);
+
+}  // namespace tissue_contact

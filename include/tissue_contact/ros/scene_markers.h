@@ -1,0 +1,60 @@
+/// @file
+/// Room `ros`: the scene as RViz markers: surfaces coloured by displacement, instrument shapes, contact forces.
+#pragma once
+
+#include <std_msgs/ColorRGBA.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "tissue_contact/simulation/simulator.h"
+
+namespace tissue_contact {
+
+/// How markers are drawn. Fixed scales, so that pictures taken at different times compare.
+struct MarkerStyle {
+  double displacement_full_scale_m = 0.005;  ///< displacement drawn in the last colour, m: a deep press of soft tissue
+  double force_arrow_m_per_n = 0.1;          ///< arrow length per newton: 0.1 N, a light touch, is seen as 1 cm
+};
+
+/// Colour of a displacement: dark blue (0) over green to yellow (1), rising in lightness so that it also reads in grey.
+/// @param fraction of full scale; values outside 0..1 are drawn as the nearer end.
+std_msgs::ColorRGBA displacementColor(double fraction);
+
+/// Keeps one MarkerArray and updates it in place. Everything is drawn in the world frame, so RViz needs no tf.
+/// Namespaces: `<tissue>` (one triangle list), `<instrument>` (its touching shapes, and the looks of its other links),
+/// `contact_forces` (an arrow per touching contact: the force on the tissue, its head at the contact point; held
+/// contacts blue, sliding ones red).
+class SceneMarkers {
+ public:
+  /// @throws std::invalid_argument when a number of `style` is not finite and > 0. @param simulator must outlive this.
+  SceneMarkers(const Simulator& simulator, const MarkerStyle& style);
+
+  /// The scene as it is now. The answer belongs to this object and is overwritten by the next call.
+  const visualization_msgs::MarkerArray& update(std::int64_t stamp_ns);
+
+ private:
+  struct ShapeMarker {
+    std::size_t marker;  ///< index into message_.markers
+    int instrument;
+    int link;   ///< index into RobotModel::links()
+    Pose X_LS;  ///< of the shape in its link
+  };
+
+  void addTissues();
+  void addInstrument(int instrument);
+  void addShape(int instrument, int link, const ShapeDescription& shape, const TriangleMesh* mesh, bool touches);
+  void updateTissue(int tissue);
+  void updateForces();
+  void setArrow(std::size_t index, const SolvedContact& contact);
+
+  const Simulator& simulator_;
+  MarkerStyle style_;
+  visualization_msgs::MarkerArray message_;  ///< tissues, then shapes, then arrows
+  std::vector<ShapeMarker> shapes_;
+  std::size_t first_arrow_ = 0;
+};
+
+}  // namespace tissue_contact

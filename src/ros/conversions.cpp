@@ -1,0 +1,174 @@
+/// @file
+/// Room `ros`: see conversions.h.
+#include "tissue_contact/ros/conversions.h"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace tissue_contact {
+namespace {
+
+std::uint8_t toState(ContactState state) {
+  switch (state) {
+    case ContactState::kOpen:
+      return ContactPoint::OPEN;
+    case ContactState::kStatic:
+      return ContactPoint::STATIC;
+    case ContactState::kKinetic:
+      break;
+  }
+  return ContactPoint::KINETIC;
+}
+
+void fillPoints(const NodalVectors& x, std::vector<geometry_msgs::Point>& points) {
+  points.resize(static_cast<std::size_t>(x.cols()));
+  for (Eigen::Index i = 0; i < x.cols(); ++i) points[static_cast<std::size_t>(i)] = toPoint(x.col(i));
+}
+
+template <typename Polygon>
+void fillIndices(const std::vector<Polygon>& polygons, std::vector<std::uint32_t>& indices) {
+  indices.clear();
+  for (const Polygon& polygon : polygons) {
+    for (const int node : polygon) indices.push_back(static_cast<std::uint32_t>(node));
+  }
+}
+
+}  // namespace
+
+ros::Time toTime(std::int64_t stamp_ns) {
+  ros::Time time;
+  time.fromNSec(static_cast<std::uint64_t>(stamp_ns));
+  return time;
+}
+
+geometry_msgs::Point toPoint(const Vector3& p) {
+  geometry_msgs::Point point;
+  point.x = p.x();
+  point.y = p.y();
+  point.z = p.z();
+  return point;
+}
+
+geometry_msgs::Vector3 toVector(const Vector3& v) {
+  geometry_msgs::Vector3 vector;
+  vector.x = v.x();
+  vector.y = v.y();
+  vector.z = v.z();
+  return vector;
+}
+
+geometry_msgs::Pose toPose(const Pose& X) {
+  const Quaternion q(X.linear());
+  geometry_msgs::Pose pose;
+  pose.position = toPoint(X.translation());
+  pose.orientation.x = q.x();
+  pose.orientation.y = q.y();
+  pose.orientation.z = q.z();
+  pose.orientation.w = q.w();
+  return pose;
+}
+
+geometry_msgs::Transform toTransform(const Pose& X) {
+  geometry_msgs::Transform transform;
+  transform.translation = toVector(X.translation());
+  transform.rotation = toPose(X).orientation;
+  return transform;
+}
+
+Pose toPose(const geometry_msgs::Transform& transform) {
+  const Quaternion q(transform.rotation.w, transform.rotation.x, transform.rotation.y, transform.rotation.z);
+  const Vector3 p(transform.translation.x, transform.translation.y, transform.translation.z);
+  if (!(q.norm() > 0.0) || !std::isfinite(q.norm()) || !p.allFinite()) {
+    throw std::invalid_argument(
+        "a transform whose translation is not finite or whose quaternion is zero or not finite");
+  }
+  Pose X = Pose::Identity();
+  X.linear() = q.normalized().toRotationMatrix();
+  X.translation() = p;
+  return X;
+}
+
+JointStateSample toSample(const sensor_msgs::JointState& message) {
+  return {static_cast<std::int64_t>(message.header.stamp.toNSec()), message.name, message.position};
+}
+
+void fillWrench(const Wrench& wrench, std::int64_t stamp_ns, geometry_msgs::WrenchStamped& message) {
+  message.header.stamp = toTime(stamp_ns);
+  message.wrench.force = toVector(wrench.force);
+  message.wrench.torque = toVector(wrench.torque);
+}
+
+void fillTopology(const Tissue& tissue, TissueTopology& message) {
+  message.tissue = tissue.name();
+  fillPoints(tissue.restPositions(), message.rest_positions);
+  fillIndices(tissue.tetrahedra(), message.tetrahedra);
+  fillIndices(tissue.surface(), message.surface_triangles);
+  message.fixed_nodes.clear();
+  for (std::size_t node = 0; node < tissue.fixed().size(); ++node) {
+    if (tissue.fixed()[node]) message.fixed_nodes.push_back(static_cast<std::uint32_t>(node));
+  }
+}
+
+void fillMesh(const Simulator& simulator, int tissue, std::int64_t stamp_ns, TissueMesh& message) {
+  message.header.stamp = toTime(stamp_ns);
+  message.step = static_cast<std::uint64_t>(simulator.stepCount());
+  fillPoints(simulator.positions(tissue), message.positions);
+}
+
+void fillContacts(const Simulator& simulator, std::int64_t stamp_ns, ContactArray& message) {
+  message.header.stamp = toTime(stamp_ns);
+  message.step = static_cast<std::uint64_t>(simulator.stepCount());
+  message.contacts.resize(simulator.contacts().size());
+  for (std::size_t i = 0; i < message.contacts.size(); ++i) {
+    const SolvedContact& solved = simulator.contacts()[i];
+    const ContactKey& key = solved.contact.key;
+    const Instrument& instrument = simulator.instruments()[static_cast<std::size_t>(key.instrument)];
+    auto& contact = message.contacts[i];
+    contact.instrument = instrument.name();
+    contact.link = instrument.contactLinks()[static_cast<std::size_t>(key.link)].name;
+    contact.tissue = simulator.tissues()[static_cast<std::size_t>(key.tissue)].name();
+    contact.point = toPoint(solved.contact.p_WC);
+    contact.normal = toVector(solved.contact.R_WC.col(0));
+    contact.force = toVector(solved.force_on_tissue_n);
+    contact.gap = solved.contact.gap_m;
+    contact.state = toState(solved.state);
+  }
+}
+
+void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std::int64_t stamp_ns, Status& message) {
+  const StepReport& report = simulator.report();
+  message.header.stamp = toTime(stamp_ns);
+  message.step = static_cast<std::uint64_t>(simulator.stepCount());
+  message.iterations = static_cast<std::uint32_t>(report.iterations);
+  message.converged = static_cast<std::uint8_t>(report.converged);
+  message.open_contacts = static_cast<std::uint32_t>(report.open_contacts);
+  message.static_contacts = static_cast<std::uint32_t>(report.static_contacts);
+  message.kinetic_contacts = static_cast<std::uint32_t>(report.kinetic_contacts);
+  message.momentum_residual = report.residuals.momentum;
+  message.penetration = report.residuals.penetration_m;
+  message.adhesion = report.residuals.adhesion_n;
+  message.complementarity = report.residuals.complementarity_w;
+  message.cone_violation = report.residuals.cone_violation_n;
+  message.static_slip = report.residuals.static_slip_m_per_s;
+  message.kinetic_angle = report.residuals.kinetic_angle_rad;
+  message.joint_states_accepted = static_cast<std::uint64_t>(player.count(Verdict::kAccepted));
+  message.joint_states_refused = 0;
+  for (int v = 1; v < kVerdictCount; ++v) {
+    message.joint_states_refused += static_cast<std::uint64_t>(player.count(static_cast<Verdict>(v)));
+  }
+  message.resets = static_cast<std::uint64_t>(player.resets());
+  message.gaps = static_cast<std::uint64_t>(player.gaps());
+}
+
+bool isFinite(const Simulator& simulator) {
+  for (std::size_t i = 0; i < simulator.tissues().size(); ++i) {
+    if (!simulator.positions(static_cast<int>(i)).allFinite()) return false;
+  }
+  for (std::size_t i = 0; i < simulator.instruments().size(); ++i) {
+    const Wrench wrench = simulator.wrench(static_cast<int>(i));
+    if (!wrench.force.allFinite() || !wrench.torque.allFinite()) return false;
+  }
+  return true;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,142 @@
+/// @file
+/// Room `ros`: see environment.h.
+#include "tissue_contact/ros/environment.h"
+
+#include <ros/package.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <tf2/buffer_core.h>
+#include <tf2/exceptions.h>
+#include <tf2_msgs/TFMessage.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
+
+#include <chrono>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include "tissue_contact/core/check.h"
+#include "tissue_contact/ros/conversions.h"
+
+namespace tissue_contact {
+namespace {
+
+std::string packagePath(const std::string& package) { return ros::package::getPath(package); }
+
+std::string urdfParameter(const ros::NodeHandle& private_node, const std::string& parameter) {
+  const std::string tried_first = private_node.resolveName(parameter);
+  std::string name = tried_first;
+  if (!private_node.hasParam(parameter) && !ros::NodeHandle().searchParam(parameter, name)) {
+    throw std::invalid_argument("parameter '" + parameter + "' is not set (tried " + tried_first +
+                                " and every namespace up to /" + parameter + "); load the URDF with <param name=\"" +
+                                parameter + "\" textfile=\"...\"/>");
+  }
+  std::string text;
+  if (!private_node.getParam(name, text)) {
+    throw std::invalid_argument("parameter '" + name + "' is not a string; it must hold the text of a URDF");
+  }
+  return text;
+}
+
+/// Waits for a frame by the wall clock: with simulated time nothing may be playing yet.
+Pose waitForFrame(const std::string& frame, const std::string& world_frame, double timeout_s) {
+  tf2_ros::Buffer buffer;
+  const tf2_ros::TransformListener listener(buffer);
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  const auto is_over = [&] {
+    return !ros::ok() || std::chrono::duration<double>(Clock::now() - start).count() >= timeout_s;
+  };
+  std::string why;
+  for (bool last_try = false;; last_try = is_over()) {
+    try {
+      return toPose(buffer.lookupTransform(world_frame, frame, ros::Time(0)).transform);
+    } catch (const tf2::TransformException& error) {
+      why = error.what();
+    }
+    if (last_try) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  std::ostringstream text;
+  text << "tf frame '" << frame << "' has no transform to the world frame '" << world_frame << "' after " << timeout_s
+       << " s (" << why << "); publish it, or give ~tf_timeout_s more time";
+  throw std::invalid_argument(text.str());
+}
+
+std::string readText(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw std::invalid_argument("URDF file '" + file + "' cannot be read");
+  return text.str();
+}
+
+/// Adds the transforms of one message; what tf2 itself refuses (NaN, a frame that is its own parent) is left out.
+void addTransforms(const rosbag::MessageInstance& instance, bool is_static, tf2::BufferCore& buffer) {
+  const tf2_msgs::TFMessage::ConstPtr message = instance.instantiate<tf2_msgs::TFMessage>();
+  if (!message) return;
+  for (const geometry_msgs::TransformStamped& transform : message->transforms) {
+    buffer.setTransform(transform, "bag", is_static);
+  }
+}
+
+Pose frameInBag(const std::string& frame, const std::string& world_frame, const std::string& bag_file) {
+  const rosbag::Bag bag(bag_file);
+  tf2::BufferCore buffer(ros::Duration(1e6));  // a bag is not forgotten while it is read
+  rosbag::View static_view(bag, rosbag::TopicQuery(std::vector<std::string>{"/tf_static", "tf_static"}));
+  for (const rosbag::MessageInstance& instance : static_view) addTransforms(instance, true, buffer);
+  rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{"/tf", "tf"}));
+  auto next = view.begin();
+  while (!buffer.canTransform(world_frame, frame, ros::Time(0)) && next != view.end()) {
+    addTransforms(*next++, false, buffer);
+  }
+  try {
+    return toPose(buffer.lookupTransform(world_frame, frame, ros::Time(0)).transform);
+  } catch (const tf2::TransformException& error) {
+    throw std::invalid_argument("tf frame '" + frame + "' has no transform to the world frame '" + world_frame +
+                                "' in " + bag_file + " (" + error.what() + ")");
+  }
+}
+
+}  // namespace
+
+SceneEnvironment nodeEnvironment(const ros::NodeHandle& private_node, const std::string& world_frame) {
+  double timeout_s = 10.0;
+  if (private_node.hasParam("tf_timeout_s") && !private_node.getParam("tf_timeout_s", timeout_s)) {
+    throw std::invalid_argument("parameter '" + private_node.resolveName("tf_timeout_s") +
+                                "' is not a number; it must be a time in s");
+  }
+  requireNonNegative("parameter '" + private_node.resolveName("tf_timeout_s") + "'", timeout_s, "s");
+  SceneEnvironment environment;
+  environment.package_path = packagePath;
+  environment.urdf_text = [private_node](const std::string& parameter) {
+    return urdfParameter(private_node, parameter);
+  };
+  environment.frame_pose = [world_frame, timeout_s](const std::string& frame) {
+    return waitForFrame(frame, world_frame, timeout_s);
+  };
+  return environment;
+}
+
+SceneEnvironment bagEnvironment(const std::string& bag_file, const std::string& urdf_file,
+                                const std::string& world_frame) {
+  SceneEnvironment environment;
+  environment.package_path = packagePath;
+  environment.urdf_text = [urdf_file](const std::string& parameter) {
+    if (urdf_file.empty()) {
+      throw std::invalid_argument("the scene takes a URDF from parameter '" + parameter +
+                                  "', but a bag holds no parameters; give its text with --urdf FILE");
+    }
+    return readText(urdf_file);
+  };
+  environment.frame_pose = [bag_file, world_frame](const std::string& frame) {
+    return frameInBag(frame, world_frame, bag_file);
+  };
+  return environment;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,196 @@
+/// @file
+/// Room `ros`: see outputs.h.
+#include "tissue_contact/ros/outputs.h"
+
+#include <ros/names.h>
+
+#include <set>
+#include <stdexcept>
+#include <string>
+
+namespace tissue_contact {
+namespace {
+
+/// Wrenches must not be lost to a subscriber that stalls: 20 s of 500 Hz.
+constexpr int kWrenchQueue = 10000;
+/// The others are samples of a state; a subscriber that stalls wants the newest.
+constexpr int kStateQueue = 10;
+
+double numberParameter(const ros::NodeHandle& node, const std::string& name, double otherwise) {
+  double value = otherwise;
+  if (node.hasParam(name) && !node.getParam(name, value)) {
+    throw std::invalid_argument("parameter '" + node.resolveName(name) + "' is not a number");
+  }
+  return value;
+}
+
+MarkerStyle markerStyle(const ros::NodeHandle& node) {
+  MarkerStyle style;
+  style.displacement_full_scale_m =
+      numberParameter(node, "markers/displacement_full_scale_m", style.displacement_full_scale_m);
+  style.force_arrow_m_per_n = numberParameter(node, "markers/force_arrow_m_per_n", style.force_arrow_m_per_n);
+  return style;
+}
+
+void checkTopicName(const std::string& kind, const std::string& name) {
+  std::string why;
+  if (name.find('/') == std::string::npos && ros::names::validate("/" + name, why) && !name.empty()) return;
+  throw std::invalid_argument("the " + kind + " name '" + name +
+                              "' becomes part of a topic name and must consist of letters, digits and underscores" +
+                              (why.empty() ? "" : " (" + why + ")"));
+}
+
+/// A tf tree has one parent per frame, so links of different instruments need different names. A root link may be the
+/// world frame itself when it lies there.
+void checkFrameNames(const Simulator& simulator) {
+  std::set<std::string> names = {simulator.scene().world_frame};
+  for (std::size_t i = 0; i < simulator.instruments().size(); ++i) {
+    const Instrument& instrument = simulator.instruments()[i];
+    for (const RobotModel::Link& link : instrument.model().links()) {
+      const bool is_world = link.parent < 0 && link.name == simulator.scene().world_frame &&
+                            simulator.linkPoses(static_cast<int>(i)).front().isApprox(Pose::Identity());
+      if (names.insert(link.name).second || is_world) continue;
+      throw std::invalid_argument("publish.tf: link '" + link.name + "' of instrument '" + instrument.name() +
+                                  "' has the name of the world frame or of another instrument's link; rename one or "
+                                  "set publish.tf to false");
+    }
+  }
+}
+
+void checkNames(const Simulator& simulator) {
+  for (const Instrument& instrument : simulator.instruments()) checkTopicName("instrument", instrument.name());
+  for (const Tissue& tissue : simulator.tissues()) checkTopicName("tissue", tissue.name());
+  if (simulator.scene().publish.tf) checkFrameNames(simulator);
+}
+
+}  // namespace
+
+Outputs::Outputs(const ros::NodeHandle& private_node, const Simulator& simulator, const JointStatePlayer& player)
+    : node_(private_node),
+      simulator_(simulator),
+      player_(player),
+      scene_markers_(simulator, markerStyle(node_)),
+      mesh_rate_(simulator.scene().publish.mesh_rate_hz),
+      contacts_rate_(simulator.scene().publish.contacts_rate_hz),
+      status_rate_(simulator.scene().publish.status_rate_hz),
+      markers_rate_(simulator.scene().publish.markers_rate_hz) {
+  checkNames(simulator);
+  for (const Instrument& instrument : simulator.instruments()) {
+    wrenches_.emplace_back();
+    wrenches_.back().header.frame_id = instrument.model().links()[static_cast<std::size_t>(instrument.tipLink())].name;
+  }
+  for (const Tissue& tissue : simulator.tissues()) {
+    meshes_.emplace_back();
+    meshes_.back().header.frame_id = simulator.scene().world_frame;
+    meshes_.back().tissue = tissue.name();
+  }
+  contacts_.header.frame_id = simulator.scene().world_frame;
+  status_.header.frame_id = simulator.scene().world_frame;
+  advertise();
+}
+
+void Outputs::advertise() {
+  const PublishDescription& publish = simulator_.scene().publish;
+  for (const Instrument& instrument : simulator_.instruments()) {
+    wrench_publishers_.push_back(
+        node_.advertise<geometry_msgs::WrenchStamped>(instrument.name() + "/wrench", kWrenchQueue));
+  }
+  for (const Tissue& tissue : simulator_.tissues()) {
+    topology_publishers_.push_back(node_.advertise<TissueTopology>(tissue.name() + "/topology", 1, true));
+    if (publish.mesh_rate_hz > 0.0) {
+      mesh_publishers_.push_back(node_.advertise<TissueMesh>(tissue.name() + "/mesh", kStateQueue));
+    }
+  }
+  if (publish.contacts_rate_hz > 0.0) contacts_publisher_ = node_.advertise<ContactArray>("contacts", kStateQueue);
+  if (publish.status_rate_hz > 0.0) status_publisher_ = node_.advertise<Status>("status", kStateQueue);
+  if (publish.markers_rate_hz > 0.0) {
+    markers_publisher_ = node_.advertise<visualization_msgs::MarkerArray>(
+        "markers", kStateQueue, [this](const ros::SingleSubscriberPublisher&) { showToNewcomer(); });
+  }
+  if (publish.tf) broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
+}
+
+/// RViz opened before or between recordings should not stay empty.
+void Outputs::showToNewcomer() { markers_publisher_.publish(scene_markers_.update(last_stamp_ns_)); }
+
+void Outputs::publish(const PlayedSample& played, int substeps, double step_time_s) {
+  if (played.was_reset) {
+    for (MessageTimeRate* rate : {&mesh_rate_, &contacts_rate_, &status_rate_, &markers_rate_}) rate->reset();
+  }
+  const bool is_new_stamp = played.stamp_ns != last_stamp_ns_;
+  last_stamp_ns_ = played.stamp_ns;
+  if (!topologies_published_) publishTopologies(played.stamp_ns);
+  publishWrenches(played);
+  if (mesh_rate_.due(played.stamp_ns)) publishMeshes(played.stamp_ns);
+  if (contacts_rate_.due(played.stamp_ns)) publishContacts(played.stamp_ns);
+  if (status_rate_.due(played.stamp_ns)) publishStatus(played.stamp_ns, substeps, step_time_s);
+  if (markers_rate_.due(played.stamp_ns)) publishMarkers(played.stamp_ns);
+  if (broadcaster_ && is_new_stamp) publishTransforms(played.stamp_ns);  // tf2 warns about repeated stamps
+}
+
+void Outputs::publishTopologies(std::int64_t stamp_ns) {
+  TissueTopology message;
+  message.header.stamp = toTime(stamp_ns);
+  message.header.frame_id = simulator_.scene().world_frame;
+  for (std::size_t t = 0; t < topology_publishers_.size(); ++t) {
+    fillTopology(simulator_.tissues()[t], message);
+    topology_publishers_[t].publish(message);
+  }
+  topologies_published_ = true;
+}
+
+void Outputs::publishWrenches(const PlayedSample& played) {
+  for (const int i : played.instruments) {
+    const auto index = static_cast<std::size_t>(i);
+    fillWrench(simulator_.wrench(i), played.stamp_ns, wrenches_[index]);
+    wrench_publishers_[index].publish(wrenches_[index]);
+  }
+}
+
+void Outputs::publishMeshes(std::int64_t stamp_ns) {
+  for (std::size_t t = 0; t < mesh_publishers_.size(); ++t) {
+    if (mesh_publishers_[t].getNumSubscribers() == 0) continue;
+    fillMesh(simulator_, static_cast<int>(t), stamp_ns, meshes_[t]);
+    mesh_publishers_[t].publish(meshes_[t]);
+  }
+}
+
+void Outputs::publishContacts(std::int64_t stamp_ns) {
+  if (contacts_publisher_.getNumSubscribers() == 0) return;
+  fillContacts(simulator_, stamp_ns, contacts_);
+  contacts_publisher_.publish(contacts_);
+}
+
+void Outputs::publishStatus(std::int64_t stamp_ns, int substeps, double step_time_s) {
+  if (status_publisher_.getNumSubscribers() == 0) return;
+  fillStatus(simulator_, player_, stamp_ns, status_);
+  status_.substeps = static_cast<std::uint32_t>(substeps);
+  status_.step_time = step_time_s;
+  status_publisher_.publish(status_);
+}
+
+void Outputs::publishMarkers(std::int64_t stamp_ns) {
+  if (markers_publisher_.getNumSubscribers() == 0) return;
+  markers_publisher_.publish(scene_markers_.update(stamp_ns));
+}
+
+void Outputs::publishTransforms(std::int64_t stamp_ns) {
+  transforms_.clear();
+  for (std::size_t i = 0; i < simulator_.instruments().size(); ++i) {
+    const std::vector<RobotModel::Link>& links = simulator_.instruments()[i].model().links();
+    const std::vector<Pose>& X_WL = simulator_.linkPoses(static_cast<int>(i));
+    for (std::size_t l = 0; l < links.size(); ++l) {
+      const bool is_root = links[l].parent < 0;
+      if (is_root && links[l].name == simulator_.scene().world_frame) continue;
+      const auto parent = static_cast<std::size_t>(is_root ? 0 : links[l].parent);
+      geometry_msgs::TransformStamped& transform = transforms_.emplace_back();
+      transform.header.stamp = toTime(stamp_ns);
+      transform.header.frame_id = is_root ? simulator_.scene().world_frame : links[parent].name;
+      transform.child_frame_id = links[l].name;
+      transform.transform = toTransform(is_root ? X_WL[l] : Pose(X_WL[parent].inverse() * X_WL[l]));
+    }
+  }
+  broadcaster_->sendTransform(transforms_);
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,213 @@
+/// @file
+/// Room `ros`: see replay.h.
+#include "tissue_contact/ros/replay.h"
+
+#include <ros/package.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <sensor_msgs/JointState.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <iostream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tissue_contact/ros/conversions.h"
+#include "tissue_contact/ros/environment.h"
+#include "tissue_contact/ros/replay_table.h"
+#include "tissue_contact/scene/load_scene.h"
+#include "tissue_contact/simulation/joint_state_player.h"
+#include "tissue_contact/simulation/simulator.h"
+
+namespace tissue_contact {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A relative topic name means the same offline as in a node without a namespace.
+std::string globalName(const std::string& topic) { return !topic.empty() && topic[0] == '/' ? topic : "/" + topic; }
+
+std::string joined(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none" : text;
+}
+
+void openBag(const std::string& file, rosbag::Bag& bag) {
+  try {
+    bag.open(file, rosbag::bagmode::Read);
+  } catch (const std::exception& error) {
+    throw std::runtime_error("bag '" + file + "' cannot be read: " + error.what() +
+                             "; if it was cut off, `rosbag reindex` may mend it");
+  }
+}
+
+/// Says every few seconds how far a long replay has come, in whole lines that also read well in a log file.
+class Progress {
+ public:
+  Progress(ros::Time begin, ros::Time end) : begin_(begin), length_s_((end - begin).toSec()) {}
+
+  void at(ros::Time time) {
+    constexpr std::chrono::seconds kPeriod(3);
+    if (Clock::now() - last_ < kPeriod || !(length_s_ > 0.0)) return;
+    last_ = Clock::now();
+    const auto percent = static_cast<int>(100.0 * (time - begin_).toSec() / length_s_);
+    std::cerr << "tissue_contact_replay: " << percent << " % of " << length_s_ << " s\n";
+  }
+
+ private:
+  ros::Time begin_;
+  double length_s_;
+  Clock::time_point last_ = Clock::now();
+};
+
+class Replay {
+ public:
+  explicit Replay(const ReplayOptions& options)
+      : options_(options),
+        scene_(loadScene(options.scene_file, ros::package::getPath)),
+        simulator_(scene_, bagEnvironment(options.bag_file, options.urdf_file, scene_.world_frame)),
+        player_(simulator_) {
+    for (std::size_t i = 0; i < player_.topics().size(); ++i) {
+      topic_index_[globalName(player_.topics()[i])] = static_cast<int>(i);
+    }
+  }
+
+  void run() {
+    rosbag::Bag bag;
+    openBag(options_.bag_file, bag);
+    rosbag::View view(bag, rosbag::TopicQuery(topicsIn(bag)));
+    ReplayTable table(options_.csv_file);
+    Progress progress(view.getBeginTime(), view.getEndTime());
+    for (const rosbag::MessageInstance& instance : view) {
+      push(instance);
+      playAll(table);
+      progress.at(instance.getTime());
+    }
+    player_.finish();
+    playAll(table);
+    if (player_.count(Verdict::kAccepted) == 0) {
+      throw std::runtime_error("no joint state of bag '" + options_.bag_file +
+                               "' was accepted; the first was refused: " + first_refusal_);
+    }
+    table.commit();
+    summarize();
+  }
+
+ private:
+  /// The scene's topics as the bag spells them. @throws when it has none of them.
+  std::vector<std::string> topicsIn(const rosbag::Bag& bag) const {
+    std::set<std::string> in_bag;
+    std::set<std::string> wanted;
+    std::vector<std::string> found;
+    rosbag::View view(bag);
+    for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
+      if (in_bag.insert(connection->topic).second && topic_index_.count(globalName(connection->topic)) > 0) {
+        found.push_back(connection->topic);
+      }
+    }
+    for (const auto& [topic, index] : topic_index_) wanted.insert(topic);
+    if (found.empty()) {
+      throw std::runtime_error("bag '" + options_.bag_file + "' has no message on the scene's joint-state topics (" +
+                               joined(wanted) + "); its topics are: " + joined(in_bag));
+    }
+    for (const std::string& topic : found) wanted.erase(globalName(topic));
+    if (!wanted.empty()) {
+      std::cerr << "tissue_contact_replay: warning: the bag has no message on " << joined(wanted)
+                << "; its joints stay where the scene puts them\n";
+    }
+    return found;
+  }
+
+  void push(const rosbag::MessageInstance& instance) {
+    const sensor_msgs::JointStateConstPtr message = instance.instantiate<sensor_msgs::JointState>();
+    if (!message) {
+      throw std::runtime_error("topic " + instance.getTopic() + " of bag '" + options_.bag_file + "' is of type " +
+                               instance.getDataType() + "; it must be sensor_msgs/JointState");
+    }
+    player_.push(topic_index_.at(globalName(instance.getTopic())), toSample(*message));
+  }
+
+  void playAll(ReplayTable& table) {
+    while (true) {
+      const long steps_before = simulator_.stepCount();
+      const Clock::time_point start = Clock::now();
+      const auto played = player_.playNext();
+      if (!played) return;
+      const std::chrono::duration<double> elapsed = Clock::now() - start;
+      const long steps = simulator_.stepCount() - (played->was_reset ? 0 : steps_before);
+      note(*played, steps);
+      if (played->verdict != Verdict::kAccepted) continue;
+      if (!isFinite(simulator_)) {
+        throw std::runtime_error("the step ending at " + stampOf(*played) + " s gave no finite answer");
+      }
+      table.add(simulator_, *played, steps > 0 ? elapsed.count() / static_cast<double>(steps) : 0.0);
+    }
+  }
+
+  void note(const PlayedSample& played, long steps) {
+    if (played.verdict != Verdict::kAccepted && first_refusal_.empty()) {
+      first_refusal_ = std::string(verdictText(played.verdict)) + ": " + played.detail;
+    }
+    if (steps == 0) return;
+    const StepReport& report = simulator_.report();
+    jumps_ += static_cast<long>(report.jumped);
+    discarded_ += static_cast<long>(report.discarded);
+    not_converged_ += static_cast<long>(!report.converged);
+  }
+
+  static std::string stampOf(const PlayedSample& played) {
+    std::ostringstream text;
+    text << toTime(played.stamp_ns);
+    return text.str();
+  }
+
+  void summarize() const {
+    std::cerr << "tissue_contact_replay: " << player_.count(Verdict::kAccepted) << " joint states accepted";
+    for (int v = 1; v < kVerdictCount; ++v) {
+      const auto verdict = static_cast<Verdict>(v);
+      if (player_.count(verdict) > 0) std::cerr << ", " << player_.count(verdict) << " " << verdictText(verdict);
+    }
+    std::cerr << "; " << player_.resets() << " resets, " << player_.gaps() << " gaps, " << jumps_ << " jumps, "
+              << not_converged_ << " intervals not converged, " << discarded_ << " without a finite answer -> "
+              << options_.csv_file << "\n";
+    if (!first_refusal_.empty()) std::cerr << "tissue_contact_replay: first refusal: " << first_refusal_ << "\n";
+  }
+
+  ReplayOptions options_;
+  Scene scene_;
+  Simulator simulator_;
+  JointStatePlayer player_;
+  std::map<std::string, int> topic_index_;
+  std::string first_refusal_;
+  long jumps_ = 0;
+  long discarded_ = 0;
+  long not_converged_ = 0;
+};
+
+}  // namespace
+
+void replay(const ReplayOptions& options) { Replay(options).run(); }
+
+int runReplay(int argc, char** argv) {
+  try {
+    const ReplayOptions options = parseReplayOptions({argv + 1, argv + argc});
+    if (options.help) {
+      std::cout << replayUsage();
+    } else {
+      replay(options);
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "tissue_contact_replay: " << error.what() << "\n";
+    return 1;
+  }
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,60 @@
+/// @file
+/// Room `ros`: see replay_options.h.
+#include "tissue_contact/ros/replay_options.h"
+
+#include <map>
+#include <stdexcept>
+
+namespace tissue_contact {
+namespace {
+
+void requireGiven(const std::string& value, const std::string& key) {
+  if (value.empty()) throw std::invalid_argument("argument " + key + " FILE is missing; see --help");
+}
+
+}  // namespace
+
+std::string replayUsage() {
+  return "usage: tissue_contact_replay --scene SCENE.yaml --bag IN.bag --csv OUT.csv [--urdf ROBOT.urdf]\n"
+         "\n"
+         "Plays the joint states of a bag through a scene, with the stepping of tissue_contact_node but without a\n"
+         "roscore, and writes one CSV line per accepted joint state and instrument.\n"
+         "\n"
+         "  --scene FILE  the scene (doc/scene.md)\n"
+         "  --bag FILE    a ROS bag with the scene's joint-state topics; tf frames are taken from its /tf_static and "
+         "/tf\n"
+         "  --csv FILE    the result; replaced when the replay is complete, untouched when it fails\n"
+         "  --urdf FILE   text for the robot_description parameter that the scene takes its URDF from\n"
+         "  --help        this text\n"
+         "\n"
+         "Exit code: 0 when the CSV was written, 1 with a message on stderr otherwise.\n";
+}
+
+ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
+  ReplayOptions options;
+  const std::map<std::string, std::string*> keys = {{"--scene", &options.scene_file},
+                                                    {"--bag", &options.bag_file},
+                                                    {"--csv", &options.csv_file},
+                                                    {"--urdf", &options.urdf_file}};
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (arguments[i] == "--help" || arguments[i] == "-h") {
+      options.help = true;
+      return options;
+    }
+    const std::size_t equals = arguments[i].find('=');
+    const std::string key = arguments[i].substr(0, equals);
+    const auto known = keys.find(key);
+    if (known == keys.end()) throw std::invalid_argument("unknown argument '" + arguments[i] + "'; see --help");
+    if (!known->second->empty()) throw std::invalid_argument("argument " + key + " is given twice");
+    const bool in_next = equals == std::string::npos;
+    if (in_next && i + 1 < arguments.size()) *known->second = arguments[++i];
+    if (!in_next) *known->second = arguments[i].substr(equals + 1);
+    requireGiven(*known->second, key);
+  }
+  requireGiven(options.scene_file, "--scene");
+  requireGiven(options.bag_file, "--bag");
+  requireGiven(options.csv_file, "--csv");
+  return options;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,197 @@
+/// @file
+/// Room `ros`: see scene_markers.h.
+#include "tissue_contact/ros/scene_markers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string>
+#include <variant>
+
+#include "tissue_contact/core/check.h"
+#include "tissue_contact/ros/conversions.h"
+
+namespace tissue_contact {
+namespace {
+
+using visualization_msgs::Marker;
+
+const char* const kForceNamespace = "contact_forces";
+
+std_msgs::ColorRGBA color(float r, float g, float b, float a = 1.0F) {
+  std_msgs::ColorRGBA rgba;
+  rgba.r = r;
+  rgba.g = g;
+  rgba.b = b;
+  rgba.a = a;
+  return rgba;
+}
+
+geometry_msgs::Vector3 scale(double x, double y, double z) { return toVector(Vector3(x, y, z)); }
+
+void setTriangles(const TriangleMesh& mesh, Marker& marker) {
+  marker.type = Marker::TRIANGLE_LIST;
+  marker.scale = scale(1.0, 1.0, 1.0);
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const int vertex : triangle) marker.points.push_back(toPoint(mesh.vertices.col(vertex)));
+  }
+}
+
+/// Type and size of a shape. `mesh` is its triangles if they were read; else RViz reads the file itself.
+void setGeometry(const ShapeGeometry& geometry, const TriangleMesh* mesh, Marker& marker) {
+  if (const auto* sphere = std::get_if<SphereGeometry>(&geometry)) {
+    marker.type = Marker::SPHERE;
+    marker.scale = scale(2.0 * sphere->radius_m, 2.0 * sphere->radius_m, 2.0 * sphere->radius_m);
+  } else if (const auto* box = std::get_if<BoxGeometry>(&geometry)) {
+    marker.type = Marker::CUBE;
+    marker.scale = toVector(box->size_m);
+  } else if (const auto* cylinder = std::get_if<CylinderGeometry>(&geometry)) {
+    marker.type = Marker::CYLINDER;
+    marker.scale = scale(2.0 * cylinder->radius_m, 2.0 * cylinder->radius_m, cylinder->length_m);
+  } else if (mesh != nullptr) {
+    setTriangles(*mesh, marker);
+  } else {
+    const auto& file = std::get<MeshGeometry>(geometry);
+    marker.type = Marker::MESH_RESOURCE;
+    marker.mesh_resource = "file://" + file.file;
+    marker.scale = toVector(file.scale);
+  }
+}
+
+}  // namespace
+
+std_msgs::ColorRGBA displacementColor(double fraction) {
+  // Samples of the viridis colour map (public domain), evenly spaced.
+  static constexpr std::array<std::array<double, 3>, 9> kColors = {{{0.267, 0.005, 0.329},
+                                                                    {0.279, 0.175, 0.483},
+                                                                    {0.230, 0.322, 0.546},
+                                                                    {0.173, 0.449, 0.558},
+                                                                    {0.128, 0.567, 0.551},
+                                                                    {0.158, 0.684, 0.502},
+                                                                    {0.369, 0.789, 0.383},
+                                                                    {0.678, 0.864, 0.190},
+                                                                    {0.993, 0.906, 0.144}}};
+  const double position = (fraction > 0.0 ? std::min(fraction, 1.0) : 0.0) * (kColors.size() - 1);
+  const auto low = std::min(static_cast<std::size_t>(position), kColors.size() - 2);
+  const double part = position - static_cast<double>(low);
+  const auto mix = [&](std::size_t c) {
+    return static_cast<float>(kColors[low][c] + part * (kColors[low + 1][c] - kColors[low][c]));
+  };
+  return color(mix(0), mix(1), mix(2));
+}
+
+SceneMarkers::SceneMarkers(const Simulator& simulator, const MarkerStyle& style)
+    : simulator_(simulator), style_(style) {
+  requirePositive("displacement_full_scale_m", style.displacement_full_scale_m, "m");
+  requirePositive("force_arrow_m_per_n", style.force_arrow_m_per_n, "m/N");
+  addTissues();
+  for (std::size_t i = 0; i < simulator.instruments().size(); ++i) addInstrument(static_cast<int>(i));
+  first_arrow_ = message_.markers.size();
+}
+
+void SceneMarkers::addTissues() {
+  for (std::size_t t = 0; t < simulator_.tissues().size(); ++t) {
+    const Tissue& tissue = simulator_.tissues()[t];
+    Marker marker;
+    marker.header.frame_id = simulator_.scene().world_frame;
+    marker.ns = tissue.name();
+    marker.type = Marker::TRIANGLE_LIST;
+    marker.pose.orientation.w = 1.0;
+    marker.scale = scale(1.0, 1.0, 1.0);
+    marker.color = color(1.0F, 1.0F, 1.0F);
+    marker.points.resize(3 * tissue.surface().size());
+    marker.colors.resize(marker.points.size());
+    message_.markers.push_back(marker);
+  }
+}
+
+/// Links that touch tissue are drawn as the shapes that touch; the others as the URDF draws them, paler.
+void SceneMarkers::addInstrument(int instrument) {
+  const Instrument& tool = simulator_.instruments()[static_cast<std::size_t>(instrument)];
+  std::set<int> touching;
+  for (const ContactLink& link : tool.contactLinks()) {
+    touching.insert(link.link);
+    for (const CollisionShape& shape : link.shapes) {
+      addShape(instrument, link.link, {shape.geometry, shape.X_LS}, shape.mesh.get(), true);
+    }
+  }
+  for (std::size_t l = 0; l < tool.model().links().size(); ++l) {
+    if (touching.count(static_cast<int>(l)) > 0) continue;
+    const LinkGeometry& geometry = tool.model().links()[l].geometry;
+    for (const ShapeDescription& shape : geometry.visual.empty() ? geometry.collision : geometry.visual) {
+      addShape(instrument, static_cast<int>(l), shape, nullptr, false);
+    }
+  }
+}
+
+void SceneMarkers::addShape(int instrument, int link, const ShapeDescription& shape, const TriangleMesh* mesh,
+                            bool touches) {
+  Marker marker;
+  marker.header.frame_id = simulator_.scene().world_frame;
+  marker.ns = simulator_.instruments()[static_cast<std::size_t>(instrument)].name();
+  marker.id = static_cast<int>(shapes_.size());
+  marker.color = touches ? color(0.75F, 0.78F, 0.82F, 0.8F) : color(0.6F, 0.6F, 0.62F, 0.4F);
+  setGeometry(shape.geometry, mesh, marker);
+  shapes_.push_back({message_.markers.size(), instrument, link, shape.X_LS});
+  message_.markers.push_back(marker);
+}
+
+const visualization_msgs::MarkerArray& SceneMarkers::update(std::int64_t stamp_ns) {
+  for (std::size_t t = 0; t < simulator_.tissues().size(); ++t) updateTissue(static_cast<int>(t));
+  for (const ShapeMarker& shape : shapes_) {
+    const Pose& X_WL = simulator_.linkPoses(shape.instrument)[static_cast<std::size_t>(shape.link)];
+    message_.markers[shape.marker].pose = toPose(X_WL * shape.X_LS);
+  }
+  updateForces();
+  for (Marker& marker : message_.markers) marker.header.stamp = toTime(stamp_ns);
+  return message_;
+}
+
+void SceneMarkers::updateTissue(int tissue) {
+  const Tissue& model = simulator_.tissues()[static_cast<std::size_t>(tissue)];
+  const NodalVectors& x = simulator_.positions(tissue);
+  Marker& marker = message_.markers[static_cast<std::size_t>(tissue)];
+  std::size_t corner = 0;
+  for (const Triangle& triangle : model.surface()) {
+    for (const int node : triangle) {
+      const double displacement = (x.col(node) - model.restPositions().col(node)).norm();
+      marker.points[corner] = toPoint(x.col(node));
+      marker.colors[corner++] = displacementColor(displacement / style_.displacement_full_scale_m);
+    }
+  }
+}
+
+/// Arrows that are no longer needed are sent once more as deletions, then forgotten.
+void SceneMarkers::updateForces() {
+  std::vector<Marker>& markers = message_.markers;
+  while (markers.size() > first_arrow_ && markers.back().action == Marker::DELETE) markers.pop_back();
+  std::size_t used = first_arrow_;
+  for (const SolvedContact& contact : simulator_.contacts()) {
+    if (contact.state == ContactState::kOpen || !(contact.force_on_tissue_n.norm() > 0.0)) continue;
+    setArrow(used++, contact);
+  }
+  for (std::size_t i = used; i < markers.size(); ++i) markers[i].action = Marker::DELETE;
+}
+
+void SceneMarkers::setArrow(std::size_t index, const SolvedContact& contact) {
+  if (index == message_.markers.size()) {
+    Marker marker;
+    marker.header.frame_id = simulator_.scene().world_frame;
+    marker.ns = kForceNamespace;
+    marker.id = static_cast<int>(index - first_arrow_);
+    marker.type = Marker::ARROW;
+    marker.pose.orientation.w = 1.0;
+    marker.scale = scale(0.0006, 0.0015, 0.002);  // shaft and head diameter, head length: thin beside a tool of 8 mm
+    marker.points.resize(2);
+    message_.markers.push_back(marker);
+  }
+  Marker& marker = message_.markers[index];
+  marker.action = Marker::ADD;
+  marker.color = contact.state == ContactState::kStatic ? color(0.1F, 0.45F, 0.95F) : color(0.9F, 0.15F, 0.1F);
+  const Vector3& head = contact.contact.p_WC;
+  marker.points[0] = toPoint(head - style_.force_arrow_m_per_n * contact.force_on_tissue_n);
+  marker.points[1] = toPoint(head);
+}
+
+}  // namespace tissue_contact
