@@ -37,7 +37,7 @@ void addName(const std::string& name, const YamlCursor& cursor, NameLines& lines
 template <typename Element>
 std::string parseReference(const YamlMap& map, const std::string& key, const std::vector<Element>& list) {
   const YamlCursor& cursor = map.get(key);
-  const std::string name = cursor.text();
+  std::string name = cursor.text();
   std::string known;
   for (const Element& element : list) {
     if (element.name == name) return name;

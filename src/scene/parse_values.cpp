@@ -49,7 +49,7 @@ Quaternion fromRollPitchYaw(const Vector3& rpy) {
 }  // namespace
 
 std::string parseName(const YamlCursor& cursor) {
-  const std::string name = cursor.text();
+  std::string name = cursor.text();
   if (!isNamePart(name) || name.size() > kMaxNameLength) {
     cursor.fail("is " + inQuotes(name) +
                 "; a name becomes part of ROS topics, so it must begin with a letter, hold only letters, digits and "
@@ -59,7 +59,7 @@ std::string parseName(const YamlCursor& cursor) {
 }
 
 std::string parseRosName(const YamlCursor& cursor) {
-  const std::string name = cursor.text();
+  std::string name = cursor.text();
   std::size_t begin = name.front() == '/' || name.front() == '~' ? 1 : 0;
   bool is_good = true;
   while (is_good && begin != std::string::npos) {
@@ -76,7 +76,7 @@ std::string parseRosName(const YamlCursor& cursor) {
 }
 
 std::string parseFrame(const YamlCursor& cursor) {
-  const std::string frame = cursor.text();
+  std::string frame = cursor.text();
   if (frame.front() == '/' || frame.find(' ') != std::string::npos) {
     cursor.fail("is " + inQuotes(frame) + "; a tf frame must not begin with '/' nor hold spaces");
   }

@@ -110,8 +110,8 @@ std::string inQuotes(const std::string& text) {
   return "\"" + shown + (shown.size() < text.size() ? "...\"" : "\"");
 }
 
-YamlCursor::YamlCursor(YAML::Node node, std::string file, std::string path, int line)
-    : node_(std::move(node)), file_(std::move(file)), path_(std::move(path)), line_(line) {}
+YamlCursor::YamlCursor(const YAML::Node& node, std::string file, std::string path, int line)
+    : node_(node), file_(std::move(file)), path_(std::move(path)), line_(line) {}
 
 void YamlCursor::fail(const std::string& problem) const {
   throw std::invalid_argument(file_ + ":" + std::to_string(line_) + ": " + (path_.empty() ? "scene" : path_) + ": " +
@@ -203,7 +203,7 @@ bool YamlCursor::boolean() const {
 }
 
 std::string YamlCursor::text() const {
-  const std::string value = scalar("text");
+  std::string value = scalar("text");
   if (value.empty()) fail("is empty; it must be text");
   if (value.size() > kMaxTextBytes) {
     fail("has " + std::to_string(value.size()) + " bytes; at most " + std::to_string(kMaxTextBytes) + " are allowed");

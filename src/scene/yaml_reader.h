@@ -33,7 +33,7 @@ class YamlMap;
 class YamlCursor {
  public:
   /// @param path key path such as "tissues[0].name". @param line counted from 1.
-  YamlCursor(YAML::Node node, std::string file, std::string path, int line);
+  YamlCursor(const YAML::Node& node, std::string file, std::string path, int line);
 
   [[noreturn]] void fail(const std::string& problem) const;
 

@@ -1,0 +1,69 @@
+/// doc/scene.md against the loader: every key in its table, no key that does not exist, an example that uses them all.
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "scene_fixture.h"
+
+namespace tissue_contact {
+namespace {
+
+std::string documentText() {
+  std::ifstream stream(std::string(TISSUE_CONTACT_SOURCE_DIR) + "/doc/scene.md");
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// Keys in the table of each section "### `path`".
+std::map<std::string, std::set<std::string>> documentedKeys() {
+  std::map<std::string, std::set<std::string>> keys;
+  std::istringstream text(documentText());
+  std::string section;
+  for (std::string line; std::getline(text, line);) {
+    const auto between = [&line](std::size_t begin) { return line.substr(begin, line.find('`', begin) - begin); };
+    if (line.compare(0, 5, "### `") == 0) section = between(5);
+    if (line.compare(0, 3, "| `") == 0 && !keys[section].insert(between(3)).second) {
+      ADD_FAILURE() << section << ": " << between(3) << " is documented twice";
+    }
+  }
+  return keys;
+}
+
+std::string example() {
+  const std::string text = documentText();
+  const std::string fence = "```yaml\n";
+  const std::size_t begin = text.find(fence);
+  if (begin == std::string::npos) return "";
+  return text.substr(begin + fence.size(), text.find("```\n", begin + 1) - begin - fence.size());
+}
+
+TEST(SceneDocument, HasExactlyTheKeysOfTheLoader) {
+  std::map<std::string, std::set<std::string>> known;
+  for (const SceneMapKeys& map : sceneKeys()) {
+    EXPECT_TRUE(known.emplace(map.path, std::set<std::string>(map.keys.begin(), map.keys.end())).second) << map.path;
+  }
+  const auto documented = documentedKeys();
+  for (const auto& [path, keys] : known) {
+    const auto section = documented.find(path);
+    ASSERT_NE(section, documented.end()) << "no section for " << path;
+    EXPECT_EQ(section->second, keys) << path;
+  }
+  EXPECT_EQ(documented.size(), known.size());
+}
+
+TEST_F(SceneTest, ExampleOfTheDocumentLoadsAndUsesEveryKey) {
+  for (const char* directory : {"meshes", "urdf"}) std::filesystem::create_directory(directory_ / directory);
+  for (const char* file : {"meshes/liver.vtk", "meshes/cover.stl", "urdf/psm_classic.urdf"}) write(file, "x");
+  const std::string yaml = example();
+  const Scene scene = parse(yaml);
+  EXPECT_EQ(scene.tissues.size(), 2U);
+  EXPECT_EQ(scene.instruments.size(), 2U);
+  for (const SceneMapKeys& map : sceneKeys()) {
+    for (const std::string& key : map.keys)
+      EXPECT_NE(yaml.find(key + ":"), std::string::npos) << map.path << "." << key;
+  }
+}
+
+}  // namespace
+}  // namespace tissue_contact
