@@ -57,6 +57,7 @@ class UrdfReader {
   void orderLinks() {
     std::map<std::string, std::string> joint_above;
     for (const auto& [name, joint] : urdf_.joints_) {
+      if (name.empty()) refuse("the joint above link '" + joint->child_link_name + "' has an empty name");
       const auto [it, is_new] = joint_above.emplace(joint->child_link_name, name);
       if (!is_new) {
         refuse("link '" + joint->child_link_name + "' is the child of two joints, '" + it->second + "' and '" + name +
@@ -71,6 +72,7 @@ class UrdfReader {
       }
     }
     for (const auto& [name, link] : urdf_.links_) {
+      if (name.empty()) refuse("a link has an empty name");
       if (index_.count(name) == 0) refuse("link '" + name + "' is not connected to the root '" + order_[0]->name + "'");
     }
   }

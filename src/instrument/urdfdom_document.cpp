@@ -45,15 +45,20 @@ class CapturedErrors : public console_bridge::OutputHandler {
 
   void log(const std::string& text, console_bridge::LogLevel /*level*/, const char* /*file*/, int /*line*/) override {
     if (errors_.size() < kMaxReasonLength) errors_ += (errors_.empty() ? "" : "; ") + text;
+    // urdfdom drops a link's remaining parts when one of them is malformed, says so, and goes on. A malformed colour
+    // alone costs nothing.
+    lost_something_ = lost_something_ || text.rfind("Material", 0) != 0;
   }
 
   const std::string& errors() const { return errors_; }
+  bool lostSomething() const { return lost_something_; }
 
  private:
   std::lock_guard<std::mutex> lock_;
   console_bridge::OutputHandler* previous_;
   console_bridge::LogLevel previous_level_;
   std::string errors_;
+  bool lost_something_ = false;
 };
 
 void checkText(const std::string& xml, const std::string& source) {
@@ -91,7 +96,7 @@ urdf::ModelInterfaceSharedPtr parseWithUrdfdom(const std::string& xml, const std
   } catch (const std::exception& error) {
     reason = error.what();
   }
-  if (model) return model;
+  if (model && !captured.lostSomething()) return model;
   if (!captured.errors().empty()) reason += (reason.empty() ? "" : "; ") + captured.errors();
   if (reason.empty()) reason = "no reason given";
   throw std::invalid_argument(source + ": urdfdom refuses this URDF: " + reason);

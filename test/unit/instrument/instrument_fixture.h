@@ -1,0 +1,87 @@
+/// @file
+/// What the tests of the room `instrument` share: temporary files, short URDFs, and the message of a refused input.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/instrument/parse_urdf.h"
+
+namespace tissue_contact {
+
+/// A directory that lives as long as the test.
+class TemporaryDirectory {
+ public:
+  TemporaryDirectory() {
+    std::random_device random;
+    path_ = std::filesystem::temp_directory_path() /
+            ("tissue_contact_test_" + std::to_string(random()) + std::to_string(random()));
+    std::filesystem::create_directories(path_);
+  }
+  ~TemporaryDirectory() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+
+  std::string path(const std::string& name) const { return (path_ / name).string(); }
+
+  /// Writes a file and returns its path.
+  std::string write(const std::string& name, const std::string& content) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << content;
+    return path(name);
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Message of the std::invalid_argument that `action` must throw; the test fails when it throws none.
+template <typename Action>
+std::string refusal(Action action) {
+  try {
+    action();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "nothing was refused";
+  return "";
+}
+
+/// Fails unless `text` contains every one of `parts`.
+inline void expectContains(const std::string& text, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << " is not in: " << text;
+}
+
+inline std::string robot(const std::string& content) { return "<robot name=\"r\">" + content + "</robot>"; }
+
+/// A joint from `parent` to `child`; `extra` holds <origin>, <axis>, <mimic>. Limits are added: urdfdom asks for them.
+inline std::string joint(const std::string& name, const std::string& type, const std::string& parent,
+                         const std::string& child, const std::string& extra = "") {
+  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent + "\"/><child link=\"" + child +
+         "\"/><limit lower=\"-1\" upper=\"2\" effort=\"1\" velocity=\"1\"/>" + extra + "</joint>";
+}
+
+inline RobotModel parse(const std::string& content) { return parseUrdf(robot(content), "test.urdf", "", nullptr); }
+
+inline void expectSamePose(const Pose& actual, const Pose& expected, double tolerance) {
+  EXPECT_LE((actual.matrix() - expected.matrix()).cwiseAbs().maxCoeff(), tolerance)
+      << actual.matrix() << "\nshould be\n"
+      << expected.matrix();
+}
+
+inline Pose rotation(double angle, const Vector3& axis) {
+  return Pose(Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix());
+}
+
+inline Pose translation(double x, double y, double z) { return Pose(Eigen::Translation3d(x, y, z)); }
+
+}  // namespace tissue_contact
