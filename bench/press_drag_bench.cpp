@@ -1,13 +1,13 @@
-/// Time per implicit step of press-and-drag: sphere of 5 mm radius, 4 mm deep at 20 mm/s, dragged 20 mm at 20 mm/s over a
-/// 0.10 x 0.10 x 0.04 m corotational block, dt 1 ms, one core. Reports median, p99 and maximum over the steps of the run, so a
-/// machine's noise shows in p99 and not in the median. The argument is the number of cells across: 10 is the 11x11x5-node
-/// block of the README.
+/// Time per implicit step of press-and-drag: sphere of 5 mm radius, 4 mm deep at 20 mm/s, dragged 20 mm at 20 mm/s over
+/// a 0.10 x 0.10 x 0.04 m corotational block, dt 1 ms, one core. Reports median, p99 and maximum over the steps of the
+/// run, so a machine's noise shows in p99 and not in the median. The argument is the number of cells across: 10 is the
+/// 11x11x5-node block of the README.
+#include <benchmark/benchmark.h>
+
 #include <algorithm>
 #include <chrono>
 #include <sstream>
 #include <vector>
-
-#include <benchmark/benchmark.h>
 
 #include "tissue_contact/simulation/simulator.h"
 
@@ -16,16 +16,17 @@ namespace {
 
 Simulator makeScene(int cells) {
   std::ostringstream yaml;
-  yaml << "tissues:\n  - name: block\n    block: {size_m: [0.10, 0.10, 0.04], cells: [" << cells << ", " << cells << ", "
-       << 2 * cells / 5 << "]}\n"
-       << "    material: {model: corotational, youngs_modulus_pa: 5000, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n"
-       << "    damping: {stiffness_s: 0.003}\n"
-       << "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
-       << "instruments:\n  - name: probe\n    urdf: package://tissue_contact/urdf/probe.urdf\n    tip_link: tip\n"
-       << "    joint_state_topics: [/probe/joint_states]\n    base_pose: {position_m: [-0.01, 0, 0.0451]}\n"
-       << "    contact_links: [tip]\n"
-       << "friction:\n  - {instrument: probe, tissue: block, static: 0.6, kinetic: 0.4}\n"
-       << "step: {max_step_s: 0.001}\n";
+  yaml
+      << "tissues:\n  - name: block\n    block: {size_m: [0.10, 0.10, 0.04], cells: [" << cells << ", " << cells << ", "
+      << 2 * cells / 5 << "]}\n"
+      << "    material: {model: corotational, youngs_modulus_pa: 5000, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n"
+      << "    damping: {stiffness_s: 0.003}\n"
+      << "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
+      << "instruments:\n  - name: probe\n    urdf: package://tissue_contact/urdf/probe.urdf\n    tip_link: tip\n"
+      << "    joint_state_topics: [/probe/joint_states]\n    base_pose: {position_m: [-0.01, 0, 0.0451]}\n"
+      << "    contact_links: [tip]\n"
+      << "friction:\n  - {instrument: probe, tissue: block, static: 0.6, kinetic: 0.4}\n"
+      << "step: {max_step_s: 0.001}\n";
   SceneEnvironment environment;
   environment.package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
   return Simulator(parseScene(yaml.str(), "benchmark scene", environment.package_path), environment);

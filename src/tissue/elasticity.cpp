@@ -4,6 +4,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 
+#include "element_kernel.h"
 #include "tissue_contact/core/check.h"
 
 namespace tissue_contact {
@@ -41,7 +42,8 @@ Quaternion nearestRotation(const Matrix3& F, const Quaternion& guess) {
     const Vector3 off(-0.5 * (S(1, 2) + S(2, 1)), -0.5 * (S(0, 2) + S(2, 0)), -0.5 * (S(0, 1) + S(1, 0)));
     // Cofactors of the symmetric matrix tr(S) I - sym(S). It is positive definite exactly at a maximum of tr(R'F):
     // elsewhere (inverted element, far guess) Newton must not be trusted.
-    const Vector3 minors(diagonal.y() * diagonal.z() - off.x() * off.x(), diagonal.x() * diagonal.z() - off.y() * off.y(),
+    const Vector3 minors(diagonal.y() * diagonal.z() - off.x() * off.x(),
+                         diagonal.x() * diagonal.z() - off.y() * off.y(),
                          diagonal.x() * diagonal.y() - off.z() * off.z());
     const Vector3 mixed(off.y() * off.z() - off.x() * diagonal.x(), off.x() * off.z() - off.y() * diagonal.y(),
                         off.x() * off.y() - off.z() * diagonal.z());
@@ -70,44 +72,52 @@ Elasticity::Elasticity(const NodalVectors& rest, const std::vector<Tetrahedron>&
   lame_mu_ = E / (2.0 * (1.0 + nu));
   pattern_ = BlockMatrix::forTetrahedra(tetrahedra, fixed);
   elements_.reserve(tetrahedra.size());
-  for (const Tetrahedron& tet : tetrahedra) {
-    Element element;
-    element.nodes = tet;
-    Matrix3 D;
-    for (int i = 0; i < 3; ++i) D.col(i) = rest.col(tet[i + 1]) - rest.col(tet[0]);
-    element.rest_inverse = D.inverse();
-    element.volume = D.determinant() / 6.0;
-    for (int i = 0; i < 4; ++i) {
-      for (int j = 0; j < 4; ++j) {
-        element.at[i][j] = i == j ? (fixed[tet[i]] ? -1 : tet[i]) : pattern_.find(tet[i], tet[j]);
-      }
+  for (const Tetrahedron& tet : tetrahedra) addElement(rest, tet, fixed);
+  fillBatches();
+}
+
+Elasticity::~Elasticity() = default;
+Elasticity::Elasticity(const Elasticity&) = default;
+Elasticity::Elasticity(Elasticity&&) noexcept = default;
+
+void Elasticity::addElement(const NodalVectors& rest, const Tetrahedron& tet, const std::vector<bool>& fixed) {
+  Element element;
+  element.nodes = tet;
+  Matrix3 D;
+  for (int i = 0; i < 3; ++i) D.col(i) = rest.col(tet[i + 1]) - rest.col(tet[0]);
+  element.rest_inverse = D.inverse();
+  element.volume = D.determinant() / 6.0;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      element.at[i][j] = i == j ? (fixed[tet[i]] ? -1 : tet[i]) : pattern_.find(tet[i], tet[j]);
     }
-    elements_.push_back(element);
+  }
+  elements_.push_back(element);
+}
+
+void Elasticity::fillBatches() {
+  batches_.resize((elements_.size() + kLanes - 1) / kLanes);
+  for (std::size_t slot = 0; slot < batches_.size() * kLanes; ++slot) {
+    const bool used = slot < elements_.size();
+    const Element& element = used ? elements_[slot] : elements_.back();
+    ElementBatch& batch = batches_[slot / kLanes];
+    const std::size_t lane = slot % kLanes;
+    for (std::size_t i = 0; i < 9; ++i) batch.rest_inverse[i][lane] = element.rest_inverse.data()[i];
+    batch.volume[lane] = used ? element.volume : 0.0;
+    batch.nodes[lane] = element.nodes;
   }
 }
 
 Elasticity::State Elasticity::makeState() const {
+  RotationBatch identity{};
+  identity[0].fill(1.0);
   State state;
-  state.rotations.assign(elements_.size(), Quaternion::Identity());
+  state.rotations.assign(batches_.size(), identity);
   state.tangent_rotations = state.rotations;
+  state.turned.assign(batches_.size(), 0);
   state.stiffness = pattern_;
   for (const Element& element : elements_) addStiffness(element, Quaternion::Identity(), 1.0, state.stiffness);
   return state;
-}
-
-Matrix3 Elasticity::deformationGradient(const Element& element, const NodalVectors& x) const {
-  Matrix3 D;
-  for (int i = 0; i < 3; ++i) D.col(i) = x.col(element.nodes[i + 1]) - x.col(element.nodes[0]);
-  return D * element.rest_inverse;
-}
-
-Matrix3 Elasticity::stress(const Matrix3& R, const Matrix3& F) const {
-  const Matrix3 S = R.transpose() * F;
-  Matrix3 strain = 0.5 * (S + S.transpose());
-  strain.diagonal().array() -= 1.0;
-  Matrix3 rotated = 2.0 * lame_mu_ * strain;
-  rotated.diagonal().array() += lame_lambda_ * strain.trace();
-  return R * rotated;
 }
 
 void Elasticity::addStiffness(const Element& element, const Quaternion& rotation, double sign, BlockMatrix& K) const {
@@ -129,35 +139,40 @@ void Elasticity::addStiffness(const Element& element, const Quaternion& rotation
   }
 }
 
+void Elasticity::refreshStiffness(std::size_t batch, State& state) const {
+  const auto rotation = [batch](const std::vector<RotationBatch>& rotations, std::size_t lane) {
+    const RotationBatch& q = rotations[batch];
+    return Quaternion(q[0][lane], q[1][lane], q[2][lane], q[3][lane]).normalized();
+  };
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const std::size_t e = batch * kLanes + lane;
+    if ((state.turned[batch] >> lane & 1) == 0 || e >= elements_.size()) continue;
+    addStiffness(elements_[e], rotation(state.tangent_rotations, lane), -1.0, state.stiffness);
+    addStiffness(elements_[e], rotation(state.rotations, lane), 1.0, state.stiffness);
+    for (std::size_t i = 0; i < 4; ++i) state.tangent_rotations[batch][i][lane] = state.rotations[batch][i][lane];
+  }
+}
+
 void Elasticity::update(const NodalVectors& x, State& state, NodalVectors& forces) const {
-  // |vec(q conj(p))| = sin(angle/2), and the angle threshold is small.
-  constexpr double kThreshold = 0.25 * kTangentAngle * kTangentAngle;
   forces.setZero();
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const Element& element = elements_[e];
-    const Matrix3 F = deformationGradient(element, x);
-    Matrix3 R = Matrix3::Identity();
-    if (corotational_) {
-      Quaternion& q = state.rotations[e];
-      q = nearestRotation(F, q);
-      R = q.toRotationMatrix();
-      Quaternion& tangent = state.tangent_rotations[e];
-      if ((q * tangent.conjugate()).vec().squaredNorm() > kThreshold) {
-        addStiffness(element, tangent, -1.0, state.stiffness);
-        addStiffness(element, q, 1.0, state.stiffness);
-        tangent = q;
-      }
-    }
-    const Matrix3 H = -element.volume * stress(R, F) * element.rest_inverse.transpose();
-    for (int i = 0; i < 3; ++i) forces.col(element.nodes[i + 1]) += H.col(i);
-    forces.col(element.nodes[0]) -= H.rowwise().sum();
+  const KernelMaterial material{lame_lambda_, lame_mu_};
+  if (!corotational_) {
+    addLinearForces(batches_, material, x.data(), forces.data());
+    return;
+  }
+  addCorotationalForces(batches_, material, kTangentAngle, x.data(), state.tangent_rotations, state.rotations,
+                        state.turned, forces.data());
+  for (std::size_t batch = 0; batch < batches_.size(); ++batch) {
+    if (state.turned[batch] != 0) refreshStiffness(batch, state);
   }
 }
 
 double Elasticity::energy(const NodalVectors& x) const {
   double energy = 0.0;
   for (const Element& element : elements_) {
-    const Matrix3 F = deformationGradient(element, x);
+    Matrix3 D;
+    for (int i = 0; i < 3; ++i) D.col(i) = x.col(element.nodes[i + 1]) - x.col(element.nodes[0]);
+    const Matrix3 F = D * element.rest_inverse;
     const Matrix3 R =
         corotational_ ? nearestRotation(F, Quaternion::Identity()).toRotationMatrix() : Matrix3(Matrix3::Identity());
     const Matrix3 S = R.transpose() * F;

@@ -1,8 +1,8 @@
 /// Form B: a free block on an incline. It holds exactly while tan(theta) < mu_s, slides with g (sin - mu cos), does not
 /// creep; and form J: its weight is the sum of the contact forces, and it falls freely before it lands.
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "support/test_scene.h"
 
@@ -16,16 +16,18 @@ Simulator makeIncline(double degrees, double mu_static, double mu_kinetic, doubl
   const double theta = degrees * M_PI / 180.0;
   std::ostringstream yaml;
   yaml.precision(17);
-  yaml << "gravity_m_per_s2: [0, 0, -9.81]\n"
-       << "tissues:\n  - name: block\n    block: {size_m: [0.06, 0.06, 0.03], cells: [4, 4, 2]}\n"
-       << "    pose: {position_m: [" << height_m * std::sin(theta) << ", 0, " << height_m * std::cos(theta)
-       << "], rpy_rad: [0, " << theta << ", 0]}\n"
-       << "    material: {model: corotational, youngs_modulus_pa: 1.0e5, poissons_ratio: 0.3, density_kg_per_m3: 1000}\n"
-       << "    damping: {stiffness_s: 0.005}\n"
-       << "instruments:\n  - name: table\n    robot_description: table\n    tip_link: table\n"
-       << "    base_pose: {position_m: [0, 0, 0], rpy_rad: [0, " << theta << ", 0]}\n    contact_links: [table]\n"
-       << "friction:\n  - {instrument: table, tissue: block, static: " << mu_static << ", kinetic: " << mu_kinetic << "}\n"
-       << "step: {max_step_s: 0.001}\nsolver: {iterations: 200, tolerance: 1.0e-9}\n";
+  yaml
+      << "gravity_m_per_s2: [0, 0, -9.81]\n"
+      << "tissues:\n  - name: block\n    block: {size_m: [0.06, 0.06, 0.03], cells: [4, 4, 2]}\n"
+      << "    pose: {position_m: [" << height_m * std::sin(theta) << ", 0, " << height_m * std::cos(theta)
+      << "], rpy_rad: [0, " << theta << ", 0]}\n"
+      << "    material: {model: corotational, youngs_modulus_pa: 1.0e5, poissons_ratio: 0.3, density_kg_per_m3: 1000}\n"
+      << "    damping: {stiffness_s: 0.005}\n"
+      << "instruments:\n  - name: table\n    robot_description: table\n    tip_link: table\n"
+      << "    base_pose: {position_m: [0, 0, 0], rpy_rad: [0, " << theta << ", 0]}\n    contact_links: [table]\n"
+      << "friction:\n  - {instrument: table, tissue: block, static: " << mu_static << ", kinetic: " << mu_kinetic
+      << "}\n"
+      << "step: {max_step_s: 0.001}\nsolver: {iterations: 200, tolerance: 1.0e-9}\n";
   return test::makeSimulator(yaml.str(), {{"table", test::tableUrdf()}});
 }
 
@@ -67,9 +69,7 @@ TEST(Incline, SlidesJustAboveTheCriticalAngle) {
   EXPECT_NEAR(downhillAcceleration(16.8, 0.3), 0.0180, 1e-3 * kGravity);
 }
 
-TEST(Incline, SlidesWithGravityMinusFriction) {
-  EXPECT_NEAR(downhillAcceleration(20.0, 0.3), 0.5897, 1e-3 * kGravity);
-}
+TEST(Incline, SlidesWithGravityMinusFriction) { EXPECT_NEAR(downhillAcceleration(20.0, 0.3), 0.5897, 1e-3 * kGravity); }
 
 TEST(Incline, StaticCoefficientHoldsWhatKineticWouldNot) {
   Simulator simulator = makeIncline(20.0, 0.4, 0.3);  // tan 20 = 0.364
@@ -100,7 +100,8 @@ TEST(FreeFall, FollowsImplicitEulerExactlyUntilItLands) {
   const Vector3 start = massCenter(simulator, simulator.positions(0));
   run(simulator, 0.1);
   const int steps = 100;
-  const double fallen = kGravity * 1e-6 * 0.5 * steps * (steps + 1);  // sum of k g dt^2: g t^2 / 2 and first order in dt
+  const double fallen =
+      kGravity * 1e-6 * 0.5 * steps * (steps + 1);  // sum of k g dt^2: g t^2 / 2 and first order in dt
   EXPECT_NEAR(massCenter(simulator, simulator.positions(0)).z() - start.z(), -fallen, 1e-12);
   EXPECT_EQ(simulator.report().static_contacts + simulator.report().kinetic_contacts, 0);
   run(simulator, 1.5);

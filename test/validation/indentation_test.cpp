@@ -1,8 +1,8 @@
-/// Form H, press: rigid sphere of 40 mm radius pressed 0.625 mm without friction into a bonded block of 60 x 60 x 30 mm,
-/// E = 10 kPa, nu = 0.45, linear: P = 0.0613 N. And form J: what the instrument feels is what the tissue does not.
-#include <cmath>
-
+/// Form H, press: rigid sphere of 40 mm radius pressed 0.625 mm without friction into a bonded block of 60 x 60 x 30
+/// mm, E = 10 kPa, nu = 0.45, linear: P = 0.0613 N. And form J: what the instrument feels is what the tissue does not.
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "support/test_scene.h"
 
@@ -12,13 +12,15 @@ namespace {
 /// Graded block: `cells` across, half as many deep, cells growing by 1.22 away from the contact.
 Simulator makePress(int cells, double mu) {
   std::ostringstream yaml;
-  yaml << "tissues:\n  - name: block\n    block:\n      size_m: [0.06, 0.06, 0.03]\n      cells: [" << cells << ", " << cells
-       << ", " << cells / 2 << "]\n      grading: {x: {growth: 1.22, fine_at: center}, y: {growth: 1.22, fine_at: center},"
+  yaml << "tissues:\n  - name: block\n    block:\n      size_m: [0.06, 0.06, 0.03]\n      cells: [" << cells << ", "
+       << cells << ", " << cells / 2
+       << "]\n      grading: {x: {growth: 1.22, fine_at: center}, y: {growth: 1.22, fine_at: center},"
        << " z: {growth: 1.22, fine_at: maximum}}\n"
        << "    material: {model: linear, youngs_modulus_pa: 1.0e4, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n"
        << "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
        << "instruments:\n  - name: probe\n    robot_description: probe\n    tip_link: tip\n"
-       << "    joint_state_topics: [/joint_states]\n    base_pose: {position_m: [0, 0, 0.07]}\n    contact_links: [tip]\n"
+       << "    joint_state_topics: [/joint_states]\n    base_pose: {position_m: [0, 0, 0.07]}\n    contact_links: "
+          "[tip]\n"
        << "friction:\n  - {instrument: probe, tissue: block, static: " << mu << ", kinetic: " << mu << "}\n"
        << "step: {max_step_s: 0.01}\nsolver: {iterations: 400, tolerance: 1.0e-6}\n";
   return test::makeSimulator(yaml.str(), {{"probe", test::probeUrdf(0.04)}});

@@ -18,19 +18,25 @@
 
 namespace tissue_contact {
 
+struct ElementBatch;
+
 /// Model: const after construction. Thread-safe for different states.
 class Elasticity {
  public:
-  /// What changes while simulating.
+  /// What changes while simulating. Rotations are kept four elements at a time, as (w, x, y, z) of any length.
   struct State {
-    std::vector<Quaternion> rotations;          ///< R of each element at the last update
-    std::vector<Quaternion> tangent_rotations;  ///< R each element's share of `stiffness` was computed with
-    BlockMatrix stiffness;                      ///< K, N/m
+    std::vector<std::array<std::array<double, 4>, 4>> rotations;          ///< of each element at the last update
+    std::vector<std::array<std::array<double, 4>, 4>> tangent_rotations;  ///< those `stiffness` was computed with
+    std::vector<unsigned char> turned;                                    ///< scratch: elements to refresh, a bit each
+    BlockMatrix stiffness;                                                ///< K, N/m
   };
 
   /// @param rest 3 x n, m. @throws std::invalid_argument for a material out of range.
   Elasticity(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
              const MaterialDescription& material);
+  ~Elasticity();
+  Elasticity(const Elasticity&);
+  Elasticity(Elasticity&&) noexcept;
 
   /// State of the undeformed body; allocates.
   State makeState() const;
@@ -53,17 +59,19 @@ class Elasticity {
     Matrix3 rest_inverse;  ///< D_rest^-1, 1/m; its rows are grad N_1..N_3
     double volume;         ///< m^3
     std::array<std::array<int, 4>, 4>
-        at;  ///< where block (i, j) lies in K: index into values, the node if i = j; -1: not stored
+        at;  ///< where block (i, j) is in K: index into values, the node if i = j; -1: not stored
   };
 
-  Matrix3 deformationGradient(const Element& element, const NodalVectors& x) const;
-  Matrix3 stress(const Matrix3& R, const Matrix3& F) const;
+  void addElement(const NodalVectors& rest, const Tetrahedron& tet, const std::vector<bool>& fixed);
+  void fillBatches();
   void addStiffness(const Element& element, const Quaternion& rotation, double sign, BlockMatrix& K) const;
+  void refreshStiffness(std::size_t batch, State& state) const;
 
   bool corotational_;
   double lame_lambda_;  ///< Pa
   double lame_mu_;      ///< Pa
   std::vector<Element> elements_;
+  std::vector<ElementBatch> batches_;  ///< the same elements, laid out for the force kernel
   BlockMatrix pattern_;
 };
 

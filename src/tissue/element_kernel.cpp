@@ -1,0 +1,243 @@
+#include "element_kernel.h"
+
+#include <cstdint>
+#include <cstring>
+
+#include "tissue_contact/tissue/elasticity.h"
+
+// One build of the kernel for AVX2 and one for any processor, chosen when the library is loaded.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define TISSUE_CONTACT_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define TISSUE_CONTACT_CLONES
+#endif
+#define TISSUE_CONTACT_INLINE inline __attribute__((always_inline))
+
+namespace tissue_contact {
+namespace {
+
+using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
+using Mask = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+
+/// Column-major, as Eigen: element (r, c) is m[r + 3 c].
+struct LaneMatrix {
+  Lanes m[9];
+};
+struct LaneQuaternion {
+  Lanes w, x, y, z;
+};
+
+TISSUE_CONTACT_INLINE void load(const std::array<double, kLanes>& from, Lanes& to) {
+  std::memcpy(&to, from.data(), sizeof(Lanes));
+}
+TISSUE_CONTACT_INLINE void store(const Lanes& from, std::array<double, kLanes>& to) {
+  std::memcpy(to.data(), &from, sizeof(Lanes));
+}
+TISSUE_CONTACT_INLINE bool any(const Mask& mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
+
+TISSUE_CONTACT_INLINE void loadQuaternion(const RotationBatch& from, LaneQuaternion& q) {
+  load(from[0], q.w);
+  load(from[1], q.x);
+  load(from[2], q.y);
+  load(from[3], q.z);
+}
+
+/// F = D D_rest^-1.
+TISSUE_CONTACT_INLINE void deformationGradients(const ElementBatch& batch, const double* x, LaneMatrix& F) {
+  std::array<std::array<double, kLanes>, 9> gathered;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Tetrahedron& nodes = batch.nodes[lane];
+    const double* const x0 = x + 3 * static_cast<std::ptrdiff_t>(nodes[0]);
+    for (int c = 0; c < 3; ++c) {
+      const double* const xc = x + 3 * static_cast<std::ptrdiff_t>(nodes[c + 1]);
+      for (int r = 0; r < 3; ++r) gathered[r + 3 * c][lane] = xc[r] - x0[r];
+    }
+  }
+  Lanes D[9];
+  for (int i = 0; i < 9; ++i) load(gathered[i], D[i]);
+  for (int c = 0; c < 3; ++c) {
+    Lanes a, b, d;
+    load(batch.rest_inverse[3 * c], a);
+    load(batch.rest_inverse[3 * c + 1], b);
+    load(batch.rest_inverse[3 * c + 2], d);
+    for (int r = 0; r < 3; ++r) F.m[r + 3 * c] = D[r] * a + D[r + 3] * b + D[r + 6] * d;
+  }
+}
+
+/// Rotation matrix of a quaternion of any length: exactly orthonormal up to round-off.
+TISSUE_CONTACT_INLINE void rotationMatrix(const LaneQuaternion& q, LaneMatrix& R) {
+  const Lanes s = 2.0 / (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  const Lanes sx = s * q.x, sy = s * q.y, sz = s * q.z;
+  const Lanes wx = q.w * sx, wy = q.w * sy, wz = q.w * sz;
+  const Lanes xx = q.x * sx, xy = q.x * sy, xz = q.x * sz;
+  const Lanes yy = q.y * sy, yz = q.y * sz, zz = q.z * sz;
+  R.m[0] = 1.0 - (yy + zz);
+  R.m[1] = xy + wz;
+  R.m[2] = xz - wy;
+  R.m[3] = xy - wz;
+  R.m[4] = 1.0 - (xx + zz);
+  R.m[5] = yz + wx;
+  R.m[6] = xz + wy;
+  R.m[7] = yz - wx;
+  R.m[8] = 1.0 - (xx + yy);
+}
+
+/// S = R' F.
+TISSUE_CONTACT_INLINE void rotateBack(const LaneMatrix& R, const LaneMatrix& F, LaneMatrix& S) {
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < 3; ++r) {
+      S.m[r + 3 * c] = R.m[3 * r] * F.m[3 * c] + R.m[3 * r + 1] * F.m[3 * c + 1] + R.m[3 * r + 2] * F.m[3 * c + 2];
+    }
+  }
+}
+
+/// One Newton step of nearestRotation() in the active lanes; leaves active those that need another.
+/// `failed` collects those that Newton must not be trusted with.
+TISSUE_CONTACT_INLINE void newtonStep(const LaneMatrix& S, LaneQuaternion& q, Mask& active, Mask& failed) {
+  const Lanes ax = S.m[5] - S.m[7], ay = S.m[6] - S.m[2], az = S.m[1] - S.m[3];
+  const Lanes trace = S.m[0] + S.m[4] + S.m[8];
+  const Lanes dx = trace - S.m[0], dy = trace - S.m[4], dz = trace - S.m[8];
+  const Lanes ox = -0.5 * (S.m[5] + S.m[7]), oy = -0.5 * (S.m[6] + S.m[2]), oz = -0.5 * (S.m[1] + S.m[3]);
+  const Lanes mx = dy * dz - ox * ox, my = dx * dz - oy * oy, mz = dx * dy - oz * oz;
+  const Lanes nx = oy * oz - ox * dx, ny = ox * oz - oy * dy, nz = ox * oy - oz * dz;
+  const Lanes determinant = dx * mx + oz * nz + oy * ny;
+  const Lanes axial_squared = ax * ax + ay * ay + az * az;
+  const Lanes scale = 0.5 / determinant;
+  const Lanes hx = scale * (mx * ax + nz * ay + ny * az);
+  const Lanes hy = scale * (nz * ax + my * ay + nx * az);
+  const Lanes hz = scale * (ny * ax + nx * ay + mz * az);
+  const Lanes squared = hx * hx + hy * hy + hz * hz;
+  const Mask trusted = (dx > 0.0) & (mz > 0.0) & (determinant > 0.0) & (squared < 0.25);
+  failed |= active & ~trusted;
+  const Mask move = active & trusted & (axial_squared >= 1e-31 * trace * trace);
+  // q (1, h), its length brought back towards 1 by one Newton step of the inverse square root.
+  const Lanes w = q.w - q.x * hx - q.y * hy - q.z * hz;
+  const Lanes x = q.x + q.w * hx + q.y * hz - q.z * hy;
+  const Lanes y = q.y + q.w * hy + q.z * hx - q.x * hz;
+  const Lanes z = q.z + q.w * hz + q.x * hy - q.y * hx;
+  const Lanes shrink = 1.5 - 0.5 * (w * w + x * x + y * y + z * z);
+  q.w = move ? w * shrink : q.w;
+  q.x = move ? x * shrink : q.x;
+  q.y = move ? y * shrink : q.y;
+  q.z = move ? z * shrink : q.z;
+  active = move & (squared >= 0.25e-14);
+}
+
+/// The slow, always right way for the lanes in `failed`.
+__attribute__((noinline)) void rotateBySvd(const LaneMatrix& F, const Mask& failed, LaneQuaternion& q) {
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (failed[lane] == 0) continue;
+    Matrix3 gradient;
+    for (int i = 0; i < 9; ++i) gradient.data()[i] = F.m[i][lane];
+    const Quaternion rotation = nearestRotation(gradient, Quaternion::Identity());
+    q.w[lane] = rotation.w();
+    q.x[lane] = rotation.x();
+    q.y[lane] = rotation.y();
+    q.z[lane] = rotation.z();
+  }
+}
+
+/// Newton from the last rotation; leaves R and S = R'F of the answer.
+TISSUE_CONTACT_INLINE void updateRotation(const LaneMatrix& F, LaneQuaternion& q, LaneMatrix& R, LaneMatrix& S) {
+  constexpr int kMaxSteps = 8;
+  Mask active = {-1, -1, -1, -1};
+  Mask failed = {0, 0, 0, 0};
+  for (int step = 0; step < kMaxSteps && any(active); ++step) {
+    rotationMatrix(q, R);
+    rotateBack(R, F, S);
+    newtonStep(S, q, active, failed);
+  }
+  failed |= active;
+  if (any(failed)) rotateBySvd(F, failed, q);
+  rotationMatrix(q, R);
+  rotateBack(R, F, S);
+}
+
+/// Forces -V P grad N of stress P = 2 mu e + lambda tr(e) I, turned by R when there is one, added to the nodes.
+TISSUE_CONTACT_INLINE void addForces(const ElementBatch& batch, const KernelMaterial& material, const LaneMatrix* R,
+                                     const LaneMatrix& S, double* forces) {
+  LaneMatrix P;
+  const Lanes pressure = material.lame_lambda * (S.m[0] + S.m[4] + S.m[8] - 3.0);
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < 3; ++r) P.m[r + 3 * c] = material.lame_mu * (S.m[r + 3 * c] + S.m[c + 3 * r]);
+    P.m[4 * c] += pressure - 2.0 * material.lame_mu;
+  }
+  LaneMatrix turned;
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < 3; ++r) {
+      turned.m[r + 3 * c] = R == nullptr
+                                ? P.m[r + 3 * c]
+                                : R->m[r] * P.m[3 * c] + R->m[r + 3] * P.m[3 * c + 1] + R->m[r + 6] * P.m[3 * c + 2];
+    }
+  }
+  Lanes volume;
+  load(batch.volume, volume);
+  Lanes H[9];
+  for (int node = 0; node < 3; ++node) {
+    Lanes g0, g1, g2;  // grad N of node + 1: row of D_rest^-1
+    load(batch.rest_inverse[node], g0);
+    load(batch.rest_inverse[node + 3], g1);
+    load(batch.rest_inverse[node + 6], g2);
+    for (int r = 0; r < 3; ++r) {
+      H[r + 3 * node] = -volume * (turned.m[r] * g0 + turned.m[r + 3] * g1 + turned.m[r + 6] * g2);
+    }
+  }
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Tetrahedron& nodes = batch.nodes[lane];
+    double* const f0 = forces + 3 * static_cast<std::ptrdiff_t>(nodes[0]);
+    for (int node = 0; node < 3; ++node) {
+      double* const f = forces + 3 * static_cast<std::ptrdiff_t>(nodes[node + 1]);
+      for (int r = 0; r < 3; ++r) {
+        f[r] += H[r + 3 * node][lane];
+        f0[r] -= H[r + 3 * node][lane];
+      }
+    }
+  }
+}
+
+/// |vec(q conj(t))| = sin(angle/2) |q| |t|.
+TISSUE_CONTACT_INLINE unsigned char turnedLanes(const LaneQuaternion& q, const LaneQuaternion& t, double angle) {
+  const Lanes x = q.x * t.w - q.w * t.x - q.y * t.z + q.z * t.y;
+  const Lanes y = q.y * t.w - q.w * t.y - q.z * t.x + q.x * t.z;
+  const Lanes z = q.z * t.w - q.w * t.z - q.x * t.y + q.y * t.x;
+  const Lanes q_squared = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  const Lanes t_squared = t.w * t.w + t.x * t.x + t.y * t.y + t.z * t.z;
+  const Mask turned = x * x + y * y + z * z > 0.25 * angle * angle * q_squared * t_squared;
+  unsigned char bits = 0;
+  for (int lane = 0; lane < kLanes; ++lane) bits |= static_cast<unsigned char>(turned[lane] != 0 ? 1u << lane : 0u);
+  return bits;
+}
+
+}  // namespace
+
+TISSUE_CONTACT_CLONES
+void addCorotationalForces(const std::vector<ElementBatch>& batches, const KernelMaterial& material,
+                           double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
+                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces) {
+  for (std::size_t b = 0; b < batches.size(); ++b) {
+    LaneMatrix F, R, S;
+    LaneQuaternion q, t;
+    deformationGradients(batches[b], x, F);
+    loadQuaternion(rotations[b], q);
+    loadQuaternion(tangents[b], t);
+    updateRotation(F, q, R, S);
+    addForces(batches[b], material, &R, S, forces);
+    store(q.w, rotations[b][0]);
+    store(q.x, rotations[b][1]);
+    store(q.y, rotations[b][2]);
+    store(q.z, rotations[b][3]);
+    turned[b] = turnedLanes(q, t, tangent_angle);
+  }
+}
+
+TISSUE_CONTACT_CLONES
+void addLinearForces(const std::vector<ElementBatch>& batches, const KernelMaterial& material, const double* x,
+                     double* forces) {
+  for (const ElementBatch& batch : batches) {
+    LaneMatrix F;
+    deformationGradients(batch, x, F);
+    addForces(batch, material, nullptr, F, forces);
+  }
+}
+
+}  // namespace tissue_contact
