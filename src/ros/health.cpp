@@ -75,7 +75,7 @@ bool Health::noteStep(const PlayedSample& played) {
 }
 
 std::int64_t Health::troubles() const {
-  std::int64_t sum = player_.gaps() + jump_count_ + not_finite_count_ + not_converged_count_;
+  std::int64_t sum = player_.gaps() + jump_count_ + not_finite_count_;
   for (int v = 1; v < kVerdictCount; ++v) sum += player_.count(static_cast<Verdict>(v));
   return sum;
 }
@@ -88,7 +88,7 @@ void Health::fill(diagnostic_updater::DiagnosticStatusWrapper& status) {
   if (broken_) {
     status.summary(Level::ERROR, "a step gave no finite answer");
   } else if (any_new) {
-    status.summary(Level::WARN, "joint states refused or cut short, or steps not converged");
+    status.summary(Level::WARN, "joint states refused, or motion cut short");
   } else {
     status.summary(Level::OK, player_.count(Verdict::kAccepted) > 0 ? "running" : "no joint state yet");
   }

@@ -25,8 +25,9 @@ class Health {
   /// @param stepped whether this sample moved the simulator forward. @return whether the result may be published.
   bool note(const PlayedSample& played, bool stepped);
 
-  /// Summary and counts. OK; WARN when something was refused, cut short or did not converge since the last call; ERROR
-  /// when a step gave no finite answer since the last reset.
+  /// Summary and counts. OK; WARN when a joint state was refused, or a gap or jump was cut short, since the last call;
+  /// ERROR when a step gave no finite answer since the last reset. Steps that used up their iterations are counted but
+  /// are no alarm: a fixed budget per step is how the solver keeps real time.
   void fill(diagnostic_updater::DiagnosticStatusWrapper& status);
 
  private:

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <optional>
 
 namespace tissue_contact {
 
@@ -18,19 +17,21 @@ class MessageTimeRate {
   /// Whether a message is due at this stamp (ns). Due times lie on a grid that starts at the first stamp asked for, so
   /// the mean rate holds although stamps fall between; stamps must not go back without reset().
   bool due(std::int64_t stamp_ns) {
-    if (off_ || (next_ns_ && stamp_ns < *next_ns_)) return false;
-    if (!next_ns_) next_ns_ = stamp_ns;
-    if (period_ns_ > 0) *next_ns_ += ((stamp_ns - *next_ns_) / period_ns_ + 1) * period_ns_;
+    if (off_ || (started_ && stamp_ns < next_ns_)) return false;
+    if (!started_) next_ns_ = stamp_ns;
+    started_ = true;
+    if (period_ns_ > 0) next_ns_ += ((stamp_ns - next_ns_) / period_ns_ + 1) * period_ns_;
     return true;
   }
 
   /// The next stamp is due whatever it is (time went backwards).
-  void reset() { next_ns_.reset(); }
+  void reset() { started_ = false; }
 
  private:
   std::int64_t period_ns_;
   bool off_;
-  std::optional<std::int64_t> next_ns_;
+  bool started_ = false;
+  std::int64_t next_ns_ = 0;  ///< valid when started
 };
 
 }  // namespace tissue_contact
