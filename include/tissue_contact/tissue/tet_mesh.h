@@ -16,17 +16,23 @@ struct TetMesh {
 };
 
 /// Structured block: (cells+1) nodes per axis, x fastest; 5 tetrahedra per cell, mirrored in every other cell so that
-/// faces match and no direction is preferred; spacing graded as described. @throws std::invalid_argument for bad sizes.
+/// faces match and no direction is preferred; spacing graded as described. The outer nodes lie exactly on the faces,
+/// and even or centred spacing is symmetric to the last bit. @throws std::invalid_argument for a size or growth out of
+/// range, more than a million cells, or growth that makes the longest cell over a million times the shortest.
 TetMesh makeBlockMesh(const BlockDescription& block);
 
-/// Reads Gmsh .msh (2.x, 4.0, 4.1; ASCII and binary) or legacy VTK (ASCII and binary). Elements other than tetrahedra
-/// are ignored. Coordinates are multiplied by the scale. Node and element order is the file's.
-/// @throws std::invalid_argument naming file and line or byte: truncated, counts that do not fit the file, unknown format.
+/// Reads Gmsh .msh (2.x, 4.0, 4.1) or legacy VTK (1 to 5), ASCII and binary; the contents decide which, not the name.
+/// Other elements than tetrahedra are skipped; tetrahedra of higher order are refused. Coordinates are multiplied by
+/// the scale. Node and element order is the file's; unreferenced nodes are dropped if the description says so, else
+/// kept for checkTetMesh to name. The result has finite nodes, indices in range and a tetrahedron at least: whether it
+/// is fit for elasticity, checkTetMesh tells. Memory follows the file's size (1 GiB at most).
+/// @throws std::invalid_argument naming the file, the line (ASCII) or byte (binary) and the fix.
 TetMesh loadTetMesh(const MeshDescription& description);
 
 /// Refuses what the elasticity cannot use. @throws std::invalid_argument naming `source` and the 0-based index: no
-/// tetrahedra, non-finite node, node index out of range, inverted or zero-volume element, two elements with the same four
-/// nodes, a node that no element uses.
+/// tetrahedra, non-finite node, node index out of range, inverted or zero-volume element (volume at most 1e-12 of the
+/// element's longest edge cubed, whatever the unit), two elements with the same four nodes, a node that no element
+/// uses.
 void checkTetMesh(const TetMesh& mesh, const std::string& source);
 
 /// Signed volume (m^3) of a tetrahedron.
@@ -36,7 +42,10 @@ double signedVolume(const NodalVectors& x, const Tetrahedron& tet);
 /// @throws std::invalid_argument when a face belongs to more than two tetrahedra.
 std::vector<Triangle> boundaryTriangles(const std::vector<Tetrahedron>& tetrahedra);
 
-/// For each node whether any of the regions holds it. @throws std::invalid_argument when a region holds no node.
+/// For each node whether any of the regions holds it. Boundaries count as inside, and a node within 1e-9 of the
+/// diagonal of the mesh's bounding box counts as on the boundary, since neither coordinates nor regions are free of
+/// rounding.
+/// @throws std::invalid_argument naming `source`, the region and the mesh's bounding box when a region holds no node.
 std::vector<bool> fixedNodes(const NodalVectors& positions, const std::vector<FixedRegion>& regions,
                              const std::string& source);
 

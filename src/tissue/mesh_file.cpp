@@ -1,0 +1,120 @@
+/// @file
+/// Room `tissue`: loadTetMesh: file and scale in, tetrahedral mesh in metres out; the formats are in gmsh_*.cpp,
+/// vtk_*.cpp.
+///
+/// Own readers, on purpose. Gmsh's library is GPL-2+, loads 91 shared libraries at each start, and its VTK reader drops
+/// unreferenced nodes in silence, whereas a user must learn which they are. VTK is larger still. Neither bounds what a
+/// damaged file makes it allocate nor names the line or byte at fault.
+#include "tissue/mesh_file.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "tissue_contact/core/check.h"
+#include "tissue_contact/tissue/tet_mesh.h"
+
+namespace tissue_contact {
+namespace {
+
+// 1 GiB is some 10 million nodes as text: far beyond what can be simulated, and small enough to hold in memory.
+constexpr std::uintmax_t kMaximumFileBytes = std::uintmax_t{1} << 30U;
+
+std::string readWholeFile(const std::string& file) {
+  std::error_code error;
+  // Anything else (a directory, a pipe, /dev/zero) might block or never end.
+  if (!std::filesystem::is_regular_file(file, error)) {
+    throw std::invalid_argument("mesh file '" + file + "' does not exist or is no regular file; check the path");
+  }
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (error) throw std::invalid_argument("mesh file '" + file + "': " + error.message());
+  if (size > kMaximumFileBytes) {
+    throw std::invalid_argument("mesh file '" + file + "' has " + std::to_string(size) +
+                                " bytes; it must have at most " + std::to_string(kMaximumFileBytes) +
+                                "; use a coarser mesh");
+  }
+  std::string bytes(size, '\0');
+  std::ifstream in(file, std::ios::binary);
+  if (!in || !in.read(bytes.data(), static_cast<std::streamsize>(size))) {
+    throw std::invalid_argument("mesh file '" + file + "' cannot be read; check its permissions");
+  }
+  return bytes;
+}
+
+MeshFileContents readContents(const std::string& file) {
+  std::string bytes = readWholeFile(file);
+  const bool gmsh = !bytes.empty() && bytes[0] == '$';
+  const bool vtk = bytes.rfind("# vtk ", 0) == 0;
+  const bool xml = !bytes.empty() && bytes[0] == '<';
+  const std::string start = quoted(std::string_view(bytes).substr(0, bytes.find_first_of("\r\n")));
+  MeshFileCursor in(file, std::move(bytes));
+  if (gmsh) return readGmsh(in);
+  if (vtk) return readVtk(in);
+  if (in.atEnd()) in.fail("the file is empty; it must hold a Gmsh .msh or a legacy VTK mesh");
+  in.fail("the file starts with " + start +
+          ", which is neither Gmsh .msh ('$MeshFormat') nor legacy VTK ('# vtk DataFile Version')" +
+          (xml ? "; XML (.vtu) is not read: save it as legacy VTK" : "; convert it to one of these"));
+}
+
+void removeUnreferencedNodes(MeshFileContents& contents) {
+  std::vector<int> new_index(contents.nodes.size(), -1);
+  for (const Tetrahedron& tet : contents.tetrahedra) {
+    for (const int node : tet) new_index[static_cast<std::size_t>(node)] = 0;
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < contents.nodes.size(); ++i) {
+    if (new_index[i] < 0) continue;
+    contents.nodes[kept] = contents.nodes[i];
+    new_index[i] = static_cast<int>(kept++);
+  }
+  contents.nodes.resize(kept);
+  for (Tetrahedron& tet : contents.tetrahedra) {
+    for (int& node : tet) node = new_index[static_cast<std::size_t>(node)];
+  }
+}
+
+NodalVectors scaled(const MeshFileContents& contents, const MeshDescription& description) {
+  NodalVectors positions(3, static_cast<Eigen::Index>(contents.nodes.size()));
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+    positions.col(i) = description.scale_m_per_unit * contents.nodes[static_cast<std::size_t>(i)];
+    if (!positions.col(i).allFinite()) {
+      throw std::invalid_argument("mesh file '" + description.file + "': node " + std::to_string(i) +
+                                  " is not finite after scaling; reduce scale_m_per_unit");
+    }
+  }
+  return positions;
+}
+
+}  // namespace
+
+Vector3 readNode(MeshFileCursor& in, int bytes, std::size_t index) {
+  static constexpr const char* kNames[] = {"a node's x", "a node's y", "a node's z"};
+  Vector3 node;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    node[axis] = in.real(bytes, kNames[axis]);
+    if (!std::isfinite(node[axis])) {
+      in.fail("node " + std::to_string(index) + " (0-based, in file order) has the coordinate " +
+              std::to_string(node[axis]) + "; coordinates must be finite: repair the mesh");
+    }
+  }
+  return node;
+}
+
+TetMesh loadTetMesh(const MeshDescription& description) {
+  requirePositive("scale_m_per_unit of mesh file '" + description.file + "'", description.scale_m_per_unit, "m");
+  MeshFileContents contents = readContents(description.file);
+  if (contents.tetrahedra.empty()) {
+    throw std::invalid_argument("mesh file '" + description.file + "' holds no tetrahedra (" +
+                                std::to_string(contents.nodes.size()) + " nodes, " +
+                                std::to_string(contents.other_elements) +
+                                " elements of other kinds); mesh its volume, for instance with gmsh -3");
+  }
+  if (description.remove_unreferenced_nodes) removeUnreferencedNodes(contents);
+  return {scaled(contents, description), std::move(contents.tetrahedra)};
+}
+
+}  // namespace tissue_contact
