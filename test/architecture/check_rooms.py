@@ -3,7 +3,7 @@
 
 1. A room includes itself, `core` and rooms above it in ROOMS, never below.
 2. Only `ros` may include ROS; the other rooms include the standard library, Eigen and, in sources and private headers
-   only (src/), the libraries in PRIVATE_LIBRARIES.
+   only (src/), PRIVATE_LIBRARIES and OPERATING_SYSTEM.
 3. The core library links nothing but LINKED: ROS headers and libraries lie in the system's own directories, so the
    compiler and linker would not object.
 """
@@ -16,6 +16,7 @@ import sys
 
 ROOMS = ["core", "scene", "instrument", "tissue", "contact", "friction", "solver", "simulation", "ros"]
 PRIVATE_LIBRARIES = {"fcl", "urdf_model", "urdf_parser", "urdf_world", "console_bridge", "assimp", "yaml-cpp"}
+OPERATING_SYSTEM = {"fcntl.h", "sys", "unistd.h"}
 LINKED = re.compile(r"^(lib(fcl|urdfdom_model|console_bridge|assimp|yaml-cpp|stdc\+\+|gcc_s|m|c)|ld-linux.*)\.so(\.[0-9.]+)?$")
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
@@ -47,7 +48,7 @@ def include_violation(room, is_public, quote, target):
         return None
     if len(parts) == 1 and "." not in target:
         return None  # standard library
-    if parts[0] not in PRIVATE_LIBRARIES:
+    if parts[0] not in PRIVATE_LIBRARIES | OPERATING_SYSTEM:
         return f"room '{room}' may use Eigen, {', '.join(sorted(PRIVATE_LIBRARIES))} and the standard library"
     return f"'{parts[0]}' in a public header; only sources and headers below src/ may use it" if is_public else None
 
