@@ -1,0 +1,297 @@
+#!/usr/bin/python3
+"""Plays a bag into tissue_contact_node and plots the force it gives: what launch/*.launch run beside the node.
+
+Waits for the node, plays those topics of the bag that the node listens to, and writes into the output folder
+  <instrument>_force.png     force on the instrument over time, in its tip frame
+  <instrument>_friction.png  tangential over normal contact force (sums over contacts) over time
+Prints one line per second where there is no display. With --show it first waits for RViz, and repeats the bag until
+RViz is closed.
+"""
+import argparse
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy
+import rosbag
+import rosgraph
+import roslib.packages
+import rospy
+import yaml
+from geometry_msgs.msg import WrenchStamped
+from sensor_msgs.msg import JointState
+
+from tissue_contact.msg import ContactArray, ContactPoint, TissueMesh, TissueTopology
+
+QUIET_S = 10.0  # so long after the last joint state the node has either answered or never will
+RVIZ_START_S = 30.0
+
+
+def fail(message):
+    sys.exit("play_and_plot.py: " + message)
+
+
+def vector(v):
+    return numpy.array([v.x, v.y, v.z])
+
+
+class Graph:
+    """What the master knows about the node."""
+
+    def __init__(self, node):
+        self._node = node
+        self._master = rosgraph.Master(rospy.get_name())
+
+    def _topics(self, kind):
+        return sorted(topic for topic, nodes in self._master.getSystemState()[kind] if self._node in nodes)
+
+    def published(self):
+        return self._topics(0)
+
+    def heard(self):
+        """Joint-state topics the node listens to, once they are complete: the same in two looks."""
+        types = dict(self._master.getTopicTypes())
+        before = None
+        while not rospy.is_shutdown():
+            now = [topic for topic in self._topics(1) if types.get(topic) == JointState._type]
+            if now and now == before:
+                return now
+            before = now
+            types = dict(self._master.getTopicTypes())
+            rospy.rostime.wallsleep(0.1)
+        return []
+
+    def is_shown(self):
+        """Whether RViz listens to the node's markers."""
+        return any(topic == self._node + "/markers" for topic, _ in self._master.getSystemState()[1])
+
+
+class Recorder:
+    """Collects what the node publishes; all times are of the messages."""
+
+    def __init__(self, node, graph, joint_topics):
+        self.lock = threading.Lock()
+        self.forces = {}  # instrument -> list of (time, force in the tip frame)
+        self.ratios = {}  # instrument -> list of (time, sum |Ft|, sum Fn)
+        self.last_joint_state = None
+        self.last_wrench = None
+        self.last_contacts = None
+        self.open = True  # until the first pass is over
+        self._rest = {}
+        self._meshes = {}
+        for topic in joint_topics:
+            rospy.Subscriber(topic, JointState, self._take_joint_state, tcp_nodelay=True)
+        for topic in graph.published():
+            name = topic[len(node) + 1:]
+            if name.endswith("/wrench"):
+                rospy.Subscriber(topic, WrenchStamped, self._take_wrench, name[:-len("/wrench")], tcp_nodelay=True)
+            elif name.endswith("/topology"):
+                rospy.Subscriber(topic, TissueTopology, self._take_topology)
+            elif name.endswith("/mesh"):
+                rospy.Subscriber(topic, TissueMesh, self._take_mesh)
+        rospy.Subscriber(node + "/contacts", ContactArray, self._take_contacts, tcp_nodelay=True)
+
+    def _take_joint_state(self, message):
+        with self.lock:
+            self.last_joint_state = message.header.stamp
+
+    def _take_wrench(self, message, instrument):
+        with self.lock:
+            self.last_wrench = message.header.stamp
+            if self.open:
+                self.forces.setdefault(instrument, []).append(
+                    (message.header.stamp.to_sec(), vector(message.wrench.force)))
+
+    def _take_contacts(self, message):
+        sums = {}
+        for contact in message.contacts:
+            force = vector(contact.force)
+            normal = vector(contact.normal)
+            along = force.dot(normal)
+            tangential, pressing = sums.get(contact.instrument, (0.0, 0.0))
+            sums[contact.instrument] = (tangential + numpy.linalg.norm(force - along * normal), pressing + along)
+        with self.lock:
+            self.last_contacts = message
+            for instrument, (tangential, pressing) in sums.items() if self.open else ():
+                self.ratios.setdefault(instrument, []).append((message.header.stamp.to_sec(), tangential, pressing))
+
+    def _take_topology(self, message):
+        with self.lock:
+            self._rest[message.tissue] = message.rest_positions
+
+    def _take_mesh(self, message):
+        with self.lock:
+            self._meshes[message.tissue] = message.positions
+
+    def is_answered(self):
+        """Whether the newest joint state heard has its wrench."""
+        with self.lock:
+            return self.last_joint_state is not None and self.last_joint_state == self.last_wrench
+
+    def line(self):
+        """One line on how things are now."""
+        with self.lock:
+            forces = {name: samples[-1][1] for name, samples in self.forces.items()}
+            begin = min((samples[0][0] for samples in self.forces.values()), default=0.0)
+            now = self.last_wrench.to_sec() - begin if self.last_wrench else 0.0
+            contacts = self.last_contacts.contacts if self.last_contacts else []
+            meshes = [(self._rest[name], mesh) for name, mesh in self._meshes.items() if name in self._rest]
+        deepest = 0.0
+        for rest, mesh in meshes:
+            moved = numpy.array([(p.x - r.x, p.y - r.y, p.z - r.z) for p, r in zip(mesh, rest)])
+            deepest = max(deepest, numpy.linalg.norm(moved, axis=1).max())
+        states = [contact.state for contact in contacts]
+        text = "  ".join("%s %.3f N" % (name, numpy.linalg.norm(force)) for name, force in sorted(forces.items()))
+        return "t %6.2f s  force %s  contacts %d static %d kinetic  deepest displacement %.2f mm" % (
+            now, text or "-", states.count(ContactPoint.STATIC), states.count(ContactPoint.KINETIC), 1e3 * deepest)
+
+
+def plot(recorder, friction, folder):
+    """Writes the pictures; returns their paths."""
+    import matplotlib
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+    os.makedirs(folder, exist_ok=True)
+    written = []
+    for instrument, samples in sorted(recorder.forces.items()):
+        begin = samples[0][0]
+        figure, axes = new_figure(pyplot, "%s: force of the tissue on the instrument" % instrument)
+        times = numpy.array([t for t, _ in samples]) - begin
+        force = numpy.array([f for _, f in samples])
+        axes.plot(times, numpy.linalg.norm(force, axis=1), "k", linewidth=1.5, label="|F|")
+        for axis, name in enumerate("xyz"):
+            axes.plot(times, force[:, axis], linewidth=1.0, label="F%s (tip frame)" % name)
+        axes.set_ylabel("force (N)")
+        written.append(finish(pyplot, figure, axes, times[-1], os.path.join(folder, instrument + "_force.png")))
+
+        ratios = numpy.array(recorder.ratios.get(instrument, []))
+        if not len(ratios) or not ratios[:, 2].max() > 0.0:
+            continue
+        pressed = ratios[:, 2] > 0.01 * ratios[:, 2].max()  # a ratio of two near-zeros says nothing
+        figure, axes = new_figure(pyplot, "%s: friction used by the contacts" % instrument)
+        axes.plot(ratios[pressed, 0] - begin, ratios[pressed, 1] / ratios[pressed, 2], ".", markersize=4,
+                  label="Σ|Ft| / ΣFn")
+        for tissue, static, kinetic in friction.get(instrument, []):
+            axes.axhline(static, color="tab:red", linestyle="--", linewidth=1.0, label="μ static (%s)" % tissue)
+            axes.axhline(kinetic, color="tab:green", linestyle=":", linewidth=1.5, label="μ kinetic (%s)" % tissue)
+        axes.set_ylabel("tangential / normal force (-)")
+        axes.set_ylim(bottom=0.0)
+        written.append(finish(pyplot, figure, axes, times[-1], os.path.join(folder, instrument + "_friction.png")))
+    return written
+
+
+def new_figure(pyplot, title):
+    figure, axes = pyplot.subplots(figsize=(9.0, 4.5), dpi=120)
+    axes.set_title(title)
+    axes.set_xlabel("time since the first joint state (s)")
+    axes.grid(True, alpha=0.3)
+    return figure, axes
+
+
+def finish(pyplot, figure, axes, end, path):
+    axes.set_xlim(0.0, max(end, 1e-3))
+    axes.legend(loc="best", fontsize=9)
+    figure.tight_layout()
+    figure.savefig(path)
+    pyplot.close(figure)
+    return path
+
+
+def friction_of(scene_file):
+    """instrument -> [(tissue, static, kinetic)] as the scene says it; only for lines in the plot."""
+    table = {}
+    with open(scene_file, encoding="utf-8") as stream:
+        for pair in (yaml.safe_load(stream) or {}).get("friction") or []:
+            table.setdefault(pair["instrument"], []).append((pair["tissue"], pair["static"], pair["kinetic"]))
+    return table
+
+
+def bag_topics(file):
+    try:
+        with rosbag.Bag(file) as bag:
+            return set(bag.get_type_and_topic_info().topics)
+    except (OSError, rosbag.ROSBagException) as error:
+        fail("bag %s cannot be read: %s" % (file, error))
+
+
+def start_player(arguments, topics, loop):
+    """rosbag play as a child that ends with us."""
+    player = roslib.packages.find_node("rosbag", "play")
+    if not player:
+        fail("rosbag play is not installed")
+    command = [player[0], "--quiet", "--wait-for-subscribers", "--queue", "100000", "--rate", str(arguments.rate)]
+    command += (["--loop"] if loop else []) + [arguments.bag, "--topics"] + topics
+    child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    rospy.on_shutdown(lambda: child.poll() is None and child.send_signal(signal.SIGTERM))
+    return child
+
+
+def watch(recorder, is_over, talk):
+    """Until is_over() or shutdown, with a line per second if `talk`."""
+    next_line = time.monotonic() + 1.0
+    while not rospy.is_shutdown() and not is_over():
+        rospy.rostime.wallsleep(0.02)
+        if talk and time.monotonic() >= next_line:
+            next_line += 1.0
+            print(recorder.line(), flush=True)
+
+
+def wait_quietly(condition, limit_s):
+    """Whether condition() came true within the limit."""
+    end = time.monotonic() + limit_s
+    while not rospy.is_shutdown() and not condition() and time.monotonic() < end:
+        rospy.rostime.wallsleep(0.05)
+    return condition()
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--bag", required=True)
+    parser.add_argument("--output", required=True, help="folder for the plots; made if it does not exist")
+    parser.add_argument("--node", default="/tissue_contact", help="default: %(default)s")
+    parser.add_argument("--rate", type=float, default=1.0, help="playback speed, default: %(default)s")
+    parser.add_argument("--show", action="store_true", help="wait for RViz and repeat the bag until it is closed")
+    return parser.parse_args(rospy.myargv()[1:])
+
+
+def main():
+    arguments = parse_arguments()
+    in_bag = bag_topics(arguments.bag)
+    rospy.init_node("play_and_plot")
+    graph = Graph(arguments.node)
+    heard = graph.heard()
+    topics = [topic for topic in heard if topic in in_bag]
+    if rospy.is_shutdown():
+        return
+    if not topics:
+        fail("%s has no message on %s; its topics are: %s" %
+             (arguments.bag, ", ".join(heard), ", ".join(sorted(in_bag))))
+    shown = arguments.show and shutil.which("rviz") is not None and wait_quietly(graph.is_shown, RVIZ_START_S)
+    recorder = Recorder(arguments.node, graph, topics)
+    child = start_player(arguments, topics, loop=False)
+    watch(recorder, lambda: child.poll() is not None, talk=not shown)
+    if not rospy.is_shutdown() and child.returncode != 0:
+        fail("rosbag play ended with exit code %s" % child.returncode)
+    answered = wait_quietly(recorder.is_answered, QUIET_S)
+    recorder.open = False
+    if rospy.is_shutdown():
+        return
+    print(recorder.line(), flush=True)
+    if not recorder.forces:
+        fail("the node gave no wrench; its warnings say why")
+    if not answered:
+        print("the last joint state has no wrench; the node's warnings say why", flush=True)
+    for path in plot(recorder, friction_of(rospy.get_param(arguments.node + "/scene")), arguments.output):
+        print("wrote " + path, flush=True)
+    if shown and graph.is_shown():
+        print("repeating the bag until RViz is closed", flush=True)
+        start_player(arguments, topics, loop=True)
+        watch(recorder, lambda: not graph.is_shown(), talk=False)
+
+
+if __name__ == "__main__":
+    main()

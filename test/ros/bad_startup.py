@@ -1,0 +1,127 @@
+#!/usr/bin/python3
+"""Every start-up that cannot work ends with one fatal message that names the fault, and an exit code other than 0."""
+import os
+import shutil
+import sys
+import tempfile
+import unittest
+
+import rosgraph
+import rospy
+import rostest
+
+import harness
+
+MESH_URDF = """<robot name="m"><link name="base"/><link name="tip"><collision><geometry>
+<mesh filename="no_such_mesh.stl"/></geometry></collision></link><joint name="x" type="prismatic"><parent link="base"/>
+<child link="tip"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"""
+
+
+class BadStartup(unittest.TestCase):
+    def setUp(self):
+        self.directory = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.directory)
+        with open(harness.SCENE, encoding="utf-8") as stream:
+            self.scene = stream.read()
+
+    def write(self, name, text):
+        path = os.path.join(self.directory, name)
+        with open(path, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        return path
+
+    def changed(self, old, new):
+        self.assertEqual(self.scene.count(old), 1, old)
+        return self.write("scene.yaml", self.scene.replace(old, new))
+
+    def with_urdf(self, text):
+        self.write("robot.urdf", text)
+        return self.changed("package://tissue_contact/urdf/probe.urdf", "robot.urdf")
+
+    def assert_refused(self, arguments, *words):
+        command = [harness.program("tissue_contact_node"), "__name:=tissue_contact"] + list(arguments)
+        with harness.running(command) as node:
+            harness.wait_until(lambda: node.poll() is not None, "the end of the node")
+            self.assertGreater(node.returncode, 0)  # an exit code, not a signal
+            node.output.seek(0)
+            output = node.output.read()
+        self.assertEqual(output.count("[FATAL]"), 1, output)
+        for word in words:
+            self.assertIn(word, output)
+        publishers = rosgraph.Master("/test").getSystemState()[0]
+        self.assertEqual([topic for topic, nodes in publishers if topic.startswith("/tissue_contact/")], [])
+
+    def assert_scene_refused(self, path, *words):
+        self.assert_refused(["_scene:=" + path], path, *words)
+
+    def test_scene_parameter_missing(self):
+        self.assert_refused([], "/tissue_contact/scene", "_scene:=")
+
+    def test_scene_parameter_is_no_text(self):
+        self.assert_refused(["_scene:=3"], "/tissue_contact/scene")
+
+    def test_scene_file_missing(self):
+        self.assert_scene_refused(os.path.join(self.directory, "none.yaml"), "/tissue_contact/scene")
+
+    def test_typo_in_a_key(self):
+        self.assert_scene_refused(self.changed("youngs_modulus_pa", "young_modulus_pa"), "young_modulus_pa", "scene.yaml:5")
+
+    def test_unknown_joint_in_the_map(self):
+        path = self.changed("    tip_link: tip\n", "    tip_link: tip\n    joint_names: {outer_yaw: yaaw}\n")
+        self.assert_scene_refused(path, "yaaw", "probe")
+
+    def test_unknown_contact_link(self):
+        self.assert_scene_refused(self.changed("contact_links: [tip]", "contact_links: [jaw]"), "jaw", "probe")
+
+    def test_malformed_urdf(self):
+        self.assert_scene_refused(self.with_urdf("<robot name='x'><link name='base'>"), "robot.urdf")
+
+    def test_urdf_whose_mesh_is_missing(self):
+        self.assert_scene_refused(self.with_urdf(MESH_URDF), "no_such_mesh.stl")
+
+    def test_urdf_file_missing(self):
+        path = self.changed("package://tissue_contact/urdf/probe.urdf", "none.urdf")
+        self.assert_scene_refused(path, "none.urdf")
+
+    def test_unknown_package(self):
+        path = self.changed("package://tissue_contact/urdf/probe.urdf", "package://no_such_package/probe.urdf")
+        self.assert_scene_refused(path, "no_such_package")
+
+    def test_urdf_parameter_missing(self):
+        path = self.changed("urdf: package://tissue_contact/urdf/probe.urdf",
+                            "robot_description: no_description")
+        self.assert_scene_refused(path, "/tissue_contact/no_description", "textfile")
+
+    def test_urdf_parameter_is_no_text(self):
+        path = self.changed("urdf: package://tissue_contact/urdf/probe.urdf",
+                            "robot_description: number_description")
+        self.assert_refused(["_scene:=" + path, "_number_description:=7"], "number_description", "not a string")
+
+    def test_malformed_urdf_parameter(self):
+        path = self.changed("urdf: package://tissue_contact/urdf/probe.urdf",
+                            "robot_description: bad_description")
+        rospy.set_param("/bad_description", "<robot")
+        self.assert_scene_refused(path, "bad_description")
+
+    def test_unknown_tf_frame(self):
+        path = self.changed("position_m: [0, 0, 0.026]", "position_m: [0, 0, 0.026], tf_frame: nowhere")
+        self.assert_refused(["_scene:=" + path, "_tf_timeout_s:=0.2"], "nowhere", "tf_timeout_s")
+
+    def test_bad_tf_timeout(self):
+        for bad in ["-1.0", "soon"]:
+            self.assert_refused(["_scene:=" + harness.SCENE, "_tf_timeout_s:=" + bad], "tf_timeout_s")
+        rospy.delete_param("/tissue_contact/tf_timeout_s")
+
+    def test_bad_marker_scale(self):
+        self.assert_refused(["_scene:=" + harness.SCENE, "_markers/displacement_full_scale_m:=0.0"],
+                            "displacement_full_scale_m")
+        rospy.delete_param("/tissue_contact/markers")
+
+    def tearDown(self):
+        if rospy.has_param("/tissue_contact/scene"):
+            rospy.delete_param("/tissue_contact/scene")
+
+
+if __name__ == "__main__":
+    rospy.init_node("bad_startup")
+    rostest.rosrun("tissue_contact", "bad_startup", BadStartup, sys.argv)

@@ -1,0 +1,41 @@
+#!/usr/bin/python3
+"""A bag gives the same bits at any playback rate, through the node and offline."""
+import os
+import shutil
+import sys
+import tempfile
+import unittest
+
+import rospy
+import rostest
+
+import harness
+
+
+class PlaybackRates(unittest.TestCase):
+    def test_node_and_replay_agree_to_the_last_bit(self):
+        directory = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, directory)
+        bag = os.path.join(directory, "press.bag")
+        samples = harness.press(200, start_s=1644257420)
+        harness.write_bag(bag, samples)
+
+        digests = {}
+        for run in ["first", "second"]:
+            csv = os.path.join(directory, run + ".csv")
+            code, errors = harness.replay(harness.SCENE, bag, csv)
+            self.assertEqual(code, 0, errors)
+            rows = harness.read_csv(csv)
+            self.assertEqual([stamp for stamp, _, _ in rows], [harness.stamp_text(stamp) for stamp, _ in samples])
+            self.assertEqual({instrument for _, instrument, _ in rows}, {"probe"})
+            self.assertGreater(len({bits for _, _, bits in rows}), 50)  # not all zero
+            digests["replay, %s time" % run] = harness.digest((stamp, bits) for stamp, _, bits in rows)
+        for rate in [1, 5]:
+            digests["node, rate %d" % rate] = harness.digest(harness.play_through_node(
+                harness.SCENE, bag, harness.TOPIC, "/tissue_contact/probe/wrench", len(samples), rate))
+        self.assertEqual(len(set(digests.values())), 1, digests)
+
+
+if __name__ == "__main__":
+    rospy.init_node("playback_rates")
+    rostest.rosrun("tissue_contact", "playback_rates", PlaybackRates, sys.argv)

@@ -1,0 +1,138 @@
+#!/usr/bin/python3
+"""Topology (latched, once), mesh, contacts, status, markers and tf: what they hold and how often they come."""
+import sys
+import unittest
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import WrenchStamped
+from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import Marker, MarkerArray
+
+import harness
+from tissue_contact.msg import ContactArray, ContactPoint, Status, TissueMesh, TissueTopology
+
+NODE = "/tissue_contact/"
+
+
+class Topics(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.samples = harness.press(200)  # 2 s of message time
+        cls.last = cls.samples[-1][0]
+        listeners = {name: harness.Listener(NODE + name, kind) for name, kind in [
+            ("probe/wrench", WrenchStamped), ("block/mesh", TissueMesh), ("contacts", ContactArray), ("status", Status),
+            ("markers", MarkerArray)]}
+        tf = harness.Listener("/tf", TFMessage)
+        diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+        harness.JointSource().send_all(cls.samples)
+        cls.wrenches = listeners["probe/wrench"].wait_for_stamp(cls.last)
+        newest = rospy.Duration.from_sec(0.11)  # the slowest topic comes every 0.1 s
+        for name in ["block/mesh", "contacts", "status"]:
+            listeners[name].wait(lambda all: all and cls.last - all[-1].header.stamp < newest, "the end")
+        listeners["markers"].wait(lambda all: all and cls.last - all[-1].markers[0].header.stamp < newest, "the end")
+        cls.transforms = tf.wait(lambda all: all and all[-1].transforms[0].header.stamp == cls.last, "the last transform")
+        cls.diagnostics = diagnostics.wait(lambda all: all and "200" in str(all[-1]), "200 joint states")[-1]
+        cls.listeners = listeners
+
+    def stamps(self, name):
+        return [m.header.stamp for m in self.listeners[name].messages]
+
+    def test_rates_are_of_message_time(self):
+        for name, rate in [("block/mesh", 20), ("contacts", 50), ("status", 10)]:
+            stamps = self.stamps(name)
+            self.assertEqual(len(stamps), 2 * rate, name)
+            self.assertEqual(stamps[0], self.samples[0][0], name)
+            self.assertEqual(stamps, sorted(stamps), name)
+        # One more than by rate: the scene as it was is shown to whoever subscribes.
+        self.assertEqual(len(self.listeners["markers"].messages), 21)
+
+    def test_topology_is_latched_and_published_once(self):
+        late = harness.Listener(NODE + "block/topology", TissueTopology)
+        topology = late.wait(len, "the latched message")[0]
+        self.assertEqual(topology.header.stamp, self.samples[0][0])
+        self.assertEqual(topology.header.frame_id, "world")
+        self.assertEqual(topology.tissue, "block")
+        nodes = len(topology.rest_positions)
+        self.assertEqual(nodes, 7 * 7 * 3)
+        self.assertEqual(len(topology.tetrahedra), 4 * 5 * 6 * 6 * 2)
+        self.assertLess(max(topology.tetrahedra), nodes)
+        self.assertEqual(len(topology.surface_triangles), 3 * 2 * (2 * 36 + 4 * 12))
+        self.assertEqual([i for i, p in enumerate(topology.rest_positions) if abs(p.z) < 1e-12],
+                         sorted(topology.fixed_nodes))
+        first = self.listeners["block/mesh"].messages[0]
+        self.assertEqual(first.positions, topology.rest_positions)
+        self.assertEqual(first.tissue, "block")
+        self.assertEqual(first.step, 0)
+        pressed = self.listeners["block/mesh"].messages[20]
+        self.assertGreater(max(r.z - p.z for r, p in zip(topology.rest_positions, pressed.positions)), 0.001)
+        again = harness.Listener(NODE + "block/topology", TissueTopology)
+        self.assertEqual(again.wait(len, "the latched message"), [topology])
+        self.assertEqual(late.messages, [topology])
+
+    def test_contacts_add_up_to_the_wrench(self):
+        wrench_at = {w.header.stamp: w.wrench for w in self.wrenches}
+        states = set()
+        for message in self.listeners["contacts"].messages:
+            self.assertEqual(message.header.frame_id, "world")
+            for axis in "xyz":  # the probe's tip keeps the world's axes
+                felt = -sum(getattr(c.force, axis) for c in message.contacts)
+                self.assertAlmostEqual(felt, getattr(wrench_at[message.header.stamp].force, axis), delta=1e-9)
+            for c in message.contacts:
+                self.assertEqual((c.instrument, c.link, c.tissue), ("probe", "tip", "block"))
+                self.assertAlmostEqual(c.normal.x ** 2 + c.normal.y ** 2 + c.normal.z ** 2, 1.0, delta=1e-9)
+                self.assertLess(c.normal.z, 0.0)  # from the probe down into the tissue
+                states.add(c.state)
+        self.assertIn(ContactPoint.KINETIC, states)
+
+    def test_status(self):
+        last = self.listeners["status"].messages[-1]
+        self.assertEqual(last.joint_states_accepted, 191)
+        self.assertEqual(last.joint_states_refused, 0)
+        self.assertEqual((last.resets, last.gaps), (0, 0))
+        self.assertGreaterEqual(last.substeps, 5)  # 10 ms in steps of at most 2 ms
+        self.assertGreaterEqual(last.step, 190 * 5)
+        self.assertGreater(last.step_time, 0.0)
+        self.assertLess(last.step_time, 1.0)
+
+    def test_markers(self):
+        for message in self.listeners["markers"].messages:
+            self.assertEqual({m.header.frame_id for m in message.markers}, {"world"})
+        pressed = self.listeners["markers"].messages[11].markers
+        self.assertEqual({m.ns for m in pressed}, {"block", "probe", "contact_forces"})
+        surface = [m for m in pressed if m.ns == "block"][0]
+        self.assertEqual(surface.type, Marker.TRIANGLE_LIST)
+        self.assertEqual(len(surface.points), 3 * 2 * (2 * 36 + 4 * 12))
+        self.assertEqual(len(surface.colors), len(surface.points))
+        self.assertGreater(len({(c.r, c.g, c.b) for c in surface.colors}), 10)
+        self.assertEqual({m.type for m in pressed if m.ns == "contact_forces"}, {Marker.ARROW})
+
+    def test_tf_leads_from_the_world_to_the_tip(self):
+        self.assertEqual(len(self.transforms), 200)
+        for (stamp, position), message in zip(self.samples, self.transforms):
+            self.assertEqual({t.header.stamp for t in message.transforms}, {stamp})
+            parents = {t.child_frame_id: t for t in message.transforms}
+            frame, x, y, z = "tip", 0.0, 0.0, 0.0
+            while frame != "world":
+                transform = parents[frame]
+                self.assertEqual(transform.transform.rotation.w, 1.0)
+                x += transform.transform.translation.x
+                y += transform.transform.translation.y
+                z += transform.transform.translation.z
+                frame = transform.header.frame_id
+            self.assertAlmostEqual(x, position[0], delta=1e-12)
+            self.assertAlmostEqual(y, position[1], delta=1e-12)
+            self.assertAlmostEqual(z, 0.026 + position[2], delta=1e-12)
+
+    def test_diagnostics(self):
+        status = self.diagnostics.status[0]
+        values = {v.key: v.value for v in status.values}
+        self.assertEqual(status.level, 0, status)
+        self.assertEqual(values["joint states: accepted"], "200")
+        self.assertEqual(values["resets"], "0")
+
+
+if __name__ == "__main__":
+    rospy.init_node("topics")
+    rostest.rosrun("tissue_contact", "topics", Topics, sys.argv)
