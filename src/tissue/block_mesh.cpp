@@ -73,8 +73,8 @@ std::vector<double> axisCoordinates(double low, double size, int cells, const Ax
   }
   const double high = low + size;
   std::vector<double> x(count + 1);
+  // The last quotient is exactly 1, hence the last node exactly on the face.
   for (std::size_t i = 0; i <= count; ++i) x[i] = low + size * (sum[i] / sum[count]);
-  x[count] = high;
   const bool symmetric = grading.growth == 1.0 || grading.fine_at == AxisGrading::FineAt::kCenter;
   for (std::size_t i = 0; symmetric && i <= count / 2; ++i) {
     x[count - i] = 2 * i == count ? 0.5 * (low + high) : (low + high) - x[i];

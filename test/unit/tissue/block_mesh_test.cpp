@@ -69,7 +69,7 @@ TEST(BlockMesh, NodesRunAlongXThenYThenZ) {
 }
 
 TEST(BlockMesh, OuterNodesLieExactlyOnTheFaces) {
-  // 0.3 / 7 and the growth are no binary fractions: only nodes set on purpose are exact.
+  // 0.3 / 7 and the growth are no binary fractions: a running sum of cell lengths would miss the face.
   BlockDescription block = makeBlock({0.3, 0.7, 0.1}, {7, 6, 3});
   for (AxisGrading& grading : block.grading) grading = {1.3, FineAt::kMinimum};
   const TetMesh mesh = makeBlockMesh(block);

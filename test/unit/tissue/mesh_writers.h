@@ -149,8 +149,9 @@ inline std::string msh22Binary(const TetMesh& mesh, bool big_endian) {
   out.text("\n$EndNodes\n$Elements\n" + std::to_string(tets + 1) + "\n");
   out.integer(15, 4).integer(1, 4).integer(2, 4).integer(1, 4).integer(0, 4).integer(0, 4).integer(kTagStep, 4);
   out.integer(4, 4).integer(tets, 4).integer(2, 4);
+  std::int64_t element = 2;
   for (const Tetrahedron& tet : mesh.tetrahedra) {
-    out.integer(2, 4).integer(0, 4).integer(0, 4);
+    out.integer(element++, 4).integer(0, 4).integer(0, 4);
     for (const int node : tet) out.integer(kTagStep * (n - node), 4);
   }
   return out.text("\n$EndElements\n").bytes();
