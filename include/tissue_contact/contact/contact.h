@@ -13,19 +13,21 @@ namespace tissue_contact {
 struct ContactKey {
   int tissue = -1;
   int instrument = -1;
-  int link = -1;    ///< index into Instrument::contactLinks()
-  int shape = -1;   ///< index into ContactLink::shapes
+  int link = -1;   ///< index into Instrument::contactLinks()
+  int shape = -1;  ///< index into ContactLink::shapes
   /// Surface feature as sorted node indices: vertex (a, -1, -1), edge (a, b, -1), face (a, b, c).
   std::array<int, 3> feature = {-1, -1, -1};
   int corner = -1;  ///< corner or vertex of the shape this contact belongs to, -1 for the closest point of the feature
+  /// 0: found in this step; 1 to kKeptPoints: a point of the same feature kept from earlier steps (ContactMemory).
+  int slot = 0;
 
   friend bool operator<(const ContactKey& a, const ContactKey& b) {
-    return std::tie(a.tissue, a.instrument, a.link, a.shape, a.feature, a.corner) <
-           std::tie(b.tissue, b.instrument, b.link, b.shape, b.feature, b.corner);
+    return std::tie(a.tissue, a.instrument, a.link, a.shape, a.feature, a.corner, a.slot) <
+           std::tie(b.tissue, b.instrument, b.link, b.shape, b.feature, b.corner, b.slot);
   }
   friend bool operator==(const ContactKey& a, const ContactKey& b) {
-    return std::tie(a.tissue, a.instrument, a.link, a.shape, a.feature, a.corner) ==
-           std::tie(b.tissue, b.instrument, b.link, b.shape, b.feature, b.corner);
+    return std::tie(a.tissue, a.instrument, a.link, a.shape, a.feature, a.corner, a.slot) ==
+           std::tie(b.tissue, b.instrument, b.link, b.shape, b.feature, b.corner, b.slot);
   }
 };
 
@@ -35,8 +37,9 @@ struct Contact {
   std::array<int, 3> nodes = {0, 0, 0};  ///< tissue nodes of the surface triangle
   Vector3 weights = Vector3::Zero();     ///< barycentric, >= 0, sum 1: the tissue point is sum weights[i] * x[nodes[i]]
   Vector3 p_WC = Vector3::Zero();        ///< tissue point, m
-  Matrix3 R_WC = Matrix3::Identity();    ///< columns (n, t1, t2); n is unit and points from the instrument INTO the tissue
-  double gap_m = 0.0;                    ///< signed distance along n from shape to tissue point; < 0: penetrating
+  Matrix3 R_WC =
+      Matrix3::Identity();  ///< columns (n, t1, t2); n is unit and points from the instrument INTO the tissue
+  double gap_m = 0.0;       ///< signed distance along n from shape to tissue point; < 0: penetrating
 };
 
 }  // namespace tissue_contact

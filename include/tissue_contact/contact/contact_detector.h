@@ -1,5 +1,6 @@
 /// @file
-/// Room `contact`: instrument shapes against deforming tissue surfaces. Surface positions and link poses in, contacts out.
+/// Room `contact`: instrument shapes against deforming tissue surfaces. Surface positions and link poses in, contacts
+/// out.
 #pragma once
 
 #include <memory>
@@ -19,7 +20,11 @@ struct TissueSurface {
 
 class ContactDetector {
  public:
-  /// @param instruments must outlive the detector. @param surfaces one per tissue; @param positions one per tissue (m, W).
+  /// @param instruments must outlive the detector. @param surfaces one per tissue; @param positions one per tissue (m,
+  /// W).
+  /// @throws std::invalid_argument when the sizes differ, a triangle refers to a missing node or twice to the same, or
+  /// a
+  ///   mesh shape has no mesh.
   ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
                   const std::vector<NodalVectors>& positions);
   ~ContactDetector();
@@ -27,10 +32,19 @@ class ContactDetector {
   ContactDetector& operator=(ContactDetector&&) noexcept;
 
   /// Every surface feature nearer than `margin_m` to a shape, at these positions and poses, sorted by key.
-  /// @param X_WL per instrument, per link of its model. @param contacts overwritten; capacity is kept between calls.
-  /// Deterministic; not thread-safe (refits the trees it holds).
+  /// @param margin_m >= 0. @param X_WL per instrument, per link of its model. @param contacts overwritten; capacity is
+  /// kept. Non-finite positions give no contact. Deterministic: depends on the arguments alone, not on earlier calls.
+  /// Not thread-safe (refits the trees it holds). @throws std::invalid_argument for sizes that differ from the
+  /// construction's and a margin that is not finite or < 0. Which of the near features count as contacts:
+  /// src/contact/narrow_phase.h.
   void detect(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL, double margin_m,
               std::vector<Contact>& contacts);
+
+  /// Brings a contact found earlier up to date: the same material point (key, nodes, weights) against the same shape.
+  /// Sets its p_WC, R_WC and gap_m. @return false when it is no contact any more: farther than `margin_m`, or its surface
+  /// does not face the shape.
+  bool measure(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL, double margin_m,
+               Contact& contact) const;
 
  private:
   struct Implementation;
@@ -39,5 +53,11 @@ class ContactDetector {
 
 /// Any right-handed frame with the given unit normal as first column; a continuous function of n except at one point.
 Matrix3 contactFrame(const Vector3& n);
+
+/// How far a shape reaches from its middle where it is thinnest, m: radius of a sphere, half the smallest edge of a
+/// box, min(radius, length / 2) of a cylinder, half the smallest extent of a mesh's bounding box in its own axes (0 for
+/// a flat sheet). A step that moves the shape by less cannot carry its middle through a surface.
+/// @throws std::invalid_argument for a mesh shape whose mesh was not loaded.
+double smallestHalfExtent(const CollisionShape& shape);
 
 }  // namespace tissue_contact

@@ -1,0 +1,223 @@
+#include "contact/narrow_phase.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "contact/stationary_gradient.h"
+#include "contact/tolerances.h"
+
+namespace tissue_contact {
+namespace {
+
+/// Shortest generalised gradient that still means a direction of contact. The edge of a box gives at least 0.71, its
+/// corner 0.58; 0 is where opposite sides of the shape are equally near.
+constexpr double kShortestGradient = 0.3;
+
+/// A gradient whose part along its feature is longer than this share of it is not stationary: the search for the
+/// closest point ended early or met a part of a mesh that is not convex. The plain gradient is used then.
+constexpr double kStationary = 0.1;
+
+Vector3 snapped(const Vector3& weights) {
+  Vector3 result = weights;
+  for (int i = 0; i < 3; ++i) {
+    if (result[i] < kSnapWeight) result[i] = 0.0;
+  }
+  return result / result.sum();
+}
+
+/// Projector onto the directions along a face or edge of a triangle; zero at a vertex.
+Matrix3 tangentOf(const TrianglePoints& points, const Vector3& weights) {
+  const int corners = static_cast<int>((weights.array() > 0.0).count());
+  if (corners == 1) return Matrix3::Zero();
+  if (corners == 3) return Matrix3::Identity() - points.normal * points.normal.transpose();
+  int opposite = 0;
+  weights.minCoeff(&opposite);
+  const Vector3 edge = (points.corners[(opposite + 2) % 3] - points.corners[(opposite + 1) % 3]).normalized();
+  return edge * edge.transpose();
+}
+
+struct Direction {
+  Vector3 normal = Vector3::Zero();  ///< zero: none
+  double gap = 0.0;
+};
+
+Direction contactDirection(const ClosestPoint& closest, const Matrix3& tangent) {
+  if (closest.gradients.count() == 0) return {};
+  const Vector3 gradient = stationaryGradient(closest.gradients, tangent);
+  const double length = gradient.norm();
+  if (!(length > kShortestGradient)) return {};
+  const Vector3 along = tangent * gradient;
+  if (along.norm() > kStationary * length) return {closest.gradients[0], closest.distance};
+  // Pushing the feature out along the normal shortens the penetration at the rate `length`.
+  return {(gradient - along).normalized(), closest.distance < 0.0 ? closest.distance / length : closest.distance};
+}
+
+}  // namespace
+
+NarrowPhase::NarrowPhase(std::vector<Triangle> triangles, std::vector<bool> fixed, int node_count)
+    : topology_(std::move(triangles), node_count), fixed_(std::move(fixed)) {
+  if (static_cast<int>(fixed_.size()) != node_count) {
+    throw std::invalid_argument("tissue surface: " + std::to_string(fixed_.size()) + " fixed flags for " +
+                                std::to_string(node_count) + " nodes; there must be one per node");
+  }
+  nodes_.resize(node_count);
+  normals_.resize(topology_.triangles().size());
+}
+
+void NarrowPhase::findContacts(const ShapeDistance& shape, const Pose& X_WS, const NodalVectors& positions,
+                               const std::vector<int>& candidates, double margin, std::vector<ShapeContact>& contacts) {
+  call_ = {&shape, &positions, X_WS.linear().transpose(), X_WS.translation(), margin, &contacts};
+  ++call_index_;
+  contacts.clear();
+  for (const int triangle : candidates) {
+    const TrianglePoints points = trianglePoints(triangle);
+    double flush_gap = std::numeric_limits<double>::infinity();
+    if (shape.hasFlatParts()) {
+      if (certainlyFar(triangle, points)) continue;
+      flush_gap = addCorners(triangle, points);
+    }
+    addClosest(triangle, points, flush_gap);
+  }
+  mergeAndSort();
+}
+
+const Vector3& NarrowPhase::nodePosition(int node) {
+  NodeCache& cache = nodes_[node];
+  if (cache.placed != call_index_) {
+    cache.placed = call_index_;
+    // Coordinates relative to the shape first: its origin may be far from the world's.
+    cache.p_S.noalias() = call_.R_SW * (call_.positions->col(node) - call_.p_WS);
+  }
+  return cache.p_S;
+}
+
+const Vector3& NarrowPhase::triangleNormalOf(int triangle) {
+  NormalCache& cache = normals_[triangle];
+  if (cache.computed != call_index_) {
+    cache.computed = call_index_;
+    const Triangle& nodes = topology_.triangles()[triangle];
+    cache.normal_S = triangleNormal(nodePosition(nodes[0]), nodePosition(nodes[1]), nodePosition(nodes[2]));
+  }
+  return cache.normal_S;
+}
+
+TrianglePoints NarrowPhase::trianglePoints(int triangle) {
+  const Triangle& nodes = topology_.triangles()[triangle];
+  TrianglePoints points;
+  points.corners = {nodePosition(nodes[0]), nodePosition(nodes[1]), nodePosition(nodes[2])};
+  points.normal = triangleNormalOf(triangle);
+  return points;
+}
+
+/// Distance of a tissue vertex, and its contact if it has one.
+const NarrowPhase::NodeCache& NarrowPhase::measureVertex(int triangle, int corner) {
+  NodeCache& cache = nodes_[topology_.triangles()[triangle][corner]];
+  if (cache.measured == call_index_) return cache;
+  cache.measured = call_index_;
+  const SignedDistance here = call_.shape->at(cache.p_S);
+  cache.distance = here.distance;
+  const bool touches = add(triangle, Vector3::Unit(corner), -1, here.normal, here.distance);
+  cache.contact_gap = touches ? here.distance : std::numeric_limits<double>::infinity();
+  return cache;
+}
+
+/// Distances change by no more than the way between the points, so far vertices may rule out the whole triangle.
+bool NarrowPhase::certainlyFar(int triangle, const TrianglePoints& points) {
+  bool far = false;
+  for (int i = 0; i < 3; ++i) {
+    const Vector3& p = points.corners[i];
+    const double reach = std::sqrt(
+        std::max((points.corners[(i + 1) % 3] - p).squaredNorm(), (points.corners[(i + 2) % 3] - p).squaredNorm()));
+    far |= measureVertex(triangle, i).distance - reach > call_.margin;
+  }
+  return far;
+}
+
+/// Contacts of the shape's foremost corners that project on the triangle. Returns the smallest gap among them.
+double NarrowPhase::addCorners(int triangle, const TrianglePoints& points) {
+  double lowest = std::numeric_limits<double>::infinity();
+  if (points.normal.isZero(0.0)) return lowest;
+  const Vector3 forward = -points.normal;
+  Eigen::AlignedBox3d reach;
+  for (const Vector3& p : points.corners) {
+    reach.extend(p - call_.margin * forward);
+    reach.extend(p + call_.shape->cornerReach() * forward);
+  }
+  call_.shape->foremostCorners(forward, reach, corners_);
+  for (const ShapeCorner& corner : corners_) {
+    const double gap = forward.dot(points.corners[0] - corner.p_S);
+    if (!(gap <= call_.margin && gap >= -call_.shape->cornerReach())) continue;
+    const Vector3 foot = corner.p_S + gap * forward;
+    const Vector3 weights = projectOnTriangle(points.corners, foot);
+    if ((points.pointAt(weights) - foot).norm() > kTouch * call_.shape->size()) continue;  // beside the triangle
+    if (add(triangle, snapped(weights), corner.index, forward, gap)) lowest = std::min(lowest, gap);
+  }
+  return lowest;
+}
+
+void NarrowPhase::addClosest(int triangle, const TrianglePoints& points, double flush_gap) {
+  ClosestPoint closest;
+  if (!call_.shape->closest(points, call_.margin, closest)) return;
+  const Vector3 weights = snapped(closest.weights);
+  const SurfaceFeature feature = topology_.featureOf(triangle, weights);
+  const bool at_vertex = feature[1] < 0;
+  if (at_vertex && call_.shape->hasFlatParts()) return;  // measureVertex() has it
+  const Direction direction = contactDirection(closest, tangentOf(points, weights));
+  if (call_.shape->hasFlatParts()) {
+    const double lowest = std::min(flush_gap, lowestVertexGap(feature));
+    if (direction.gap >= lowest - kFlush * call_.shape->size()) return;
+  }
+  add(triangle, weights, -1, direction.normal, direction.gap);
+}
+
+double NarrowPhase::lowestVertexGap(const SurfaceFeature& feature) const {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const int node : feature) {
+    if (node >= 0) lowest = std::min(lowest, nodes_[node].contact_gap);
+  }
+  return lowest;
+}
+
+bool NarrowPhase::add(int triangle, const Vector3& weights, int corner, const Vector3& normal_S, double gap) {
+  if (!(gap <= call_.margin)) return false;
+  ShapeContact contact;
+  contact.feature = topology_.featureOf(triangle, weights);
+  const auto isFixed = [&](int node) { return node < 0 || fixed_[node]; };
+  if (std::all_of(contact.feature.begin(), contact.feature.end(), isFixed)) return false;
+  const auto faces = [&](int other) { return normal_S.dot(triangleNormalOf(other)) < -kFacing; };
+  if (!topology_.anyTriangleOf(contact.feature, faces)) return false;
+
+  const Triangle& own = topology_.triangles()[triangle];
+  topology_.anyTriangleOf(contact.feature, [&](int first) {
+    contact.nodes = topology_.triangles()[first];
+    return true;
+  });
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (contact.nodes[i] == own[k]) contact.weights[i] = weights[k];
+    }
+  }
+  contact.corner = corner;
+  contact.normal_W = (call_.R_SW.transpose() * normal_S).normalized();
+  contact.gap = gap;
+  call_.contacts->push_back(contact);
+  return true;
+}
+
+/// One contact per feature and corner: the one of smallest gap, whatever order the triangles came in.
+void NarrowPhase::mergeAndSort() {
+  std::vector<ShapeContact>& contacts = *call_.contacts;
+  const auto key = [](const ShapeContact& c) { return std::tie(c.feature, c.corner); };
+  const auto order = [](const ShapeContact& c) {
+    return std::tie(c.feature, c.corner, c.gap, c.weights[0], c.weights[1], c.weights[2]);
+  };
+  std::sort(contacts.begin(), contacts.end(),
+            [&](const ShapeContact& a, const ShapeContact& b) { return order(a) < order(b); });
+  const auto same = [&](const ShapeContact& a, const ShapeContact& b) { return key(a) == key(b); };
+  contacts.erase(std::unique(contacts.begin(), contacts.end(), same), contacts.end());
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,88 @@
+/// @file
+/// Room `contact`: what contact detection asks of an instrument shape: its exact signed distance, and where on a
+/// triangle that distance is least. Everything in the shape's frame S, metres.
+#pragma once
+
+#include <array>
+#include <cassert>
+#include <memory>
+#include <vector>
+
+#include "contact/triangle_geometry.h"
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/instrument/collision_shape.h"
+
+namespace tissue_contact {
+
+struct SignedDistance {
+  double distance = 0.0;              ///< m, > 0 outside
+  Vector3 normal = Vector3::UnitX();  ///< its gradient: unit, outward
+};
+
+/// The outward normals that meet at one point. Inside a shape, where two faces are equally near, the signed distance
+/// has a ridge and no gradient; these are the gradients on its sides (the extreme points of Clarke's generalised
+/// gradient).
+class GradientSet {
+ public:
+  int count() const { return count_; }
+  const Vector3& operator[](int i) const { return gradients_[i]; }
+  void add(const Vector3& gradient) {
+    if (count_ < static_cast<int>(gradients_.size())) gradients_[count_++] = gradient;
+  }
+
+ private:
+  int count_ = 0;
+  std::array<Vector3, 8> gradients_;
+};
+
+/// Where on a triangle a shape is nearest or deepest.
+struct ClosestPoint {
+  Vector3 weights = Vector3::UnitX();  ///< barycentric
+  double distance = 0.0;               ///< signed distance there
+  GradientSet gradients;               ///< at that point, one unless it lies on a ridge
+};
+
+/// A corner of the shape near a triangle.
+struct ShapeCorner {
+  int index = -1;
+  Vector3 p_S = Vector3::Zero();
+};
+
+/// Const after construction but for scratch memory: not thread-safe.
+class ShapeDistance {
+ public:
+  virtual ~ShapeDistance() = default;
+
+  /// Length by which tolerances are measured, m: a typical half-extent, > 0.
+  virtual double size() const = 0;
+
+  /// Half-extents of the axis-aligned box around the shape after rotating it by `R_WS`, and that box's centre in S.
+  virtual Vector3 halfExtents(const Matrix3& R_WS) const = 0;
+  virtual Vector3 boxCentre() const { return Vector3::Zero(); }
+
+  virtual SignedDistance at(const Vector3& p_S) const = 0;
+
+  /// The point of the triangle where the signed distance is least. False when that is certainly more than `margin`.
+  virtual bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const = 0;
+
+  /// Whether flat parts exist that can lie flush on a triangle, so that tissue vertices and shape corners matter.
+  virtual bool hasFlatParts() const { return true; }
+
+  /// Corners that are the shape's foremost points in direction `forward` (unit; see kCornerSlope), at least those in
+  /// `box`. Cleared first.
+  virtual void foremostCorners(const Vector3& forward, const Eigen::AlignedBox3d& box,
+                               std::vector<ShapeCorner>& corners) const;
+
+  /// Corners deeper than this below a triangle have come from its other side, m.
+  virtual double cornerReach() const { return size(); }
+};
+
+/// The exact signed distance of a shape. @throws std::invalid_argument for a mesh shape without triangles.
+std::unique_ptr<ShapeDistance> makeShapeDistance(const CollisionShape& shape);
+
+std::unique_ptr<ShapeDistance> makeSphereDistance(double radius);
+std::unique_ptr<ShapeDistance> makeBoxDistance(const Vector3& half_extents);
+std::unique_ptr<ShapeDistance> makeCylinderDistance(double radius, double half_length);
+std::unique_ptr<ShapeDistance> makeMeshDistance(const TriangleMesh& mesh);
+
+}  // namespace tissue_contact
