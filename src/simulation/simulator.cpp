@@ -136,6 +136,7 @@ void Simulator::Implementation::detectContacts(double dt) {
   const double tissue_travel = dt * (std::sqrt(fastest_squared) + dt * scene.gravity_m_per_s2.norm());
   const double margin = kMarginFactor * (motion.longestTravel() + tissue_travel) + kMarginPerEdge * mean_edge;
   detector.detect(x, motion.startPoses(), margin, contacts);
+  memory.addKeptPoints(detector, x, motion.startPoses(), margin, contacts);
 }
 
 void Simulator::Implementation::assembleTissues(double dt) {
