@@ -1,0 +1,145 @@
+/// What contacts inherit from the step before, and which points are kept.
+#include "tissue_contact/simulation/contact_memory.h"
+
+#include <gtest/gtest.h>
+
+#include "support/test_scene.h"
+#include "tissue_contact/instrument/parse_urdf.h"
+
+namespace tissue_contact {
+namespace {
+
+Contact makeContact(int shape, std::array<int, 3> feature, const Vector3& p_W) {
+  Contact contact;
+  contact.key.tissue = 0;
+  contact.key.instrument = 0;
+  contact.key.link = 0;
+  contact.key.shape = shape;
+  contact.key.feature = feature;
+  contact.nodes = {0, 1, 2};
+  contact.weights = Vector3(0.2, 0.3, 0.5);
+  contact.p_WC = p_W;
+  return contact;
+}
+
+ContactMemory::Inherited carrying(double newton) { return {Vector3(0.0, 0.0, newton), ContactState::kKinetic}; }
+
+TEST(ContactMemory, SameKeyInheritsForceAndState) {
+  ContactMemory memory;
+  const std::vector<Contact> contacts = {makeContact(0, {0, 1, 2}, Vector3::Zero()),
+                                         makeContact(0, {1, 2, 3}, Vector3::UnitX())};
+  memory.remember(contacts, {carrying(1.0), carrying(2.0)});
+  std::vector<ContactMemory::Inherited> inherited;
+  memory.recall(contacts, 0.0, inherited);
+  ASSERT_EQ(inherited.size(), 2u);
+  EXPECT_EQ(inherited[0].force_W.z(), 1.0);
+  EXPECT_EQ(inherited[1].force_W.z(), 2.0);
+  EXPECT_EQ(inherited[1].state, ContactState::kKinetic);
+}
+
+TEST(ContactMemory, SlidingOntoTheNextTriangleKeepsTheHistory) {
+  ContactMemory memory;
+  memory.remember({makeContact(0, {0, 1, 2}, Vector3::Zero())}, {carrying(1.0)});
+  std::vector<ContactMemory::Inherited> inherited;
+  memory.recall({makeContact(0, {1, 2, 3}, Vector3(0.5, 0.0, 0.0))}, 1.0, inherited);
+  EXPECT_EQ(inherited[0].force_W.z(), 1.0);
+  // Too far, and of another shape: nothing to continue.
+  memory.recall({makeContact(0, {1, 2, 3}, Vector3(0.5, 0.0, 0.0))}, 0.4, inherited);
+  EXPECT_EQ(inherited[0].state, ContactState::kOpen);
+  memory.recall({makeContact(1, {1, 2, 3}, Vector3(0.5, 0.0, 0.0))}, 1.0, inherited);
+  EXPECT_EQ(inherited[0].state, ContactState::kOpen);
+}
+
+TEST(ContactMemory, AnOldContactIsContinuedOnlyOnce) {
+  ContactMemory memory;
+  memory.remember({makeContact(0, {0, 1, 2}, Vector3::Zero())}, {carrying(1.0)});
+  std::vector<ContactMemory::Inherited> inherited;
+  memory.recall({makeContact(0, {1, 2, 3}, Vector3(0.1, 0.0, 0.0)), makeContact(0, {2, 3, 4}, Vector3(0.2, 0.0, 0.0))},
+                1.0, inherited);
+  EXPECT_EQ(inherited[0].force_W.z() + inherited[1].force_W.z(), 1.0);
+}
+
+TEST(ContactMemory, OpenContactsAndClearedOnesAreForgotten) {
+  ContactMemory memory;
+  const std::vector<Contact> contacts = {makeContact(0, {0, 1, 2}, Vector3::Zero())};
+  std::vector<ContactMemory::Inherited> inherited;
+  memory.remember(contacts, {{Vector3::UnitZ(), ContactState::kOpen}});
+  memory.recall(contacts, 1.0, inherited);
+  EXPECT_EQ(inherited[0].force_W, Vector3::Zero());
+  memory.remember(contacts, {carrying(1.0)});
+  memory.clear();
+  memory.recall(contacts, 1.0, inherited);
+  EXPECT_EQ(inherited[0].force_W, Vector3::Zero());
+}
+
+/// A sphere of 1 m over a face of three nodes; its centre can be moved.
+class KeptPoints : public ::testing::Test {
+ protected:
+  KeptPoints() {
+    positions[0] << -1.0, 1.0, 0.0, -1.0, -1.0, 1.0, 0.0, 0.0, 0.0;
+    InstrumentDescription description;
+    description.name = "probe";
+    description.tip_link = "tip";
+    description.joint_state_topics = {"/joint_states"};
+    description.contact_links = {{"tip", {}}};
+    instruments.emplace_back(description, parseUrdf(test::probeUrdf(1.0), "test", "", nullptr), Pose::Identity());
+    TissueSurface surface;
+    surface.triangles = {{0, 1, 2}};
+    surface.fixed = {false, false, false};
+    detector = std::make_unique<ContactDetector>(instruments, std::vector<TissueSurface>{surface}, positions);
+  }
+
+  std::vector<Contact> detectAt(double x) {
+    instruments[0].linkPoses(Vector3(x, -0.3, 1.0), X_WL[0]);
+    std::vector<Contact> contacts;
+    detector->detect(positions, X_WL, 0.1, contacts);
+    memory.addKeptPoints(*detector, positions, X_WL, 0.1, contacts);
+    return contacts;
+  }
+
+  std::vector<NodalVectors> positions{NodalVectors(3, 3)};
+  std::vector<Instrument> instruments;
+  std::unique_ptr<ContactDetector> detector;
+  std::vector<std::vector<Pose>> X_WL{1};
+  ContactMemory memory;
+};
+
+TEST_F(KeptPoints, APointThatCarriedForceStaysBesideTheNewClosestPoint) {
+  const std::vector<Contact> first = detectAt(0.0);
+  ASSERT_EQ(first.size(), 1u);
+  memory.remember(first, {carrying(1.0)});
+  const std::vector<Contact> second = detectAt(0.2);
+  ASSERT_EQ(second.size(), 2u);
+  EXPECT_EQ(second[0].key.slot, 0);
+  EXPECT_EQ(second[1].key.slot, 1);
+  EXPECT_EQ(second[1].weights, first[0].weights);
+  EXPECT_NEAR(second[1].gap_m, std::sqrt(1.04) - 1.0, 1e-14);  // the sphere has moved 0.2 m along a flat face
+  std::vector<ContactMemory::Inherited> inherited;
+  memory.recall(second, 0.0, inherited);
+  EXPECT_EQ(inherited[0].state, ContactState::kOpen);
+  EXPECT_EQ(inherited[1].force_W.z(), 1.0);  // the force stays with its point
+}
+
+TEST_F(KeptPoints, AFreshPointAtTheSamePlaceContinuesTheOldOne) {
+  memory.remember(detectAt(0.0), {carrying(1.0)});
+  const std::vector<Contact> second = detectAt(0.01);
+  ASSERT_EQ(second.size(), 1u);
+  std::vector<ContactMemory::Inherited> inherited;
+  memory.recall(second, 0.0, inherited);
+  EXPECT_EQ(inherited[0].force_W.z(), 1.0);
+}
+
+TEST_F(KeptPoints, PointsAreDroppedOnceFarOrWithoutForceAndNeverMoreThanTheBound) {
+  memory.remember(detectAt(0.0), {carrying(1.0)});
+  EXPECT_EQ(detectAt(0.5).size(), 1u);  // old point 0.118 m away: beyond the margin
+  memory.remember(detectAt(0.0), {ContactMemory::Inherited()});
+  EXPECT_EQ(detectAt(0.2).size(), 1u);
+  for (int k = 0; k < 10; ++k) {
+    const std::vector<Contact> contacts = detectAt(k % 2 == 0 ? -0.02 * k : 0.02 * k);
+    EXPECT_LE(contacts.size(), 1u + ContactMemory::kKeptPoints);
+    memory.remember(contacts, std::vector<ContactMemory::Inherited>(contacts.size(), carrying(1.0)));
+  }
+}
+
+}  // namespace
+}  // namespace tissue_contact

@@ -1,0 +1,132 @@
+/// The simulator on bad input and on motions that break simulators: fast entry, start inside, jumps.
+#include "tissue_contact/simulation/simulator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "support/test_scene.h"
+
+namespace tissue_contact {
+namespace {
+
+/// A 5 mm sphere over a block of 60 x 60 x 20 mm, 1 mm above its middle at joints 0.
+Simulator makeScene(double max_step_s = 0.001, double height_m = 0.026) {
+  std::ostringstream yaml;
+  yaml
+      << "tissues:\n  - name: block\n    block: {size_m: [0.06, 0.06, 0.02], cells: [6, 6, 2]}\n"
+      << "    material: {model: corotational, youngs_modulus_pa: 5000, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n"
+      << "    damping: {stiffness_s: 0.003}\n"
+      << "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
+      << "instruments:\n  - name: probe\n    robot_description: probe\n    tip_link: tip\n"
+      << "    joint_state_topics: [/joint_states]\n    base_pose: {position_m: [0.001, 0.002, " << height_m << "]}\n"
+      << "    contact_links: [tip]\n"
+      << "friction:\n  - {instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}\n"
+      << "step: {max_step_s: " << max_step_s << "}\n";
+  return test::makeSimulator(yaml.str(), {{"probe", test::probeUrdf(0.005)}});
+}
+
+/// Deepest point of the tissue surface inside the sphere, m.
+double penetration(const Simulator& simulator) {
+  const Vector3 center = simulator.linkPoses(0).back().translation();
+  double deepest = 0.0;
+  for (Eigen::Index i = 0; i < simulator.positions(0).cols(); ++i) {
+    deepest = std::max(deepest, 0.005 - (simulator.positions(0).col(i) - center).norm());
+  }
+  return deepest;
+}
+
+TEST(Simulator, RefusesBadTargetsAndKeepsItsState) {
+  Simulator simulator = makeScene();
+  simulator.advance(0.05, {Vector3(0.0, 0.0, -0.003)});
+  const NodalVectors before = simulator.positions(0);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(simulator.advance(nan, {Vector3::Zero()}), std::invalid_argument);
+  EXPECT_THROW(simulator.advance(0.0, {Vector3::Zero()}), std::invalid_argument);
+  EXPECT_THROW(simulator.advance(0.01, {Vector3(0.0, nan, 0.0)}), std::invalid_argument);
+  EXPECT_THROW(simulator.advance(0.01, {Vector3(infinity, 0.0, 0.0)}), std::invalid_argument);
+  EXPECT_THROW(simulator.advance(0.01, {Vector2(0.0, 0.0)}), std::invalid_argument);
+  EXPECT_THROW(simulator.advance(0.01, {}), std::invalid_argument);
+  EXPECT_THROW(simulator.placeInstrument(0, Vector3(nan, 0.0, 0.0)), std::invalid_argument);
+  EXPECT_EQ(simulator.positions(0), before);
+  EXPECT_EQ(simulator.jointPositions(0), VectorX(Vector3(0.0, 0.0, -0.003)));
+  try {
+    simulator.advance(0.01, {Vector3(0.0, nan, 0.0)});
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("joint 'y'"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Simulator, CutsIntervalsIntoEqualStepsNoLongerThanAsked) {
+  Simulator simulator = makeScene();
+  simulator.advance(0.0101, {Vector3::Zero()});
+  EXPECT_EQ(simulator.report().substeps, 11);
+  simulator.advance(0.010, {Vector3::Zero()});  // a whole number of steps up to round-off
+  EXPECT_EQ(simulator.report().substeps, 10);
+  EXPECT_EQ(simulator.stepCount(), 21);
+  simulator.advance(0.001, {Vector3(0.02, 0.0, 0.0)});  // 20 m/s: 4 radii in one step, so 8 steps or more
+  EXPECT_GE(simulator.report().substeps, 8);
+}
+
+// 0.5 m/s down to 3 mm above the fixed base: with 5 ms steps the path of one step is half the sphere.
+TEST(Simulator, FastEntryDoesNotTunnel) {
+  for (const double dt : {0.001, 0.005}) {
+    Simulator simulator = makeScene(dt);
+    for (int k = 1; k <= 6; ++k) {
+      simulator.advance(0.005, {Vector3(0.0, 0.0, -0.0025 * k)});
+      ASSERT_TRUE(simulator.positions(0).allFinite());
+      ASSERT_LT(penetration(simulator), 0.0005) << "dt " << dt << ", step " << k;
+    }
+    EXPECT_GT(simulator.wrench(0).force.z(), 0.1);
+    EXPECT_FALSE(simulator.report().discarded);
+  }
+}
+
+TEST(Simulator, InstrumentThatStartsInsideIsFreedGently) {
+  Simulator simulator = makeScene(0.001, 0.022);  // 3 of 5 mm deep; with its centre below the surface no side is nearer
+  double fastest = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    simulator.advance(0.001, {Vector3::Zero()});
+    ASSERT_TRUE(simulator.positions(0).allFinite());
+    fastest = std::max(fastest, simulator.velocities(0).colwise().norm().maxCoeff());
+  }
+  EXPECT_LT(penetration(simulator), 1e-4);
+  EXPECT_LT(fastest, 5.0);  // a tenth of the radius per millisecond is 0.5 m/s; ten times that would be an explosion
+}
+
+TEST(Simulator, JumpIsNotSweptAndStaysFinite) {
+  Simulator simulator = makeScene();
+  simulator.advance(0.1, {Vector3(0.0, 0.0, -0.004)});
+  simulator.advance(0.01, {Vector3(1e3, 0.0, 0.0)});
+  EXPECT_TRUE(simulator.report().jumped);
+  EXPECT_LE(simulator.report().substeps, 10);
+  EXPECT_EQ(simulator.wrench(0).force, Vector3::Zero());
+  for (int k = 0; k < 300; ++k) simulator.advance(0.001, {Vector3(1e3, 0.0, 0.0)});
+  EXPECT_FALSE(simulator.report().jumped);
+  // Released: back at rest, up to what damping leaves after 0.3 s.
+  EXPECT_LT((simulator.positions(0) - simulator.tissues()[0].restPositions()).colwise().norm().maxCoeff(), 1e-5);
+}
+
+TEST(Simulator, FrictionDragsAgainstTheMotion) {
+  Simulator simulator = makeScene();
+  for (int k = 1; k <= 100; ++k) simulator.advance(0.002, {Vector3(0.0, 0.0, -4e-5 * k)});
+  for (int k = 1; k <= 100; ++k) simulator.advance(0.002, {Vector3(8e-5 * k, 0.0, -0.004)});
+  EXPECT_LT(simulator.wrench(0).force.x(), -0.05);
+  EXPECT_GT(simulator.report().kinetic_contacts, 0);
+  for (const SolvedContact& contact : simulator.contacts()) {
+    const Vector3 n = contact.contact.R_WC.col(0);
+    const double normal = contact.force_on_tissue_n.dot(n);
+    const double friction = (contact.force_on_tissue_n - normal * n).norm();
+    EXPECT_GE(normal, 0.0);
+    EXPECT_LE(friction, 0.5 * normal + 1e-12);
+    if (contact.state == ContactState::kKinetic) {
+      EXPECT_NEAR(friction, 0.4 * normal, 1e-12);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tissue_contact
