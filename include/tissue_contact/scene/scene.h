@@ -134,9 +134,9 @@ struct StepDescription {
 };
 
 struct SolverDescription {
-  int iterations = 10;      ///< upper bound on ICA iterations (relaxation sweep + contact passes) per step
+  int iterations = 30;      ///< upper bound on ICA iterations (relaxation sweep + contact passes) per step
   int contact_passes = 2;   ///< predictor-corrector passes over the contacts per iteration
-  double tolerance = 1e-5;  ///< stop when one iteration changes momentum and impulses by less than this (relative)
+  double tolerance = 3e-4;  ///< stop when one iteration changes momentum and impulses by less than this (relative)
 };
 
 /// Rates are of simulated (message) time; 0 switches a topic off.

@@ -28,9 +28,9 @@
 namespace tissue_contact {
 
 struct SolverOptions {
-  int iterations = 10;      ///< upper bound, >= 1
+  int iterations = 30;      ///< upper bound, >= 1
   int contact_passes = 2;   ///< passes over the contacts per iteration, >= 1
-  double tolerance = 1e-5;  ///< relative change of momentum and impulses in one iteration at which to stop
+  double tolerance = 3e-4;  ///< relative change of momentum and impulses in one iteration at which to stop
 };
 
 struct SolverReport {
