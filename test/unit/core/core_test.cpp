@@ -1,0 +1,62 @@
+/// Input checks and the block matrix.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "tissue_contact/core/block_matrix.h"
+#include "tissue_contact/core/check.h"
+
+namespace tissue_contact {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(Check, RefusesNanInfinityAndValuesOutOfRange) {
+  for (const double bad : {kNan, kInfinity, 0.0, -1.0}) EXPECT_THROW(requirePositive("x", bad), std::invalid_argument);
+  for (const double bad : {kNan, kInfinity, -1.0}) EXPECT_THROW(requireNonNegative("x", bad), std::invalid_argument);
+  for (const double bad : {kNan, 0.0, 1.0}) EXPECT_THROW(requireInside("x", bad, 0.0, 1.0), std::invalid_argument);
+  for (const double bad : {kNan, kInfinity, -kInfinity}) EXPECT_THROW(requireFinite("x", bad), std::invalid_argument);
+  EXPECT_EQ(requirePositive("x", 2.0), 2.0);
+  EXPECT_EQ(requireNonNegative("x", 0.0), 0.0);
+  EXPECT_EQ(requireInside("x", 0.5, 0.0, 1.0), 0.5);
+}
+
+TEST(Check, MessageNamesThingValueUnitAndRange) {
+  try {
+    requireInside("poissons_ratio", 0.7, -1.0, 0.5, "(none)");
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(std::string(error.what()), "poissons_ratio is 0.69999999999999996 (none); it must be > -1 and < 0.5");
+  }
+}
+
+// Two tetrahedra sharing the face (1, 2, 3); node 4 fixed.
+TEST(BlockMatrix, HasABlockForEveryPairOfFreeNeighbours) {
+  const BlockMatrix K = BlockMatrix::forTetrahedra({{0, 1, 2, 3}, {1, 2, 3, 4}}, {false, false, false, false, true});
+  ASSERT_EQ(K.rows(), 5);
+  EXPECT_EQ(K.columns, (std::vector<int>{1, 2, 3, 0, 2, 3, 0, 1, 3, 0, 1, 2}));
+  EXPECT_EQ(K.row_start, (std::vector<int>{0, 3, 6, 9, 12, 12}));
+  EXPECT_EQ(K.find(2, 3), 8);
+  EXPECT_EQ(K.find(1, 4), -1);
+  EXPECT_EQ(K.find(4, 1), -1);
+  EXPECT_EQ(K.find(1, 1), -1);
+}
+
+TEST(BlockMatrix, RowProductIsTheDenseOne) {
+  BlockMatrix K = BlockMatrix::forTetrahedra({{0, 1, 2, 3}}, {false, false, false, false});
+  NodalVectors v(3, 4);
+  for (Eigen::Index i = 0; i < v.size(); ++i) v.data()[i] = 0.3 * static_cast<double>(i) - 1.0;
+  Vector3 expected = Vector3::Zero();
+  for (int k = K.row_start[2]; k < K.row_start[3]; ++k) {
+    K.values[k] << 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, k;
+    expected += K.values[k] * v.col(K.columns[k]);
+  }
+  EXPECT_LE((K.offDiagonalProduct(2, v) - expected).norm(), 1e-14 * expected.norm());
+  K.setZero();
+  EXPECT_EQ(K.offDiagonalProduct(2, v), Vector3::Zero());
+}
+
+}  // namespace
+}  // namespace tissue_contact
