@@ -14,7 +14,10 @@ template <typename Named>
 std::string listNames(const std::vector<Named>& named) {
   constexpr std::size_t kMax = 20;
   std::string list;
-  for (std::size_t i = 0; i < named.size() && i < kMax; ++i) list += (i == 0 ? "" : ", ") + named[i].name;
+  for (std::size_t i = 0; i < named.size() && i < kMax; ++i) {
+    if (i > 0) list += ", ";
+    list += named[i].name;
+  }
   if (named.size() > kMax) list += ", ...";
   return list.empty() ? "none" : list;
 }
@@ -113,15 +116,24 @@ class Builder {
     for (std::size_t i = 0; i < model_.joints().size(); ++i) joint_of[model_.joints()[i].name] = static_cast<int>(i);
     std::map<int, std::string> recorded_as;
     for (const auto& [recorded, name] : description_.joint_names) {
-      const int joint = findJoint("the joint map sends '" + recorded + "' to", name);
+      const int joint = findMappedJoint(recorded, name);
       const auto [it, is_new] = recorded_as.emplace(joint, recorded);
-      if (!is_new) refuse("the joint map sends both '" + it->second + "' and '" + recorded + "' to '" + name + "'");
+      if (!is_new) refuseSharedJoint(it->second, recorded, name);
       joint_of[recorded] = joint;
     }
     return joint_of;
   }
 
  private:
+  int findMappedJoint(const std::string& recorded, const std::string& name) const {
+    return findJoint("the joint map sends '" + recorded + "' to", name);
+  }
+
+  [[noreturn]] void refuseSharedJoint(const std::string& first, const std::string& second,
+                                      const std::string& name) const {
+    refuse("the joint map sends both '" + first + "' and '" + second + "' to '" + name + "'");
+  }
+
   const InstrumentDescription& description_;
   const RobotModel& model_;
 };

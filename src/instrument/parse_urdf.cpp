@@ -83,12 +83,14 @@ class UrdfReader {
       const urdf::Joint& joint = *link->parent_joint;
       checkType(joint);
       if (joint.type == urdf::Joint::FIXED || joint.mimic) continue;
-      // A continuous joint has no limits; urdfdom demands them of the others.
-      constexpr double kInfinity = std::numeric_limits<double>::infinity();
-      const bool limited = joint.limits && joint.type != urdf::Joint::CONTINUOUS;
       drives_[joint.name] = Drive{static_cast<int>(joints_.size()), 1.0, 0.0};
-      joints_.push_back(
-          {joint.name, limited ? joint.limits->lower : -kInfinity, limited ? joint.limits->upper : kInfinity});
+      IndependentJoint independent;
+      independent.name = joint.name;
+      // A continuous joint has no limits; urdfdom demands them of the others.
+      const bool limited = joint.limits && joint.type != urdf::Joint::CONTINUOUS;
+      independent.lower = limited ? joint.limits->lower : -std::numeric_limits<double>::infinity();
+      independent.upper = limited ? joint.limits->upper : std::numeric_limits<double>::infinity();
+      joints_.push_back(independent);
     }
   }
 

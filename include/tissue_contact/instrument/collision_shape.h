@@ -19,7 +19,9 @@ struct TriangleMesh {
 };
 
 /// Reads STL, OBJ or DAE (assimp), applies the node transforms and then `scale`, merges coincident vertices, drops
-/// degenerate triangles. @throws std::invalid_argument naming the file: unreadable, no triangles, non-finite vertices.
+/// degenerate triangles. DAE as in RViz: its <unit> is applied, its <up_axis> is not. Files up to 64 MB. Reading
+/// happens in a child process, because assimp crashes on some malformed files: call it at start-up, not in a step.
+/// @throws std::invalid_argument naming the file: unreadable, no triangles, non-finite vertices, a zero scale.
 TriangleMesh loadTriangleMesh(const std::string& file, const Vector3& scale);
 
 struct CollisionShape {

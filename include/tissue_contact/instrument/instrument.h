@@ -24,7 +24,8 @@ struct ContactLink {
 class Instrument {
  public:
   /// @param X_WB pose of the URDF root link in the world (tf already looked up).
-  /// @throws std::invalid_argument naming the instrument and the link or joint: unknown tip or contact link, contact link
+  /// @throws std::invalid_argument naming the instrument and the link or joint: unknown tip or contact link, contact
+  /// link
   ///   without any shape, joint map to an unknown or mimic joint, initial position of an unknown joint, a moving URDF
   ///   without joint-state topics or a rigid one with them.
   Instrument(const InstrumentDescription& description, RobotModel model, const Pose& X_WB);

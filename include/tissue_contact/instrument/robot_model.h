@@ -13,11 +13,13 @@ namespace tissue_contact {
 /// A joint that moves by itself. Positions: rad (revolute, continuous) or m (prismatic).
 struct IndependentJoint {
   std::string name;
-  double lower = 0.0;  ///< URDF limits, for reference only: positions outside are simulated as they were recorded
+  /// URDF limits (infinite for continuous joints), for reference only: positions outside are simulated as recorded.
+  double lower = 0.0;
   double upper = 0.0;
 };
 
-/// Collision geometry of one link as the URDF gives it (mesh paths resolved, meshes not yet read).
+/// Geometry of one link as the URDF gives it, meshes not yet read. Mesh paths are resolved; one that cannot be (unknown
+/// package) is kept as written, since it matters only if the link touches tissue: makeCollisionShape() refuses it.
 struct LinkGeometry {
   std::vector<ShapeDescription> collision;
   std::vector<ShapeDescription> visual;
@@ -28,8 +30,8 @@ class RobotModel {
  public:
   struct Link {
     std::string name;
-    int parent = -1;                  ///< index of the parent link, always smaller than this link's; -1 for the root
-    Pose X_PJ = Pose::Identity();     ///< joint frame in the parent link at joint position 0
+    int parent = -1;               ///< index of the parent link, always smaller than this link's; -1 for the root
+    Pose X_PJ = Pose::Identity();  ///< joint frame in the parent link at joint position 0
     enum class Motion { kFixed, kRevolute, kPrismatic } motion = Motion::kFixed;
     Vector3 axis = Vector3::UnitX();  ///< unit, in the joint frame
     int joint = -1;                   ///< independent joint that drives this one (through mimic chains), -1 if fixed
@@ -38,6 +40,9 @@ class RobotModel {
     LinkGeometry geometry;
   };
 
+  /// @throws std::invalid_argument naming the link: parents not before children, joint indices out of range, an axis
+  /// that
+  ///   is not unit, numbers that are not finite, equal names.
   RobotModel(std::string name, std::vector<Link> links, std::vector<IndependentJoint> joints);
 
   const std::string& name() const { return name_; }
@@ -49,6 +54,7 @@ class RobotModel {
 
   /// Pose of every link in the root link's frame B. `positions`: one per independent joint (rad or m).
   /// `X_BL` is resized to links().size(). No allocation once sized. Formula: X_BL = X_BP * X_PJ * motion(position).
+  /// Thread-safe. @throws std::invalid_argument when the number of positions is wrong; positions must be finite.
   void forwardKinematics(const VectorX& positions, std::vector<Pose>& X_BL) const;
 
  private:

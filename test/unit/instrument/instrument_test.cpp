@@ -38,7 +38,7 @@ InstrumentDescription armDescription() {
 Instrument make(const InstrumentDescription& description) { return {description, arm(), Pose::Identity()}; }
 
 std::string refusalOf(const InstrumentDescription& description) {
-  const std::string message = refusal([&] { make(description); });
+  std::string message = refusal([&] { make(description); });
   expectContains(message, {"instrument 'arm'"});
   return message;
 }

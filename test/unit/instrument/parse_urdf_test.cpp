@@ -110,14 +110,15 @@ TEST(MalformedUrdf, TinyAxisIsADirection) {
 }
 
 TEST(MalformedUrdf, NumbersThatAreNotFinite) {
+  const auto refusalOfJoint = [](const std::string& element) {
+    return refusalOf(robot(kTwoLinks + joint("j", "revolute", "a", "b", element)));
+  };
   for (const std::string bad : {"nan", "inf", "-inf", "1e999", "0,5", "x"}) {
     SCOPED_TRACE(bad);
-    expectContains(refusalOf(robot(kTwoLinks + joint("j", "fixed", "a", "b", "<origin xyz=\"0 " + bad + " 0\"/>"))),
-                   {"test.urdf", "[j]", bad});
-    expectContains(refusalOf(robot(kTwoLinks + joint("j", "fixed", "a", "b", "<origin rpy=\"0 " + bad + " 0\"/>"))),
-                   {"test.urdf", "[j]", bad});
-    expectContains(refusalOf(robot(kTwoLinks + joint("j", "revolute", "a", "b", "<axis xyz=\"0 1 " + bad + "\"/>"))),
-                   {"test.urdf", "[j]", bad});
+    const std::string vector = "\"0 1 " + bad + "\"/>";
+    expectContains(refusalOfJoint("<origin xyz=" + vector), {"test.urdf", "[j]", bad});
+    expectContains(refusalOfJoint("<origin rpy=" + vector), {"test.urdf", "[j]", bad});
+    expectContains(refusalOfJoint("<axis xyz=" + vector), {"test.urdf", "[j]", bad});
     expectContains(refusalOf(robot("<link name=\"a\"><collision><origin xyz=\"" + bad +
                                    " 0 0\"/><geometry><sphere radius=\"1\"/></geometry></collision></link>")),
                    {"test.urdf", bad, "a"});

@@ -20,7 +20,7 @@ class LoadTriangleMesh : public testing::Test {
   }
   std::string refusalOf(const std::string& name, const std::string& content, const Vector3& scale = kNoScale) {
     const std::string file = directory_.write(name, content);
-    const std::string message = refusal([&] { loadTriangleMesh(file, scale); });
+    std::string message = refusal([&] { loadTriangleMesh(file, scale); });
     expectContains(message, {file});
     return message;
   }
@@ -190,7 +190,7 @@ TEST_F(LoadTriangleMesh, RefusesUnreadableContent) {
   expectContains(refusalOf("a.obj", "hello\n"), {"a.obj"});
   expectContains(refusalOf("a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 9\n"), {"a.obj"});
   expectContains(refusalOf("a.dae", "hello"), {"cannot be read"});
-  expectContains(refusalOf("a.dae", "<COLLADA>\n<a></COLLADA>"), {":2:", "</COLLADA>", "<a>"});
+  expectContains(refusalOf("a.dae", "<COLLADA>\n<a></COLLADA>"), {"cannot be read"});
 }
 
 TEST_F(LoadTriangleMesh, RefusesMeshesWithoutTriangles) {
@@ -218,26 +218,25 @@ TEST_F(LoadTriangleMesh, RefusesBadScales) {
   expectContains(refusalOf("a.stl", binaryStl(), Vector3(1, 1e308, 1)), {"not finite after scaling"});
 }
 
-TEST_F(LoadTriangleMesh, HostileDaeIsRefusedInsteadOfCrashing) {
+TEST_F(LoadTriangleMesh, MalformedDaeThatCrashesAssimpIsRefused) {
+  // Recursion without end: nested nodes, and a node that contains itself.
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "<node>";
   for (int i = 0; i < 100000; ++i) deep += "</node>";
-  expectContains(refusalOf("deep.dae", dae("1", "Z_UP", deep)), {"nested more than 256"});
+  expectContains(refusalOf("deep.dae", dae("1", "Z_UP", deep)), {"cannot be read", "crashes"});
+  const std::string use = "<node><instance_node url=\"#a\"/></node>";
+  const std::string cycle = "<library_nodes><node id=\"a\"><instance_node url=\"#a\"/></node></library_nodes>";
+  expectContains(refusalOf("cycle.dae", dae("1", "Z_UP", use, cycle)), {"cannot be read", "crashes"});
+  // A null pointer: the attribute `count` is missing.
+  std::string no_count = dae("1", "Z_UP", "<node><instance_geometry url=\"#g\"/></node>");
+  no_count.replace(no_count.find("count=\"12\""), 10, "");
+  expectContains(refusalOf("no_count.dae", no_count), {"cannot be read"});
+}
 
-  const std::string use = "<node><instance_node url=\"#a0\"/></node>";
-  const std::string cycle = "<library_nodes><node id=\"a0\"><instance_node url=\"#a0\"/></node></library_nodes>";
-  expectContains(refusalOf("cycle.dae", dae("1", "Z_UP", use, cycle)), {"node 'a0' contains itself"});
-
-  std::string doubling = "<library_nodes>";
-  for (int i = 0; i < 40; ++i) {
-    const std::string next = "<instance_node url=\"#a" + std::to_string(i + 1) + "\"/>";
-    doubling += "<node id=\"a" + std::to_string(i) + "\">" + next + next + "</node>";
-  }
-  doubling += "<node id=\"a40\"><instance_geometry url=\"#g\"/></node></library_nodes>";
-  expectContains(refusalOf("doubling.dae", dae("1", "Z_UP", use, doubling)), {"more than 100000 nodes"});
-
-  const std::string escaped = "<node><instance_node url=\"#a&#48;\"/></node>";
-  expectContains(refusalOf("escaped.dae", dae("1", "Z_UP", escaped, cycle)), {"<instance_node>", "#a&#48;"});
+TEST_F(LoadTriangleMesh, MalformedDaeThatMakesAssimpAllocateWithoutEndIsRefused) {
+  std::string text = dae("1", "Z_UP", "<node><instance_geometry url=\"#g\"/></node>");
+  text.replace(text.find("<p>0 2 1"), 8, "<p>0 x 1");
+  expectContains(refusalOf("endless.dae", text), {"cannot be read", "too much memory"});
 }
 
 TEST_F(LoadTriangleMesh, OtherFilesNamedInAMeshAreNotOpened) {
