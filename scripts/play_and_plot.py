@@ -4,8 +4,8 @@
 Waits for the node, plays those topics of the bag that the node listens to, and writes into the output folder
   <instrument>_force.png     force on the instrument over time, in its tip frame
   <instrument>_friction.png  tangential over normal contact force (sums over contacts) over time
-Prints one line per second where there is no display. With --show it first waits for RViz, and repeats the bag until
-RViz is closed.
+Prints one line per second where there is no display. With `--show true` it first waits for RViz, and repeats the bag
+until RViz is closed.
 """
 import argparse
 import os
@@ -224,6 +224,7 @@ def start_player(arguments, topics, loop):
     if not player:
         fail("rosbag play is not installed")
     command = [player[0], "--quiet", "--wait-for-subscribers", "--queue", "100000", "--rate", str(arguments.rate)]
+    command += ["--clock"] if arguments.show == "true" else []
     command += (["--loop"] if loop else []) + [arguments.bag, "--topics"] + topics
     child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
     rospy.on_shutdown(lambda: child.poll() is None and child.send_signal(signal.SIGTERM))
@@ -254,7 +255,8 @@ def parse_arguments():
     parser.add_argument("--output", required=True, help="folder for the plots; made if it does not exist")
     parser.add_argument("--node", default="/tissue_contact", help="default: %(default)s")
     parser.add_argument("--rate", type=float, default=1.0, help="playback speed, default: %(default)s")
-    parser.add_argument("--show", action="store_true", help="wait for RViz and repeat the bag until it is closed")
+    parser.add_argument("--show", type=str.lower, choices=["true", "false"], default="false",
+                        help="wait for RViz and repeat the bag until it is closed")
     return parser.parse_args(rospy.myargv()[1:])
 
 
@@ -270,7 +272,7 @@ def main():
     if not topics:
         fail("%s has no message on %s; its topics are: %s" %
              (arguments.bag, ", ".join(heard), ", ".join(sorted(in_bag))))
-    shown = arguments.show and shutil.which("rviz") is not None and wait_quietly(graph.is_shown, RVIZ_START_S)
+    shown = arguments.show == "true" and shutil.which("rviz") is not None and wait_quietly(graph.is_shown, RVIZ_START_S)
     recorder = Recorder(arguments.node, graph, topics)
     child = start_player(arguments, topics, loop=False)
     watch(recorder, lambda: child.poll() is not None, talk=not shown)
@@ -280,7 +282,6 @@ def main():
     recorder.open = False
     if rospy.is_shutdown():
         return
-    print(recorder.line(), flush=True)
     if not recorder.forces:
         fail("the node gave no wrench; its warnings say why")
     if not answered:

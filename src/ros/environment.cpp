@@ -46,19 +46,17 @@ std::string urdfParameter(const ros::NodeHandle& private_node, const std::string
 Pose waitForFrame(const std::string& frame, const std::string& world_frame, double timeout_s) {
   tf2_ros::Buffer buffer;
   const tf2_ros::TransformListener listener(buffer);
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
-  const auto is_over = [&] {
-    return !ros::ok() || std::chrono::duration<double>(Clock::now() - start).count() >= timeout_s;
-  };
+  const auto start = std::chrono::steady_clock::now();
+  std::chrono::duration<double> waited(0.0);
   std::string why;
-  for (bool last_try = false;; last_try = is_over()) {
+  while (true) {
     try {
       return toPose(buffer.lookupTransform(world_frame, frame, ros::Time(0)).transform);
     } catch (const tf2::TransformException& error) {
       why = error.what();
     }
-    if (last_try) break;
+    waited = std::chrono::steady_clock::now() - start;
+    if (!ros::ok() || waited.count() >= timeout_s) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   std::ostringstream text;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "tissue_contact/core/check.h"
@@ -59,19 +60,46 @@ void setGeometry(const ShapeGeometry& geometry, const TriangleMesh* mesh, Marker
   }
 }
 
+std::vector<std::array<int, 2>> edgesOf(const std::vector<Triangle>& triangles) {
+  std::set<std::array<int, 2>> edges;
+  for (const Triangle& t : triangles) {
+    for (const auto& [a, b] : {std::pair(t[0], t[1]), std::pair(t[1], t[2]), std::pair(t[2], t[0])}) {
+      edges.insert({std::min(a, b), std::max(a, b)});
+    }
+  }
+  return {edges.begin(), edges.end()};
+}
+
+/// Outward normals of the surface nodes, weighted by area (not unit); 0 for inner nodes.
+void sumNormals(const std::vector<Triangle>& triangles, const NodalVectors& x, NodalVectors& normals) {
+  normals.setZero();
+  for (const Triangle& t : triangles) {
+    const Vector3 normal = (x.col(t[1]) - x.col(t[0])).cross(x.col(t[2]) - x.col(t[0]));
+    for (const int node : t) normals.col(node) += normal;
+  }
+}
+
+/// RViz does not light coloured triangles, and a dent without shading is not seen as one. Lit alike from two opposite
+/// sides, since z may point up or down in the world frame.
+void shade(const Vector3& normal, std_msgs::ColorRGBA& rgba) {
+  const Vector3 light = Vector3(0.35, -0.45, 0.82).normalized();
+  const double length = normal.norm();
+  const double facing = length > 0.0 ? std::abs(normal.dot(light)) / length : 1.0;
+  const auto factor = static_cast<float>(0.6 + 0.4 * facing);
+  rgba.r *= factor;
+  rgba.g *= factor;
+  rgba.b *= factor;
+}
+
 }  // namespace
 
 std_msgs::ColorRGBA displacementColor(double fraction) {
-  // Samples of the viridis colour map (public domain), evenly spaced.
-  static constexpr std::array<std::array<double, 3>, 9> kColors = {{{0.267, 0.005, 0.329},
-                                                                    {0.279, 0.175, 0.483},
-                                                                    {0.230, 0.322, 0.546},
-                                                                    {0.173, 0.449, 0.558},
-                                                                    {0.128, 0.567, 0.551},
-                                                                    {0.158, 0.684, 0.502},
-                                                                    {0.369, 0.789, 0.383},
-                                                                    {0.678, 0.864, 0.190},
-                                                                    {0.993, 0.906, 0.144}}};
+  static constexpr std::array<std::array<double, 3>, 6> kColors = {{{0.95, 0.84, 0.77},
+                                                                    {0.95, 0.66, 0.48},
+                                                                    {0.89, 0.38, 0.30},
+                                                                    {0.68, 0.16, 0.35},
+                                                                    {0.38, 0.09, 0.36},
+                                                                    {0.12, 0.05, 0.22}}};
   const double position = (fraction > 0.0 ? std::min(fraction, 1.0) : 0.0) * (kColors.size() - 1);
   const auto low = std::min(static_cast<std::size_t>(position), kColors.size() - 2);
   const double part = position - static_cast<double>(low);
@@ -102,6 +130,20 @@ void SceneMarkers::addTissues() {
     marker.color = color(1.0F, 1.0F, 1.0F);
     marker.points.resize(3 * tissue.surface().size());
     marker.colors.resize(marker.points.size());
+    message_.markers.push_back(marker);
+    edges_.push_back(edgesOf(tissue.surface()));
+    normals_.emplace_back(3, tissue.nodeCount());
+  }
+  for (std::size_t t = 0; t < simulator_.tissues().size(); ++t) {
+    Marker marker;
+    marker.header.frame_id = simulator_.scene().world_frame;
+    marker.ns = simulator_.tissues()[t].name();
+    marker.id = 1;
+    marker.type = Marker::LINE_LIST;
+    marker.pose.orientation.w = 1.0;
+    marker.scale.x = 0.00015;  // m: thin beside elements of some millimetres
+    marker.color = color(0.25F, 0.1F, 0.1F, 0.5F);
+    marker.points.resize(2 * edges_[t].size());
     message_.markers.push_back(marker);
   }
 }
@@ -149,16 +191,24 @@ const visualization_msgs::MarkerArray& SceneMarkers::update(std::int64_t stamp_n
 }
 
 void SceneMarkers::updateTissue(int tissue) {
-  const Tissue& model = simulator_.tissues()[static_cast<std::size_t>(tissue)];
+  const auto t = static_cast<std::size_t>(tissue);
+  const Tissue& model = simulator_.tissues()[t];
   const NodalVectors& x = simulator_.positions(tissue);
-  Marker& marker = message_.markers[static_cast<std::size_t>(tissue)];
+  sumNormals(model.surface(), x, normals_[t]);
+  Marker& marker = message_.markers[t];
   std::size_t corner = 0;
   for (const Triangle& triangle : model.surface()) {
     for (const int node : triangle) {
       const double displacement = (x.col(node) - model.restPositions().col(node)).norm();
       marker.points[corner] = toPoint(x.col(node));
-      marker.colors[corner++] = displacementColor(displacement / style_.displacement_full_scale_m);
+      marker.colors[corner] = displacementColor(displacement / style_.displacement_full_scale_m);
+      shade(normals_[t].col(node), marker.colors[corner++]);
     }
+  }
+  Marker& lines = message_.markers[simulator_.tissues().size() + t];
+  std::size_t end = 0;
+  for (const std::array<int, 2>& edge : edges_[t]) {
+    for (const int node : edge) lines.points[end++] = toPoint(x.col(node));
   }
 }
 
@@ -182,7 +232,7 @@ void SceneMarkers::setArrow(std::size_t index, const SolvedContact& contact) {
     marker.id = static_cast<int>(index - first_arrow_);
     marker.type = Marker::ARROW;
     marker.pose.orientation.w = 1.0;
-    marker.scale = scale(0.0006, 0.0015, 0.002);  // shaft and head diameter, head length: thin beside a tool of 8 mm
+    marker.scale = scale(0.001, 0.0025, 0.004);  // shaft and head diameter, head length: thin beside a tool of 8 mm
     marker.points.resize(2);
     message_.markers.push_back(marker);
   }

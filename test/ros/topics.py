@@ -101,7 +101,7 @@ class Topics(unittest.TestCase):
             self.assertEqual({m.header.frame_id for m in message.markers}, {"world"})
         pressed = self.listeners["markers"].messages[11].markers
         self.assertEqual({m.ns for m in pressed}, {"block", "probe", "contact_forces"})
-        surface = [m for m in pressed if m.ns == "block"][0]
+        surface = [m for m in pressed if m.ns == "block" and m.id == 0][0]
         self.assertEqual(surface.type, Marker.TRIANGLE_LIST)
         self.assertEqual(len(surface.points), 3 * 2 * (2 * 36 + 4 * 12))
         self.assertEqual(len(surface.colors), len(surface.points))

@@ -5,6 +5,7 @@
 #include <std_msgs/ColorRGBA.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -19,14 +20,15 @@ struct MarkerStyle {
   double force_arrow_m_per_n = 0.1;          ///< arrow length per newton: 0.1 N, a light touch, is seen as 1 cm
 };
 
-/// Colour of a displacement: dark blue (0) over green to yellow (1), rising in lightness so that it also reads in grey.
+/// Colour of a displacement: light skin (0) over red to near black (1), falling in lightness so that it also reads in
+/// grey.
 /// @param fraction of full scale; values outside 0..1 are drawn as the nearer end.
 std_msgs::ColorRGBA displacementColor(double fraction);
 
 /// Keeps one MarkerArray and updates it in place. Everything is drawn in the world frame, so RViz needs no tf.
-/// Namespaces: `<tissue>` (one triangle list), `<instrument>` (its touching shapes, and the looks of its other links),
-/// `contact_forces` (an arrow per touching contact: the force on the tissue, its head at the contact point; held
-/// contacts blue, sliding ones red).
+/// Namespaces: `<tissue>` (triangles and their edges), `<instrument>` (its touching shapes, and the looks of its other
+/// links), `contact_forces` (an arrow per touching contact: the force on the tissue, its head at the contact point;
+/// held contacts blue, sliding ones red).
 class SceneMarkers {
  public:
   /// @throws std::invalid_argument when a number of `style` is not finite and > 0. @param simulator must outlive this.
@@ -52,7 +54,9 @@ class SceneMarkers {
 
   const Simulator& simulator_;
   MarkerStyle style_;
-  visualization_msgs::MarkerArray message_;  ///< tissues, then shapes, then arrows
+  visualization_msgs::MarkerArray message_;             ///< tissue surfaces, tissue edges, instrument shapes, arrows
+  std::vector<std::vector<std::array<int, 2>>> edges_;  ///< per tissue: nodes of each surface edge
+  std::vector<NodalVectors> normals_;                   ///< per tissue: scratch for shading
   std::vector<ShapeMarker> shapes_;
   std::size_t first_arrow_ = 0;
 };

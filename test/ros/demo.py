@@ -1,0 +1,91 @@
+#!/usr/bin/python3
+"""The launch files without a display: they play, print a line per second, write plots and end by themselves."""
+import glob
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rosbag
+import rospy
+import rostest
+
+import harness
+
+
+class Demo(unittest.TestCase):
+    def setUp(self):
+        self.directory = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.directory)
+
+    def launch(self, *arguments):
+        """Runs roslaunch until it ends; returns its exit code and all it printed."""
+        environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+        command = ["roslaunch", "--disable-title", "tissue_contact"] + list(arguments)
+        done = subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, universal_newlines=True, timeout=2 * harness.DEADLINE_S,
+                              check=False)
+        return done.returncode, done.stdout
+
+    def assert_pictures(self, names):
+        found = sorted(os.path.basename(path) for path in glob.glob(os.path.join(self.directory, "plots", "*")))
+        self.assertEqual(found, names)
+        for name in names:
+            with open(os.path.join(self.directory, "plots", name), "rb") as stream:
+                data = stream.read()
+            self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n", name)
+            self.assertGreater(len(data), 10000, name)
+
+    def test_demo(self):
+        plots = os.path.join(self.directory, "plots")
+        code, output = self.launch("demo.launch", "output:=" + plots)
+        self.assertEqual(code, 0, output)
+        self.assert_pictures(["probe_force.png", "probe_friction.png"])
+        self.assertIn("wrote " + plots, output)
+        lines = re.findall(r"^t +([\d.]+) s  force probe ([\d.]+) N  contacts (\d+) static (\d+) kinetic  "
+                           r"deepest displacement ([\d.]+) mm$", output, re.MULTILINE)
+        self.assertGreaterEqual(len(lines), 2, output)
+        self.assertGreater(max(float(force) for _, force, _, _, _ in lines), 0.05, output)
+        self.assertGreater(max(float(depth) for _, _, _, _, depth in lines), 1.0, output)
+
+    def test_psm_launch_takes_any_bag_and_scene(self):
+        bag = os.path.join(self.directory, "press.bag")
+        harness.write_bag(bag, harness.press(50))
+        plots = os.path.join(self.directory, "plots")
+        code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + harness.SCENE, "output:=" + plots)
+        self.assertEqual(code, 0, output)
+        self.assert_pictures(["probe_force.png", "probe_friction.png"])
+
+    def test_bag_without_the_topic_ends_with_its_name(self):
+        bag = os.path.join(self.directory, "other.bag")
+        harness.write_bag(bag, harness.press(5), topic="/other/joint_states")
+        _, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + harness.SCENE,
+                                "output:=" + os.path.join(self.directory, "plots"))
+        self.assertIn("has no message on " + harness.TOPIC, output)
+        self.assertIn("/other/joint_states", output)
+        self.assert_pictures([])
+
+    def test_recording_is_what_its_script_makes(self):
+        bags = [os.path.join(self.directory, name) for name in ["first.bag", "second.bag"]]
+        for bag in bags:
+            subprocess.run([harness.program("make_demo_bag.py"), bag], check=True, stdout=subprocess.DEVNULL,
+                           timeout=harness.DEADLINE_S)
+        data = []
+        for bag in bags:
+            with open(bag, "rb") as stream:
+                data.append(stream.read())
+        self.assertEqual(data[0], data[1])
+        contents = []
+        for bag in [bags[0], os.path.join(harness.PACKAGE, "config", "press_drag.bag")]:
+            with rosbag.Bag(bag) as opened:
+                contents.append([(topic, message, time) for topic, message, time in opened.read_messages()])
+        self.assertGreater(len(contents[0]), 1000)
+        self.assertEqual(contents[0], contents[1])
+
+
+if __name__ == "__main__":
+    rospy.init_node("demo")
+    rostest.rosrun("tissue_contact", "demo", Demo, sys.argv)
