@@ -47,22 +47,18 @@ Pose waitForFrame(const std::string& frame, const std::string& world_frame, doub
   tf2_ros::Buffer buffer;
   const tf2_ros::TransformListener listener(buffer);
   const auto start = std::chrono::steady_clock::now();
-  std::chrono::duration<double> waited(0.0);
+  const auto waited_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   std::string why;
-  while (true) {
-    try {
-      return toPose(buffer.lookupTransform(world_frame, frame, ros::Time(0)).transform);
-    } catch (const tf2::TransformException& error) {
-      why = error.what();
+  while (!buffer.canTransform(world_frame, frame, ros::Time(0), &why)) {
+    if (!ros::ok() || waited_s() >= timeout_s) {
+      std::ostringstream text;
+      text << "tf frame '" << frame << "' has no transform to the world frame '" << world_frame << "' after "
+           << timeout_s << " s (" << why << "); publish it, or give ~tf_timeout_s more time";
+      throw std::invalid_argument(text.str());
     }
-    waited = std::chrono::steady_clock::now() - start;
-    if (!ros::ok() || waited.count() >= timeout_s) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  std::ostringstream text;
-  text << "tf frame '" << frame << "' has no transform to the world frame '" << world_frame << "' after " << timeout_s
-       << " s (" << why << "); publish it, or give ~tf_timeout_s more time";
-  throw std::invalid_argument(text.str());
+  return toPose(buffer.lookupTransform(world_frame, frame, ros::Time(0)).transform);
 }
 
 std::string readText(const std::string& file) {
