@@ -46,9 +46,12 @@ std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instrum
   return result;
 }
 
-void requireSameSize(const std::string& what, std::size_t size, std::size_t expected) {
+/// @param index of the tissue or instrument meant, -1 for none. No allocation while all is well.
+void requireSameSize(const char* what, int index, std::size_t size, std::size_t expected) {
   if (size == expected) return;
-  throw std::invalid_argument(what + ": " + std::to_string(size) + " given; there must be " + std::to_string(expected));
+  throw std::invalid_argument(std::string("contact detection: ") + what +
+                              (index < 0 ? "" : " " + std::to_string(index)) + ": " + std::to_string(size) +
+                              " given; there must be " + std::to_string(expected));
 }
 
 Eigen::AlignedBox3d boxAround(const NodalVectors& positions) {
@@ -68,7 +71,7 @@ Eigen::AlignedBox3d boxAround(const ShapeDistance& shape, const Pose& X_WS, doub
 struct ContactDetector::Implementation {
   std::vector<TouchingShape> shapes;
   std::vector<TouchableSurface> surfaces;
-  std::size_t instrument_count = 0;
+  std::vector<std::size_t> link_counts;  ///< per instrument
   std::vector<int> candidates;
   std::vector<ShapeContact> found;
 
@@ -79,9 +82,9 @@ struct ContactDetector::Implementation {
 ContactDetector::ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
                                  const std::vector<NodalVectors>& positions)
     : implementation_(std::make_unique<Implementation>()) {
-  requireSameSize("contact detection: positions of tissues", positions.size(), surfaces.size());
+  requireSameSize("positions of tissues", -1, positions.size(), surfaces.size());
   implementation_->shapes = touchingShapes(instruments);
-  implementation_->instrument_count = instruments.size();
+  for (const Instrument& one : instruments) implementation_->link_counts.push_back(one.model().links().size());
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const int node_count = static_cast<int>(positions[i].cols());
     // The narrow phase checks the indices that the tree then relies on.
@@ -99,17 +102,20 @@ void ContactDetector::detect(const std::vector<NodalVectors>& positions, const s
                              double margin_m, std::vector<Contact>& contacts) {
   Implementation& self = *implementation_;
   requireNonNegative("contact detection: margin", margin_m, "m");
-  requireSameSize("contact detection: positions of tissues", positions.size(), self.surfaces.size());
-  requireSameSize("contact detection: link poses of instruments", X_WL.size(), self.instrument_count);
+  requireSameSize("positions of tissues", -1, positions.size(), self.surfaces.size());
+  requireSameSize("link poses of instruments", -1, X_WL.size(), self.link_counts.size());
+  for (std::size_t i = 0; i < X_WL.size(); ++i) {
+    requireSameSize("link poses of instrument", static_cast<int>(i), X_WL[i].size(), self.link_counts[i]);
+  }
   contacts.clear();
   for (std::size_t tissue = 0; tissue < positions.size(); ++tissue) {
-    requireSameSize("contact detection: nodes of tissue " + std::to_string(tissue), positions[tissue].cols(),
+    requireSameSize("nodes of tissue", static_cast<int>(tissue), positions[tissue].cols(),
                     self.surfaces[tissue].node_count);
     self.surfaces[tissue].refitted = false;
     self.surfaces[tissue].box = boxAround(positions[tissue]);
     for (const TouchingShape& shape : self.shapes) {
       self.detectPair(static_cast<int>(tissue), positions[tissue], shape,
-                      X_WL[shape.instrument].at(shape.link) * shape.X_LS, margin_m, contacts);
+                      X_WL[shape.instrument][shape.link] * shape.X_LS, margin_m, contacts);
     }
   }
 }

@@ -19,6 +19,7 @@ using contact_test::sphereMesh;
 using contact_test::Surface;
 
 const Vector3 kBlock(0.1, 0.1, 0.03);
+constexpr double kPi = 3.14159265358979323846;
 
 bool isFace(const ShapeContact& c) { return c.feature[2] >= 0; }
 bool isVertex(const ShapeContact& c) { return c.feature[1] < 0; }
@@ -64,7 +65,7 @@ TEST(NarrowPhase, SphereOnAFaceAnEdgeAndAVertex) {
     EXPECT_NEAR(contacts[0].weights.sum(), 1.0, 1e-15);
     // `nodes` is the first triangle that holds the feature.
     for (const Triangle& t : block.triangles) {
-      int held = 0;
+      std::ptrdiff_t held = 0;
       for (const int node : t) held += std::count(contacts[0].feature.begin(), contacts[0].feature.end(), node);
       if (held != (isVertex(contacts[0]) ? 1 : 2)) continue;
       EXPECT_EQ(contacts[0].nodes, t);
@@ -175,15 +176,15 @@ TEST(NarrowPhase, EdgeOfATiltedBoxAndRimOfATiltedCylinderPassZeroGapSmoothly) {
     std::unique_ptr<ShapeDistance> shape;
     double reach;  // along z after tilting by 30 degrees about y
   };
-  const double s = std::sin(EIGEN_PI / 6.0);
-  const double c = std::cos(EIGEN_PI / 6.0);
+  const double s = std::sin(kPi / 6.0);
+  const double c = std::cos(kPi / 6.0);
   Case cases[] = {{makeBoxDistance({0.01, 0.02, 0.005}), 0.01 * s + 0.005 * c},
                   {makeCylinderDistance(0.01, 0.005), 0.01 * s + 0.005 * c},
                   {makeMeshDistance(boxMesh({0.01, 0.02, 0.005}, 2)), 0.01 * s + 0.005 * c}};
   for (const Case& k : cases) {
     for (const double gap : {1e-3, 1e-5, 1e-8, 1e-12, 0.0, -1e-12, -1e-8, -1e-5, -1e-3, -3e-3}) {
       Pose X = at({0.6, 0.3, 0.1 + k.reach + gap});
-      X.rotate(Eigen::AngleAxisd(EIGEN_PI / 6.0, Vector3::UnitY()));
+      X.rotate(Eigen::AngleAxisd(kPi / 6.0, Vector3::UnitY()));
       const auto contacts = findContacts(*k.shape, X, block, 2e-3);
       ASSERT_FALSE(contacts.empty()) << gap;
       const ShapeContact& lowest = nearest(contacts);
@@ -202,7 +203,7 @@ TEST(NarrowPhase, CylinderLyingOnATriangleTouchesInTheMiddleOfItsLine) {
   const auto cylinder = makeCylinderDistance(0.003, 0.1);
   for (const double gap : {-1e-4, 0.0, 1e-4}) {
     Pose X = at({0.002, 0.01, 0.003 + gap});
-    X.rotate(Eigen::AngleAxisd(EIGEN_PI / 2.0, Vector3::UnitY()));
+    X.rotate(Eigen::AngleAxisd(kPi / 2.0, Vector3::UnitY()));
     const auto contacts = findContacts(*cylinder, X, one, 2e-4);
     ASSERT_EQ(contacts.size(), 1u);
     EXPECT_LT((pointOf(contacts[0], one.nodes) - Vector3(0.01, 0.01, 0.0)).norm(), 1e-9);

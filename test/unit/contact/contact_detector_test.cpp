@@ -1,0 +1,267 @@
+// The detector over whole instruments and tissues; tree refit; contact frames; shape sizes.
+#include "tissue_contact/contact/contact_detector.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "contact_test_utilities.h"
+
+namespace tissue_contact {
+namespace {
+
+using contact_test::at;
+using contact_test::boxSurface;
+using contact_test::Random;
+using contact_test::Surface;
+
+RobotModel::Link makeLink(const std::string& name, int parent) {
+  RobotModel::Link link;
+  link.name = name;
+  link.parent = parent;
+  return link;
+}
+
+/// A rigid instrument: root, and a tip link with the given shapes.
+Instrument makeInstrument(const std::string& name, const std::vector<ShapeDescription>& shapes) {
+  InstrumentDescription description;
+  description.name = name;
+  description.tip_link = "tip";
+  description.contact_links.push_back({"tip", shapes});
+  return Instrument(description, RobotModel(name, {makeLink("root", -1), makeLink("tip", 0)}, {}), Pose::Identity());
+}
+
+ShapeDescription sphere(double radius, const Vector3& p) { return {SphereGeometry{radius}, at(p)}; }
+
+struct TwoByTwo {
+  std::vector<Instrument> instruments;
+  std::vector<TissueSurface> surfaces;
+  std::vector<NodalVectors> positions;
+  std::vector<std::vector<Pose>> X_WL;
+};
+
+/// Two blocks side by side, 20 mm apart, and two probes of two spheres each over both.
+TwoByTwo makeScene() {
+  TwoByTwo scene;
+  const Surface block = boxSurface({0.04, 0.04, 0.02}, {8, 8, 3});
+  for (const double x : {0.0, 0.06}) {
+    NodalVectors nodes = block.nodes;
+    nodes.row(0).array() += x;
+    scene.surfaces.push_back({block.triangles, block.fixed()});
+    scene.positions.push_back(nodes);
+  }
+  for (const double y : {0.0103, 0.0309}) {
+    const std::string name = y < 0.02 ? "left" : "right";
+    scene.instruments.push_back(makeInstrument(
+        name, {sphere(0.005, {0.0211, y, 0.0}), {BoxGeometry{{0.012, 0.008, 0.01}}, at({0.0803, y, 0.0})}}));
+    scene.X_WL.push_back({Pose::Identity(), at({0.0, 0.0, 0.0245})});
+  }
+  return scene;
+}
+
+bool sameBits(const std::vector<Contact>& a, const std::vector<Contact>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!(a[i].key == b[i].key) || a[i].nodes != b[i].nodes || a[i].weights != b[i].weights) return false;
+    if (a[i].gap_m != b[i].gap_m || std::signbit(a[i].gap_m) != std::signbit(b[i].gap_m)) return false;
+    if (a[i].p_WC != b[i].p_WC || a[i].R_WC != b[i].R_WC) return false;
+  }
+  return true;
+}
+
+TEST(ContactDetector, NamesTissueInstrumentLinkAndShape) {
+  TwoByTwo scene = makeScene();
+  ContactDetector detector(scene.instruments, scene.surfaces, scene.positions);
+  std::vector<Contact> contacts;
+  detector.detect(scene.positions, scene.X_WL, 1e-3, contacts);
+  std::array<std::array<int, 2>, 2> count{};
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Contact& c = contacts[i];
+    if (i > 0) {
+      EXPECT_TRUE(contacts[i - 1].key < c.key);
+    }
+    EXPECT_EQ(c.key.link, 0);
+    EXPECT_EQ(c.key.shape, c.key.tissue);  // the sphere is over the first block, the box over the second
+    ++count[c.key.tissue][c.key.instrument];
+    Vector3 p = Vector3::Zero();
+    for (int k = 0; k < 3; ++k) p += c.weights[k] * scene.positions[c.key.tissue].col(c.nodes[k]);
+    EXPECT_EQ(p, c.p_WC);
+    EXPECT_NEAR(c.R_WC.determinant(), 1.0, 1e-12);
+    const bool over_own = std::abs(c.p_WC.y() - (c.key.instrument == 0 ? 0.0103 : 0.0309)) < 0.006;
+    EXPECT_TRUE(over_own);
+  }
+  for (const auto& row : count) {
+    for (const int n : row) EXPECT_GT(n, 0);
+  }
+  ASSERT_FALSE(contacts.empty());
+  // The sphere presses by 0.5 mm from above.
+  const auto deepest = std::min_element(contacts.begin(), contacts.end(),
+                                        [](const Contact& a, const Contact& b) { return a.gap_m < b.gap_m; });
+  EXPECT_NEAR(deepest->gap_m, -5e-4, 1e-15);
+  EXPECT_LT((deepest->R_WC.col(0) + Vector3::UnitZ()).norm(), 1e-12);
+}
+
+TEST(ContactDetector, LinkAndShapePosesPlaceTheShape) {
+  const Surface block = boxSurface({0.04, 0.04, 0.02}, {4, 4, 2});
+  Random random(40);
+  const Pose X_LS = random.pose(0.02);
+  std::vector<Instrument> instruments;
+  instruments.push_back(makeInstrument("probe", {{CylinderGeometry{0.003, 0.02}, X_LS}}));
+  // The cylinder's flat end on the block: its middle 10 mm above the surface, axis up.
+  const Pose X_WS = at({0.0211, 0.0193, 0.02 + 0.01 + 1e-4});
+  ContactDetector detector(instruments, {{block.triangles, block.fixed()}}, {block.nodes});
+  std::vector<Contact> contacts;
+  detector.detect({block.nodes}, {{Pose::Identity(), X_WS * X_LS.inverse()}}, 5e-4, contacts);
+  ASSERT_FALSE(contacts.empty());
+  for (const Contact& c : contacts) {
+    EXPECT_NEAR(c.gap_m, 1e-4, 1e-15);
+    EXPECT_LT((c.R_WC.col(0) + Vector3::UnitZ()).norm(), 1e-12);
+  }
+}
+
+TEST(ContactDetector, RepeatsToTheLastBitWhateverItSawBefore) {
+  TwoByTwo scene = makeScene();
+  ContactDetector detector(scene.instruments, scene.surfaces, scene.positions);
+  Random random(41);
+  std::vector<Contact> contacts;
+  std::vector<Contact> again;
+  std::vector<Contact> fresh;
+  std::size_t total = 0;
+  for (int i = 0; i < 20; ++i) {
+    for (NodalVectors& nodes : scene.positions) {
+      for (Eigen::Index n = 0; n < nodes.cols(); ++n) nodes.col(n) += random.vector(5e-4);
+    }
+    scene.X_WL[0][1] = at({0.0, 0.0, 0.0245}) * random.pose(0.001);
+    detector.detect(scene.positions, scene.X_WL, 1e-3, contacts);
+    detector.detect(scene.positions, scene.X_WL, 1e-3, again);
+    EXPECT_TRUE(sameBits(contacts, again));
+    // Built for these very positions, the tree has another structure; the contacts must not know.
+    ContactDetector(scene.instruments, scene.surfaces, scene.positions)
+        .detect(scene.positions, scene.X_WL, 1e-3, fresh);
+    EXPECT_TRUE(sameBits(contacts, fresh));
+    total += contacts.size();
+  }
+  EXPECT_GT(total, 200u);
+}
+
+TEST(ContactDetector, RefusesWhatDoesNotFit) {
+  TwoByTwo scene = makeScene();
+  const auto build = [&] { return ContactDetector(scene.instruments, scene.surfaces, scene.positions); };
+  {
+    ContactDetector detector = build();
+    std::vector<Contact> contacts;
+    for (const double margin :
+         {-1e-3, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      EXPECT_THROW(detector.detect(scene.positions, scene.X_WL, margin, contacts), std::invalid_argument);
+    }
+    EXPECT_THROW(detector.detect({scene.positions[0]}, scene.X_WL, 1e-3, contacts), std::invalid_argument);
+    EXPECT_THROW(detector.detect(scene.positions, {scene.X_WL[0]}, 1e-3, contacts), std::invalid_argument);
+    EXPECT_THROW(detector.detect(scene.positions, {{Pose::Identity()}, {Pose::Identity()}}, 1e-3, contacts),
+                 std::invalid_argument);
+    EXPECT_THROW(detector.detect({scene.positions[0], NodalVectors::Zero(3, 2)}, scene.X_WL, 1e-3, contacts),
+                 std::invalid_argument);
+  }
+  scene.surfaces[1].triangles[3] = {0, 1, 100000};
+  EXPECT_THROW(build(), std::invalid_argument);
+  scene.surfaces[1].triangles[3] = {0, -1, 2};
+  EXPECT_THROW(build(), std::invalid_argument);
+  scene.surfaces[1].triangles[3] = {0, 1, 1};
+  EXPECT_THROW(build(), std::invalid_argument);
+  scene = makeScene();
+  scene.surfaces[0].fixed.pop_back();
+  EXPECT_THROW(build(), std::invalid_argument);
+  scene = makeScene();
+  scene.positions.pop_back();
+  EXPECT_THROW(build(), std::invalid_argument);
+}
+
+TEST(ContactDetector, NoTissueNoInstrumentNoContact) {
+  std::vector<Contact> contacts(3);
+  ContactDetector nothing({}, {}, {});
+  nothing.detect({}, {}, 1e-3, contacts);
+  EXPECT_TRUE(contacts.empty());
+  TwoByTwo scene = makeScene();
+  for (auto& poses : scene.X_WL) poses[1] = at({0.0, 0.0, 1.0});
+  ContactDetector far(scene.instruments, scene.surfaces, scene.positions);
+  far.detect(scene.positions, scene.X_WL, 1e-3, contacts);
+  EXPECT_TRUE(contacts.empty());
+}
+
+TEST(TriangleTree, FindsExactlyTheOverlappingBoxesAfterRefit) {
+  Surface block = boxSurface({0.1, 0.1, 0.03}, {12, 9, 4});
+  TriangleTree tree(block.nodes, block.triangles);
+  Random random(42);
+  std::size_t found_total = 0;
+  for (int i = 0; i < 50; ++i) {
+    for (Eigen::Index n = 0; n < block.nodes.cols(); ++n) block.nodes.col(n) += random.vector(2e-3);
+    tree.refit(block.nodes);
+    const Vector3 low = random.vector(0.1);
+    const Eigen::AlignedBox3d box(low, Vector3(low + Vector3::Constant(0.06)));
+    std::vector<int> expected;
+    for (std::size_t t = 0; t < block.triangles.size(); ++t) {
+      Eigen::AlignedBox3d around;
+      for (const int node : block.triangles[t]) around.extend(Vector3(block.nodes.col(node)));
+      if (around.intersects(box)) expected.push_back(static_cast<int>(t));
+    }
+    std::vector<int> found;
+    tree.overlapping(box, found);
+    EXPECT_EQ(found, expected);
+    found_total += found.size();
+  }
+  EXPECT_GT(found_total, 500u);
+}
+
+TEST(ContactFrame, IsOrthonormalAndRightHandedForEveryNormal) {
+  Random random(43);
+  std::vector<Vector3> normals;
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        if (x != 0 || y != 0 || z != 0) normals.push_back(Vector3(x, y, z).normalized());
+      }
+    }
+  }
+  for (int i = 0; i < 1000; ++i) normals.push_back(random.direction());
+  const Vector3 worst = -Vector3(2.0, 3.0, 6.0) / 7.0;  // the one direction without an answer, and close to it
+  for (const double off : {0.0, 1e-17, 1e-14, 1e-11, 1e-8, 1e-4}) {
+    normals.push_back((worst + off * random.direction()).normalized());
+  }
+  for (const Vector3& n : normals) {
+    const Matrix3 R = contactFrame(n);
+    EXPECT_EQ(Vector3(R.col(0)), n);
+    EXPECT_LT((R.transpose() * R - Matrix3::Identity()).norm(), 1e-14) << n.transpose();
+    EXPECT_NEAR(R.determinant(), 1.0, 1e-14);
+  }
+}
+
+TEST(ContactFrame, ChangesLittleWithTheNormal) {
+  Random random(44);
+  const double step = 1e-6;
+  for (int i = 0; i < 1000; ++i) {
+    const Vector3 n = random.direction();
+    if (n.dot(Vector3(2.0, 3.0, 6.0) / 7.0) < -0.99) continue;
+    const Vector3 other = (n + step * random.direction()).normalized();
+    EXPECT_LT((contactFrame(n) - contactFrame(other)).norm(), 20.0 * step);
+  }
+}
+
+TEST(SmallestHalfExtent, OfEveryShape) {
+  CollisionShape shape;
+  shape.geometry = SphereGeometry{0.005};
+  EXPECT_DOUBLE_EQ(smallestHalfExtent(shape), 0.005);
+  shape.geometry = BoxGeometry{{0.02, 0.006, 0.01}};
+  EXPECT_DOUBLE_EQ(smallestHalfExtent(shape), 0.003);
+  shape.geometry = CylinderGeometry{0.004, 0.006};
+  EXPECT_DOUBLE_EQ(smallestHalfExtent(shape), 0.003);
+  shape.geometry = CylinderGeometry{0.004, 0.1};
+  EXPECT_DOUBLE_EQ(smallestHalfExtent(shape), 0.004);
+  shape.geometry = MeshGeometry{"jaw.stl", Vector3::Ones()};
+  EXPECT_THROW(smallestHalfExtent(shape), std::invalid_argument);
+  shape.mesh = std::make_shared<TriangleMesh>(contact_test::boxMesh({0.01, 0.002, 0.003}, 2));
+  EXPECT_DOUBLE_EQ(smallestHalfExtent(shape), 0.002);
+}
+
+}  // namespace
+}  // namespace tissue_contact
