@@ -239,9 +239,10 @@ void SceneMarkers::setArrow(std::size_t index, const SolvedContact& contact) {
   Marker& marker = message_.markers[index];
   marker.action = Marker::ADD;
   marker.color = contact.state == ContactState::kStatic ? color(0.1F, 0.45F, 0.95F) : color(0.9F, 0.15F, 0.1F);
-  const Vector3& head = contact.contact.p_WC;
-  marker.points[0] = toPoint(head - style_.force_arrow_m_per_n * contact.force_on_tissue_n);
-  marker.points[1] = toPoint(head);
+  // On the instrument, so that the head stands out of the tissue.
+  const Vector3& start = contact.contact.p_WC;
+  marker.points[0] = toPoint(start);
+  marker.points[1] = toPoint(start - style_.force_arrow_m_per_n * contact.force_on_tissue_n);
 }
 
 }  // namespace tissue_contact

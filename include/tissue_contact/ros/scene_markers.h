@@ -17,7 +17,7 @@ namespace tissue_contact {
 /// How markers are drawn. Fixed scales, so that pictures taken at different times compare.
 struct MarkerStyle {
   double displacement_full_scale_m = 0.005;  ///< displacement drawn in the last colour, m: a deep press of soft tissue
-  double force_arrow_m_per_n = 0.1;          ///< arrow length per newton: 0.1 N, a light touch, is seen as 1 cm
+  double force_arrow_m_per_n = 0.5;          ///< arrow length per newton: 0.02 N at one contact is seen as 1 cm
 };
 
 /// Colour of a displacement: light skin (0) over red to near black (1), falling in lightness so that it also reads in
@@ -27,7 +27,7 @@ std_msgs::ColorRGBA displacementColor(double fraction);
 
 /// Keeps one MarkerArray and updates it in place. Everything is drawn in the world frame, so RViz needs no tf.
 /// Namespaces: `<tissue>` (triangles and their edges), `<instrument>` (its touching shapes, and the looks of its other
-/// links), `contact_forces` (an arrow per touching contact: the force on the tissue, its head at the contact point;
+/// links), `contact_forces` (an arrow per touching contact: the force on the instrument, from the contact point;
 /// held contacts blue, sliding ones red).
 class SceneMarkers {
  public:
