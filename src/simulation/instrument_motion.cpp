@@ -11,6 +11,9 @@ namespace {
 /// Share of its smallest half extent that a shape may move in one step.
 constexpr double kTravelPerStep = 0.5;
 
+/// A mesh without thickness is treated as if it reached this share of its radius where it is thinnest.
+constexpr double kThinnest = 0.01;
+
 /// Distance from the shape's origin to its farthest point, m.
 double boundingRadius(const CollisionShape& shape) {
   if (const auto* sphere = std::get_if<SphereGeometry>(&shape.geometry)) return sphere->radius_m;
@@ -34,8 +37,9 @@ InstrumentMotion::InstrumentMotion(const std::vector<Instrument>& instruments)
     for (const ContactLink& contact_link : instruments[i].contactLinks()) {
       MovingLink link{contact_link.link, {}};
       for (const CollisionShape& shape : contact_link.shapes) {
-        link.shapes.push_back(
-            {shape.X_LS.translation(), tissue_contact::smallestHalfExtent(shape), boundingRadius(shape)});
+        const double radius = boundingRadius(shape);
+        const double half_extent = std::max(tissue_contact::smallestHalfExtent(shape), kThinnest * radius);
+        link.shapes.push_back({shape.X_LS.translation(), half_extent, radius});
       }
       states_[i].links.push_back(link);
     }
