@@ -128,10 +128,13 @@ TEST(PsmClassic, ShapesLieWhereTheInstrumentIs) {
   const auto& wrist = std::get<CylinderGeometry>(links[1].shapes.at(0).geometry);
   EXPECT_LE((point(1, Vector3(0, 0, wrist.length_m / 2)) - Vector3::Zero()).norm(), 1e-12);
   for (const std::size_t jaw : {3u, 4u}) {
-    const Vector3 size = std::get<BoxGeometry>(links[jaw].shapes.at(0).geometry).size_m;
+    const auto& body = std::get<CylinderGeometry>(links[jaw].shapes.at(0).geometry);
+    const auto& end = std::get<SphereGeometry>(links[jaw].shapes.at(1).geometry);
     const Vector3 center = point(jaw, Vector3::Zero());
-    EXPECT_NEAR(center.z(), size.y() / 2, 1e-12);               // begins at the pivot
-    EXPECT_NEAR(center.head<2>().norm(), size.x() / 2, 1e-12);  // closed jaws touch in the middle
+    EXPECT_NEAR(center.z(), body.length_m / 2, 1e-12);           // begins at the pivot
+    EXPECT_NEAR(center.head<2>().norm(), body.radius_m, 1e-12);  // closed jaws touch in the middle
+    EXPECT_EQ(end.radius_m, body.radius_m);
+    EXPECT_NEAR(body.length_m + end.radius_m, 0.010, 1e-12);  // 10 mm long
   }
 }
 
