@@ -9,13 +9,11 @@
 ///
 /// Why not GJK (FCL 0.7):
 ///  - clear of the box its independent solver (tolerance 1e-12, unit size) stopped early on 53 of 17 373 random
-///  triangles
-///    and reported success, with gaps up to 0.3 mm too large for a 20 x 12 x 8 mm box; all pairs take 1 us, GJK 2.5 us;
-///    and where an edge is parallel to the triangle it returns one end of the overlap or the other, all pairs the
-///    middle;
+///    triangles and reported success, with gaps up to 0.3 mm too large for a 20 x 12 x 8 mm box; all pairs take 1 us,
+///    GJK 2.5 us; and where an edge is parallel to the triangle it returns one end of the overlap or the other, all
+///    pairs the middle;
 ///  - against a box shrunk to stay clear in shallow contact it finds the point nearest to the shrunk box's edge: for a
-///  20 mm
-///    box tilted by 20 degrees, shrunk by 5 mm, that is 3 mm beside the real edge, where the gap is 1.1 mm too large.
+///    20 mm box tilted by 20 degrees, shrunk by 5 mm, that is 3 mm beside the real edge, the gap 1.1 mm too large.
 #include <algorithm>
 
 #include "contact/plane_minimum.h"

@@ -5,8 +5,6 @@
 #include <utility>
 
 #include "contact/narrow_phase.h"
-#include "contact/tolerances.h"
-#include "contact/triangle_geometry.h"
 #include "contact/triangle_tree.h"
 #include "tissue_contact/core/check.h"
 
@@ -149,13 +147,12 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
   for (const TouchingShape& shape : implementation_->shapes) {
     if (shape.instrument != key.instrument || shape.contact_link != key.link || shape.shape != key.shape) continue;
     const Pose X_WS = X_WL.at(shape.instrument).at(shape.link) * shape.X_LS;
-    const Vector3 a = x.col(contact.nodes[0]);
-    const Vector3 b = x.col(contact.nodes[1]);
-    const Vector3 c = x.col(contact.nodes[2]);
-    const Vector3 p_W = contact.weights[0] * a + contact.weights[1] * b + contact.weights[2] * c;
+    Vector3 p_W = Vector3::Zero();
+    for (int i = 0; i < 3; ++i) p_W += contact.weights[i] * x.col(contact.nodes[i]);
     const SignedDistance here = shape.distance->at(X_WS.linear().transpose() * (p_W - X_WS.translation()));
     const Vector3 normal_W = (X_WS.linear() * here.normal).normalized();
-    if (!(here.distance <= margin_m) || !(normal_W.dot(triangleNormal(a, b, c)) < -kFacing)) return false;
+    const NarrowPhase& surface = implementation_->surfaces[key.tissue].narrow_phase;
+    if (!(here.distance <= margin_m) || !surface.faces(key.feature, normal_W, x)) return false;
     contact.p_WC = p_W;
     contact.R_WC = contactFrame(normal_W);
     contact.gap_m = here.distance;

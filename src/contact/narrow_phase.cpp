@@ -207,6 +207,14 @@ bool NarrowPhase::add(int triangle, const Vector3& weights, int corner, const Ve
   return true;
 }
 
+bool NarrowPhase::faces(const SurfaceFeature& feature, const Vector3& normal_W, const NodalVectors& positions) const {
+  return topology_.anyTriangleOf(feature, [&](int triangle) {
+    const Triangle& nodes = topology_.triangles()[triangle];
+    const Vector3 own = triangleNormal(positions.col(nodes[0]), positions.col(nodes[1]), positions.col(nodes[2]));
+    return normal_W.dot(own) < -kFacing;
+  });
+}
+
 /// One contact per feature and corner: the one of smallest gap, whatever order the triangles came in.
 void NarrowPhase::mergeAndSort() {
   std::vector<ShapeContact>& contacts = *call_.contacts;

@@ -7,15 +7,13 @@
 /// to step.
 ///
 /// Which contacts are real (tissue surfaces are closed, shapes solid):
-///  - A contact counts when at least one surface triangle at its feature faces the instrument, contact normal .
-///  triangle
-///    normal < -kFacing. A point of the tissue nearest to something outside it always has such a triangle. The lower
+///  - A contact counts when at least one surface triangle at its feature faces the instrument (contact normal times
+///    triangle normal < -kFacing). A point of the tissue nearest to something outside it always has such a triangle. The lower
 ///    face of a thin sheet pressed from above has none, nor has a surface that the middle of the shape has already
 ///    passed: tissue more than half-way through an instrument is let go, never pulled through its far side; an
 ///    instrument that starts inside touches nothing until it reaches the surface.
 ///  - At a face (edge) the normal is perpendicular to that face (edge), see stationaryGradient(); where no gradient of
-///  the
-///    distance comes near that, or the shape pierces the triangle in its middle (|g| < 0.3), there is no contact
+///    the distance comes near that, or the shape pierces the triangle in its middle (|g| < 0.3), there is no contact
 ///    direction.
 #pragma once
 
@@ -48,6 +46,9 @@ class NarrowPhase {
   /// @param contacts overwritten, sorted by feature and corner. No allocation once the vectors have grown.
   void findContacts(const ShapeDistance& shape, const Pose& X_WS, const NodalVectors& positions,
                     const std::vector<int>& candidates, double margin, std::vector<ShapeContact>& contacts);
+
+  /// Whether a surface triangle at the feature faces a shape whose contact normal is `normal_W` (unit).
+  bool faces(const SurfaceFeature& feature, const Vector3& normal_W, const NodalVectors& positions) const;
 
  private:
   struct NodeCache {

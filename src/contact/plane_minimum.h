@@ -13,7 +13,6 @@ class PlaneSet {
  public:
   static constexpr int kCapacity = 8;
 
-  void clear() { count_ = 0; }
   int count() const { return count_; }
   bool full() const { return count_ == kCapacity; }
   void add(const Vector3& corner_values) { values_[count_++] = corner_values; }

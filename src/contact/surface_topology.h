@@ -19,7 +19,6 @@ class SurfaceTopology {
   SurfaceTopology(std::vector<Triangle> triangles, int node_count);
 
   const std::vector<Triangle>& triangles() const { return triangles_; }
-  int nodeCount() const { return static_cast<int>(fan_start_.size()) - 1; }
 
   /// The feature that the corners of non-zero weight make up.
   SurfaceFeature featureOf(int triangle, const Vector3& weights) const;

@@ -1,7 +1,10 @@
 #include "tissue_contact/instrument/collision_shape.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <set>
 #include <stdexcept>
+#include <utility>
 #include <variant>
 
 #include "tissue_contact/core/check.h"
@@ -28,6 +31,22 @@ void check(const MeshGeometry& mesh) {
       "it is a relative path in a URDF that is not a file");
 }
 
+/// Contact needs to know which side is inside. Meshes as they come have small holes; an open sheet is mostly border.
+void checkSolid(const TriangleMesh& mesh, const std::string& file) {
+  constexpr double kMostBorder = 0.2;  // share of triangle sides without a partner
+  std::set<std::pair<int, int>> sides;
+  for (const Triangle& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) sides.insert({t[k], t[(k + 1) % 3]});
+  }
+  const auto open = std::count_if(sides.begin(), sides.end(), [&](const std::pair<int, int>& side) {
+    return sides.count({side.second, side.first}) == 0;
+  });
+  if (static_cast<double>(open) <= kMostBorder * static_cast<double>(sides.size())) return;
+  throw std::invalid_argument("mesh '" + file + "' is an open sheet: " + std::to_string(open) + " of its " +
+                              std::to_string(sides.size()) +
+                              " triangle sides have no neighbour; a tool that touches tissue must be a closed solid");
+}
+
 void checkPose(const Pose& X) {
   constexpr double kTolerance = 1e-6;  // dimensionless; poses read from text are not exact rotations
   if (!X.matrix().allFinite()) throw std::invalid_argument("shape has an origin that is not finite");
@@ -47,6 +66,7 @@ CollisionShape makeCollisionShape(const ShapeDescription& description) {
   shape.X_LS = description.X_LS;
   if (const auto* mesh = std::get_if<MeshGeometry>(&description.geometry)) {
     shape.mesh = std::make_shared<const TriangleMesh>(loadTriangleMesh(mesh->file, mesh->scale));
+    checkSolid(*shape.mesh, mesh->file);
   }
   return shape;
 }

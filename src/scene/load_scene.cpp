@@ -82,6 +82,10 @@ StepDescription parseStep(const YamlCursor& cursor) {
   if (step.max_gap_s < step.max_step_s) {
     cursor.fail("max_gap_s is shorter than max_step_s; it must be at least as long");
   }
+  constexpr double kMostStepsPerGap = 1e5;  // a late joint state must not keep the node busy for minutes
+  if (step.max_gap_s > kMostStepsPerGap * step.max_step_s) {
+    cursor.fail("max_gap_s is more than 100000 times max_step_s; shorten max_gap_s or lengthen max_step_s");
+  }
   return step;
 }
 

@@ -61,24 +61,35 @@ void InstrumentMotion::place(int instrument, const VectorX& positions) {
 int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets) {
   // A duration that is a whole number of steps up to round-off of the stamps must not get one step more.
   constexpr double kRoundOff = 1e-9;
+  constexpr double kLargestJointMove = 1.0;  // rad, or m
+  double joint_steps = 1.0;
   for (std::size_t i = 0; i < states_.size(); ++i) {
-    states_[i].start = states_[i].positions;
-    states_[i].target = targets[i];
+    State& state = states_[i];
+    state.start = state.positions;
+    state.target = targets[i];
+    if (instruments_[i].isObstacle()) continue;
+    const double farthest = (state.target - state.start).cwiseAbs().maxCoeff();
+    joint_steps = std::max(joint_steps, std::ceil(farthest / kLargestJointMove));
   }
   const double by_time = std::max(1.0, std::ceil(duration_s / max_step_s - kRoundOff));
-  double longest = 0.0;
-  const std::vector<std::vector<Pose>> X_WL_before = X_WL_;
-  for (int k = 1; k <= static_cast<int>(by_time); ++k) {
-    moveTo(k / by_time);
-    longest = std::max(longest, longestTravelPerExtent());
-    finishStep();
-  }
-  X_WL_ = X_WL_before;
-  const double steps = by_time * std::max(1.0, std::ceil(longest / kTravelPerStep));
+  double steps = std::max(by_time, joint_steps);
+  if (joint_steps <= kMaxTravelSteps) steps *= std::max(1.0, std::ceil(longestTravelOver(steps) / kTravelPerStep));
   jumped_ = !(steps <= std::max(by_time, kMaxTravelSteps));
   if (!jumped_) return static_cast<int>(steps);
   for (std::size_t i = 0; i < states_.size(); ++i) place(static_cast<int>(i), targets[i]);
   return static_cast<int>(by_time);
+}
+
+double InstrumentMotion::longestTravelOver(double steps) {
+  double longest = 0.0;
+  X_WL_before_ = X_WL_;
+  for (int k = 1; k <= static_cast<int>(steps); ++k) {
+    moveTo(k / steps);
+    longest = std::max(longest, longestTravelPerExtent());
+    finishStep();
+  }
+  X_WL_ = X_WL_before_;
+  return longest;
 }
 
 void InstrumentMotion::moveTo(double fraction) {
@@ -86,7 +97,8 @@ void InstrumentMotion::moveTo(double fraction) {
     State& state = states_[i];
     if (instruments_[i].isObstacle()) continue;
     // The last step must end exactly at the target, whatever round-off the interpolation has.
-    state.positions = fraction < 1.0 ? VectorX(state.start + fraction * (state.target - state.start)) : state.target;
+    state.positions = state.target;
+    if (fraction < 1.0) state.positions = state.start + fraction * (state.target - state.start);
     instruments_[i].linkPoses(state.positions, X_WL_end_[i]);
   }
 }

@@ -65,7 +65,7 @@ struct Simulator::Implementation {
   InstrumentMotion motion;
   std::vector<NodalVectors> x;                    ///< per tissue
   std::vector<Elasticity::State> elastic_states;  ///< per tissue
-  NodalVectors forces;                            ///< of one tissue at a time
+  std::vector<NodalVectors> forces;               ///< elastic, per tissue
   ContactDetector detector;
   std::vector<Contact> contacts;
   ContactMemory memory;
@@ -90,6 +90,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       solver({scene.solver.iterations, scene.solver.contact_passes, scene.solver.tolerance}) {
   requirePositive("step.max_step_s", scene.step.max_step_s, "s");
   elastic_states.resize(tissues.size());
+  forces = restPositionsOf(tissues);  // for their sizes
   problem.bodies.resize(tissues.size());
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     problem.bodies[t].K = &elastic_states[t].stiffness;
@@ -134,7 +135,10 @@ void Simulator::Implementation::detectContacts(double dt) {
   for (const NodalVectors& v : solution.v)
     fastest_squared = std::max(fastest_squared, v.colwise().squaredNorm().maxCoeff());
   const double tissue_travel = dt * (std::sqrt(fastest_squared) + dt * scene.gravity_m_per_s2.norm());
-  const double margin = kMarginFactor * (motion.longestTravel() + tissue_travel) + kMarginPerEdge * mean_edge;
+  double margin = kMarginFactor * (motion.longestTravel() + tissue_travel) + kMarginPerEdge * mean_edge;
+  // Beyond so many elements nothing touches in one step; the bound also keeps an overflow of the speeds out.
+  constexpr double kMostEdges = 1e6;
+  margin = std::min(margin, kMostEdges * mean_edge);
   detector.detect(x, motion.startPoses(), margin, contacts);
   memory.addKeptPoints(detector, x, motion.startPoses(), margin, contacts);
 }
@@ -144,12 +148,11 @@ void Simulator::Implementation::assembleTissues(double dt) {
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     const Tissue& tissue = tissues[t];
     BodySystem& body = problem.bodies[t];
-    forces.resize(3, tissue.nodeCount());
-    tissue.elasticity().update(x[t], elastic_states[t], forces);
+    tissue.elasticity().update(x[t], elastic_states[t], forces[t]);
     body.stiffness_scale = dt * (dt + tissue.damping().stiffness_s);
     body.mass = (1.0 + dt * tissue.damping().mass_per_s) * tissue.nodeMasses();
     body.b = solution.v[t] * tissue.nodeMasses().asDiagonal();
-    body.b += dt * forces;
+    body.b += dt * forces[t];
     body.b += (dt * scene.gravity_m_per_s2) * tissue.nodeMasses().transpose();
     for (int i = 0; i < tissue.nodeCount(); ++i) {
       if (tissue.fixed()[i]) body.b.col(i).setZero();
@@ -185,11 +188,14 @@ void Simulator::Implementation::assembleContacts(double dt) {
 void Simulator::Implementation::moveTissues(double dt) {
   bool finite = true;
   for (const NodalVectors& v : solution.v) finite = finite && v.allFinite();
+  for (const Vector3& impulse : solution.impulses) finite = finite && impulse.allFinite();
   if (finite) {
     for (std::size_t t = 0; t < tissues.size(); ++t) x[t] += dt * solution.v[t];
     return;
   }
   report.discarded = true;
+  report.converged = false;
+  report.residuals = Residuals();
   for (NodalVectors& v : solution.v) v.setZero();
   for (Vector3& impulse : solution.impulses) impulse.setZero();
   std::fill(solution.states.begin(), solution.states.end(), ContactState::kOpen);

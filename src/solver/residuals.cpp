@@ -1,10 +1,14 @@
 #include "tissue_contact/solver/residuals.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace tissue_contact {
 namespace {
+
+/// std::max would drop a NaN: a worst value that is not a number must stay visible.
+void worsen(double& worst, double value) {
+  if (!(value <= worst)) worst = value;
+}
 
 /// |A v - b - J'lambda| / |J'lambda| over all bodies.
 double momentumResidual(const ContactProblem& problem, const ContactSolution& solution,
@@ -32,7 +36,8 @@ double momentumResidual(const ContactProblem& problem, const ContactSolution& so
       scale += p.squaredNorm();
     }
   }
-  return scale > 0.0 ? std::sqrt(defect / scale) : 0.0;
+  if (std::isnan(defect)) return defect;
+  return scale == 0.0 ? 0.0 : std::sqrt(defect / scale);
 }
 
 }  // namespace
@@ -46,19 +51,19 @@ Residuals computeResiduals(const ContactProblem& problem, const ContactSolution&
     const Vector3 u = relativeVelocity(row, solution.v);
     const Vector3 force = solution.impulses[c] / dt;
     const ContactState state = solution.states[c];
-    worst.penetration_m = std::max(worst.penetration_m, -(row.gap_m + dt * u[0]));
-    worst.adhesion_n = std::max(worst.adhesion_n, -force[0]);
-    worst.complementarity_w = std::max(worst.complementarity_w, std::abs(force[0] * (u[0] - row.required_u_n)));
+    worsen(worst.penetration_m, -(row.gap_m + dt * u[0]));
+    worsen(worst.adhesion_n, -force[0]);
+    worsen(worst.complementarity_w, std::abs(force[0] * (u[0] - row.required_u_n)));
     if (state == ContactState::kOpen) continue;
     const Vector2 friction = force.tail<2>();
     const Vector2 sliding = u.tail<2>();
     const double mu = state == ContactState::kStatic && !row.was_sliding ? row.law.mu_static : row.law.mu_kinetic;
-    worst.cone_violation_n = std::max(worst.cone_violation_n, friction.norm() - mu * force[0]);
+    worsen(worst.cone_violation_n, friction.norm() - mu * force[0]);
     if (state == ContactState::kStatic) {
-      worst.static_slip_m_per_s = std::max(worst.static_slip_m_per_s, sliding.norm());
+      worsen(worst.static_slip_m_per_s, sliding.norm());
     } else if (friction.norm() > 0.0 && sliding.norm() > 0.0) {
       const double cross = friction.x() * sliding.y() - friction.y() * sliding.x();
-      worst.kinetic_angle_rad = std::max(worst.kinetic_angle_rad, std::abs(std::atan2(cross, -friction.dot(sliding))));
+      worsen(worst.kinetic_angle_rad, std::abs(std::atan2(cross, -friction.dot(sliding))));
     }
   }
   worst.momentum = momentumResidual(problem, solution, scratch);

@@ -50,6 +50,7 @@ TEST(Indentation, PressForceOfTheBenchmarkBlock) {
 }
 
 // A held press must come to rest (0.3 % is left by 150 iterations). With one closest point per face alone it cycles by
+// 6 % for ever.
 TEST(Indentation, HeldPressComesToRest) {
   Simulator simulator = makePress(16, 0.0);
   press(simulator, 0.000625);
@@ -60,21 +61,30 @@ TEST(Indentation, HeldPressComesToRest) {
   }
 }
 
-TEST(Indentation, InstrumentAndTissueWrenchesCancel) {
+// At rest the fixed base carries what the instrument presses: elastic forces of the elements on the fixed nodes against the
+// published wrench, force and moment. A thousandth is left of the motion and of the solver's tolerance.
+TEST(Indentation, BaseCarriesWhatTheInstrumentFeels) {
   Simulator simulator = makePress(8, 0.3);
   press(simulator, 0.002);
   for (int k = 1; k <= 10; ++k) simulator.advance(0.02, {Vector3(1e-4 * k, 5e-5 * k, -0.002)});
+  for (int k = 1; k <= 50; ++k) simulator.advance(0.02, {Vector3(1e-3, 5e-4, -0.002)});
+  const Tissue& tissue = simulator.tissues()[0];
+  Elasticity::State state = tissue.elasticity().makeState();
+  NodalVectors forces(3, tissue.nodeCount());
+  tissue.elasticity().update(simulator.positions(0), state, forces);
   Vector3 force = Vector3::Zero();
   Vector3 moment = Vector3::Zero();
   const Vector3 tip = simulator.linkPoses(0).back().translation();
-  for (const SolvedContact& contact : simulator.contacts()) {
-    force += contact.force_on_tissue_n;
-    moment += (contact.contact.p_WC - tip).cross(contact.force_on_tissue_n);
+  for (int i = 0; i < tissue.nodeCount(); ++i) {
+    if (!tissue.fixed()[i]) continue;
+    force += forces.col(i);
+    moment += (simulator.positions(0).col(i) - tip).cross(Vector3(forces.col(i)));
   }
   const Wrench wrench = simulator.wrench(0);  // tip axes are world axes here
-  EXPECT_GT(force.norm(), 0.1);
-  EXPECT_LE((force + wrench.force).norm(), 1e-14);
-  EXPECT_LE((moment + wrench.torque).norm(), 1e-14);
+  EXPECT_GT(wrench.force.norm(), 0.1);
+  EXPECT_LE((force + wrench.force).norm(), 1e-3 * wrench.force.norm());
+  // Lever arms are of the order of the sphere's radius. Linear elasticity balances moments about undeformed positions.
+  EXPECT_LE((moment + wrench.torque).norm(), 0.04 * 0.04 * wrench.force.norm());
 }
 
 TEST(Indentation, SameInputGivesTheSameBits) {

@@ -20,11 +20,10 @@ struct TissueSurface {
 
 class ContactDetector {
  public:
-  /// @param instruments must outlive the detector. @param surfaces one per tissue; @param positions one per tissue (m,
-  /// W).
+  /// @param instruments must outlive the detector. @param surfaces one per tissue; @param positions one per tissue,
+  ///   m, world frame.
   /// @throws std::invalid_argument when the sizes differ, a triangle refers to a missing node or twice to the same, or
-  /// a
-  ///   mesh shape has no mesh.
+  ///   a mesh shape has no mesh.
   ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
                   const std::vector<NodalVectors>& positions);
   ~ContactDetector();

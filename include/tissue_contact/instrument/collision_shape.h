@@ -30,7 +30,8 @@ struct CollisionShape {
   std::shared_ptr<const TriangleMesh> mesh;  ///< set exactly when `geometry` holds a MeshGeometry
 };
 
-/// Completes a description: checks sizes and reads the mesh if there is one. @throws std::invalid_argument.
+/// Completes a description: checks sizes and reads the mesh if there is one. A mesh must be a solid: small holes are
+/// accepted; a sheet, of which nothing tells the inside, is refused. @throws std::invalid_argument.
 CollisionShape makeCollisionShape(const ShapeDescription& description);
 
 }  // namespace tissue_contact

@@ -20,8 +20,9 @@ class InstrumentMotion {
 
   /// Prepares the interval to `targets` (sizes checked by the caller) and returns the number of equal steps to cut it
   /// into: none longer than max_step_s, none in which a shape moves more than half its smallest half extent, so that it
-  /// cannot pass through a feature thinner than itself. A motion that would need more than kMaxTravelSteps steps is a
-  /// jump: the instruments are placed at the targets.
+  /// cannot pass through a feature thinner than itself, and none in which a joint moves more than 1 rad or 1 m (a full turn
+  /// ends where it began). A motion that would need more than kMaxTravelSteps steps is a jump: the instruments are placed
+  /// at the targets.
   int begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets);
   bool jumped() const { return jumped_; }  ///< by the last begin()
 
@@ -31,7 +32,6 @@ class InstrumentMotion {
 
   const VectorX& positions(int instrument) const { return states_[instrument].positions; }
   const std::vector<std::vector<Pose>>& startPoses() const { return X_WL_; }  ///< [instrument][link of its model]
-  const std::vector<std::vector<Pose>>& endPoses() const { return X_WL_end_; }
 
   /// Mean velocity (m/s, world) over the step of the material point of a touching link that is at p_W at its start.
   Vector3 pointVelocity(int instrument, int contact_link, const Vector3& p_W, double dt_s) const;
@@ -56,10 +56,11 @@ class InstrumentMotion {
     VectorX start, target, positions;
   };
   double longestTravelPerExtent() const;
+  double longestTravelOver(double steps);  ///< the same over the whole interval cut into so many steps
 
   const std::vector<Instrument>& instruments_;
   std::vector<State> states_;
-  std::vector<std::vector<Pose>> X_WL_, X_WL_end_;
+  std::vector<std::vector<Pose>> X_WL_, X_WL_end_, X_WL_before_;
   bool jumped_ = false;
 };
 

@@ -6,16 +6,14 @@
 ///  1. Relax: one block Gauss-Seidel sweep on A v = b + J'lambda with lambda held (ICA's splitting A = P - N with
 ///     P the block diagonal; Otaduy, Tamstorf, Steinemann & Gross 2009, section 5). Sweep direction alternates.
 ///  2. Anticipate, predict, correct: contact by contact on the local operator W = J P^-1 J'. The velocity the contact
-///  would
-///     have without its own impulse predicts the sliding direction; if the impulse that stops the sliding is inside the
-///     limit the contact is static, else kinetic at mu_k along that direction. v += P^-1 J' (change of lambda) at once.
+///     would have without its own impulse predicts the sliding direction; if the impulse that stops the sliding is
+///     inside the limit the contact is static, else kinetic at mu_k along it. v += P^-1 J' (change of lambda) at once.
 /// At a fixed point both steps change nothing, so A v = b + J'lambda and every contact law hold together.
 ///
 /// Reconstructed choices (the source text stops before its method section):
 ///  - the corrector solves the one-contact problem exactly (solveCoulombContact) instead of taking one predictor step;
 ///  - hysteresis works from step to step; within a step a contact that keeps changing between static and kinetic is
-///  held to
-///    the kinetic limit (kMaxFlips), which ends cycles between two answers that are both consistent;
+///    held to the kinetic limit (kMaxFlips), which ends cycles between two answers that are both consistent;
 ///  - static contacts are bilateral rows of W.
 /// "Predictor-corrector" here has nothing to do with Incremental Potential Contact.
 #pragma once

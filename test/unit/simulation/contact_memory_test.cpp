@@ -141,5 +141,33 @@ TEST_F(KeptPoints, PointsAreDroppedOnceFarOrWithoutForceAndNeverMoreThanTheBound
   }
 }
 
+// A point on the ridge between two faces is a contact as long as one of them faces the tool, whichever comes first.
+TEST(KeptRidgePoint, DoesNotDependOnTriangleOrder) {
+  InstrumentDescription description;
+  description.name = "probe";
+  description.tip_link = "tip";
+  description.joint_state_topics = {"/joint_states"};
+  description.contact_links = {{"tip", {}}};
+  std::vector<Instrument> instruments;
+  instruments.emplace_back(description, parseUrdf(test::probeUrdf(1.0), "test", "", nullptr), Pose::Identity());
+  // Face (0, 1, 2) looks up; face (1, 0, 3) hangs down and looks along -y. They share the edge 0-1.
+  std::vector<NodalVectors> positions(1, NodalVectors(3, 4));
+  positions[0] << -1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0;
+  std::vector<std::vector<Pose>> X_WL(1);
+  instruments[0].linkPoses(Vector3(0.0, 0.0, 1.0), X_WL[0]);
+  for (const bool up_first : {true, false}) {
+    TissueSurface surface;
+    surface.triangles = {{0, 1, 2}, {1, 0, 3}};
+    if (!up_first) std::swap(surface.triangles[0], surface.triangles[1]);
+    surface.fixed.assign(4, false);
+    ContactDetector detector(instruments, {surface}, positions);
+    Contact contact = makeContact(0, {0, 1, -1}, Vector3::Zero());
+    contact.nodes = surface.triangles[0];
+    contact.weights = Vector3(0.5, 0.5, 0.0);
+    EXPECT_TRUE(detector.measure(positions, X_WL, 0.1, contact)) << up_first;
+    EXPECT_NEAR(contact.gap_m, 0.0, 1e-14);
+  }
+}
+
 }  // namespace
 }  // namespace tissue_contact

@@ -110,6 +110,28 @@ TEST(Simulator, JumpIsNotSweptAndStaysFinite) {
   EXPECT_LT((simulator.positions(0) - simulator.tissues()[0].restPositions()).colwise().norm().maxCoeff(), 1e-5);
 }
 
+// A full turn within one interval ends where it began: it must not count as standing still.
+TEST(Simulator, LargeJointMovesAreCutIntoSteps) {
+  Simulator simulator = makeScene(0.1);
+  simulator.advance(0.1, {Vector3(3.5, 0.0, 0.5)});
+  EXPECT_GE(simulator.report().substeps, 4);
+}
+
+TEST(Simulator, StepWithoutFiniteAnswerIsDiscardedAndSaidSo) {
+  SceneEnvironment environment;
+  environment.urdf_text = [](const std::string&) { return test::probeUrdf(0.005); };
+  Scene scene = makeScene().scene();
+  scene.gravity_m_per_s2 = Vector3(0.0, 0.0, -1e308);  // beyond what the loader allows: overflows within a step of 10 s
+  scene.step.max_step_s = 10.0;
+  Simulator simulator(scene, environment);
+  simulator.advance(10.0, {Vector3::Zero()});
+  EXPECT_TRUE(simulator.report().discarded);
+  EXPECT_FALSE(simulator.report().converged);
+  EXPECT_EQ(simulator.positions(0), simulator.tissues()[0].restPositions());
+  EXPECT_EQ(simulator.wrench(0).force, Vector3::Zero());
+  EXPECT_EQ(simulator.report().residuals.momentum, 0.0);
+}
+
 TEST(Simulator, FrictionDragsAgainstTheMotion) {
   Simulator simulator = makeScene();
   for (int k = 1; k <= 100; ++k) simulator.advance(0.002, {Vector3(0.0, 0.0, -4e-5 * k)});

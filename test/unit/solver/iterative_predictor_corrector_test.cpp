@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <random>
 #include <stdexcept>
@@ -153,6 +154,18 @@ TEST(IterativePredictorCorrector, FewIterationsReportTheirTrueMomentumResidual) 
   const SolverReport report = solver.solve(scene.problem, scene.solution);
   EXPECT_FALSE(report.converged);
   EXPECT_GT(report.residuals.momentum, 1e-3);
+}
+
+TEST(Residuals, NotANumberIsNeverTakenForZero) {
+  OneNode scene(Vector3(-1.0, 0.2, 0.1), {0.5, 0.5});
+  scene.solution.states = {ContactState::kStatic};
+  scene.solution.v[0].setConstant(std::numeric_limits<double>::quiet_NaN());
+  std::vector<NodalVectors> scratch = {NodalVectors::Zero(3, 1)};
+  const Residuals residuals = computeResiduals(scene.problem, scene.solution, scratch);
+  EXPECT_TRUE(std::isnan(residuals.momentum));
+  EXPECT_TRUE(std::isnan(residuals.penetration_m));
+  EXPECT_TRUE(std::isnan(residuals.complementarity_w));
+  EXPECT_TRUE(std::isnan(residuals.static_slip_m_per_s));
 }
 
 TEST(IterativePredictorCorrector, WarmStartAtTheAnswerStaysThere) {
