@@ -61,5 +61,13 @@ TEST(MakeCollisionShape, RefusesMeshesWithoutAPlace) {
   expectContains(refusalOf(MeshGeometry{"/none/a.stl", Vector3::Ones()}), {"/none/a.stl", "does not exist"});
 }
 
+// Nothing tells which side of a sheet is inside, so a tool made of one would pull tissue from the wrong side.
+TEST(MakeCollisionShape, RefusesOpenSheets) {
+  const TemporaryDirectory directory;
+  const std::string sheet = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
+  expectContains(refusalOf(MeshGeometry{directory.write("sheet.obj", sheet), Vector3::Ones()}),
+                 {"sheet.obj", "open sheet", "4 of its 6", "closed solid"});
+}
+
 }  // namespace
 }  // namespace tissue_contact

@@ -113,6 +113,7 @@ const BadScene kRanges[] = {
     {"kinetic: 0.4", "kinetic: -0.1", "61: friction[0].kinetic", ">= 0 and <= 10"},
     {"max_step_s: 0.002", "max_step_s: 2", "63: step.max_step_s", "give seconds"},
     {"max_step_s: 0.002", "max_step_s: 0.6", "63: step", "max_gap_s is shorter than max_step_s"},
+    {"max_step_s: 0.002", "max_step_s: 0.000001", "63: step", "max_gap_s is more than 100000 times max_step_s"},
     {"iterations: 20", "iterations: 0", "65: solver.iterations", ">= 1 and <= 10000"},
     {"contact_passes: 3", "contact_passes: 101", "66: solver.contact_passes", ">= 1 and <= 100"},
     {"tolerance: 1.0e-7", "tolerance: 0", "67: solver.tolerance", ">= 1e-16 and <= 0.1"},
