@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <sstream>
+#include <string>
 #include <vector>
 
 #include "tissue_contact/simulation/simulator.h"
@@ -14,7 +16,7 @@
 namespace tissue_contact {
 namespace {
 
-Simulator makeScene(int cells) {
+Simulator makeScene(int cells, const std::string& solver) {
   std::ostringstream yaml;
   yaml
       << "tissues:\n  - name: block\n    block: {size_m: [0.10, 0.10, 0.04], cells: [" << cells << ", " << cells << ", "
@@ -26,7 +28,8 @@ Simulator makeScene(int cells) {
       << "    joint_state_topics: [/probe/joint_states]\n    base_pose: {position_m: [-0.01, 0, 0.0451]}\n"
       << "    contact_links: [tip]\n"
       << "friction:\n  - {instrument: probe, tissue: block, static: 0.6, kinetic: 0.4}\n"
-      << "step: {max_step_s: 0.001}\n";
+      << "step: {max_step_s: 0.001}\n"
+      << solver;
   SceneEnvironment environment;
   environment.package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
   return Simulator(parseScene(yaml.str(), "benchmark scene", environment.package_path), environment);
@@ -40,9 +43,31 @@ Vector3 probePosition(double t) {
   return {std::min(std::max(kSpeed * t - kDepth, 0.0), 0.02), 0.0, -down};
 }
 
+constexpr int kSteps = 1205;
+
+double relativeDifference(const std::vector<Vector3>& forces, const std::vector<Vector3>& reference) {
+  double difference = 0.0;
+  double size = 0.0;
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    difference += (forces[k] - reference[k]).squaredNorm();
+    size += reference[k].squaredNorm();
+  }
+  return std::sqrt(difference / size);
+}
+
+std::vector<Vector3> forcesOf(Simulator& simulator) {
+  std::vector<Vector3> forces;
+  simulator.reset();
+  for (int k = 1; k <= kSteps; ++k) {
+    simulator.advance(0.001, {probePosition(0.001 * k)});
+    forces.push_back(simulator.wrench(0).force);
+  }
+  return forces;
+}
+
 void pressAndDrag(benchmark::State& state) {
-  constexpr int kSteps = 1205;
-  Simulator simulator = makeScene(static_cast<int>(state.range(0)));
+  const int cells = static_cast<int>(state.range(0));
+  Simulator simulator = makeScene(cells, "");
   std::vector<double> times_ms;
   double iterations = 0.0;
   double contacts = 0.0;
@@ -66,9 +91,12 @@ void pressAndDrag(benchmark::State& state) {
   state.counters["iterations_per_step"] = iterations / count;
   state.counters["touching"] = contacts / count;
   state.counters["final_force_n"] = simulator.wrench(0).force.norm();
+  if (state.range(1) == 0) return;
+  Simulator converged = makeScene(cells, "solver: {iterations: 5000, tolerance: 1.0e-10}\n");
+  state.counters["solver_error_percent"] = 100.0 * relativeDifference(forcesOf(simulator), forcesOf(converged));
 }
 
-BENCHMARK(pressAndDrag)->Arg(10)->Arg(20)->Unit(benchmark::kMillisecond)->MinTime(2.0);
+BENCHMARK(pressAndDrag)->Args({10, 1})->Args({20, 0})->Unit(benchmark::kMillisecond)->MinTime(2.0);
 
 }  // namespace
 }  // namespace tissue_contact
