@@ -141,6 +141,8 @@ void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std:
   message.step = static_cast<std::uint64_t>(simulator.stepCount());
   message.iterations = static_cast<std::uint32_t>(report.iterations);
   message.converged = static_cast<std::uint8_t>(report.converged);
+  message.discarded = static_cast<std::uint8_t>(report.discarded);
+  message.jumped = static_cast<std::uint8_t>(report.jumped);
   message.open_contacts = static_cast<std::uint32_t>(report.open_contacts);
   message.static_contacts = static_cast<std::uint32_t>(report.static_contacts);
   message.kinetic_contacts = static_cast<std::uint32_t>(report.kinetic_contacts);
@@ -160,6 +162,13 @@ void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std:
   message.gaps = static_cast<std::uint64_t>(player.gaps());
 }
 
+bool isFinite(const Residuals& residuals) {
+  return std::isfinite(residuals.momentum) && std::isfinite(residuals.penetration_m) &&
+         std::isfinite(residuals.adhesion_n) && std::isfinite(residuals.complementarity_w) &&
+         std::isfinite(residuals.cone_violation_n) && std::isfinite(residuals.static_slip_m_per_s) &&
+         std::isfinite(residuals.kinetic_angle_rad);
+}
+
 bool isFinite(const Simulator& simulator) {
   for (std::size_t i = 0; i < simulator.tissues().size(); ++i) {
     if (!simulator.positions(static_cast<int>(i)).allFinite()) return false;
@@ -168,7 +177,12 @@ bool isFinite(const Simulator& simulator) {
     const Wrench wrench = simulator.wrench(static_cast<int>(i));
     if (!wrench.force.allFinite() || !wrench.torque.allFinite()) return false;
   }
-  return true;
+  for (const SolvedContact& solved : simulator.contacts()) {
+    const Contact& contact = solved.contact;
+    if (!contact.p_WC.allFinite() || !contact.R_WC.allFinite() || !std::isfinite(contact.gap_m)) return false;
+    if (!solved.force_on_tissue_n.allFinite()) return false;
+  }
+  return isFinite(simulator.report().residuals);
 }
 
 }  // namespace tissue_contact

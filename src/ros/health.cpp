@@ -22,7 +22,9 @@ bool Health::note(const PlayedSample& played, bool stepped) {
   warn(played);
   if (played.verdict != Verdict::kAccepted) return false;
   if (played.was_reset) broken_ = false;
-  return !stepped || noteStep(played);
+  const bool finite = isFinite(simulator_);
+  if (stepped) noteStep(played, finite);
+  return finite;
 }
 
 void Health::warn(const PlayedSample& played) {
@@ -44,13 +46,13 @@ void Health::warn(const PlayedSample& played) {
   }
 }
 
-bool Health::noteStep(const PlayedSample& played) {
+void Health::noteStep(const PlayedSample& played, bool finite) {
   const StepReport& report = simulator_.report();
   if (report.jumped) {
     ++jump_count_;
     if (jumps_.pass()) {
       ROS_WARN_STREAM("an instrument moved too far before " << toTime(played.stamp_ns)
-                                                            << " s to be followed: it was put at its new place");
+                                                            << " s to be swept: it was placed at its new position");
     }
   }
   if (!report.converged) {
@@ -61,17 +63,17 @@ bool Health::noteStep(const PlayedSample& played) {
          << report.iterations << " iterations";
     last_not_converged_ = text.str();
   }
-  const bool finite = isFinite(simulator_);
-  if (report.discarded || !finite) {
-    ++not_finite_count_;
-    if (!broken_) {
-      ROS_ERROR_STREAM("the step ending at " << toTime(played.stamp_ns)
-                                             << " s gave no finite answer; the last good state was kept. Look for very "
-                                                "stiff or very light tissue, or lower step.max_step_s");
-    }
-    broken_ = true;
+  if (!report.discarded && finite) return;
+  ++not_finite_count_;
+  if (!broken_) {
+    ROS_ERROR_STREAM("a step of the interval ending at "
+                     << toTime(played.stamp_ns) << " s had no finite answer; "
+                     << (finite ? "the tissues were stopped where they were and its contact forces, so also the wrench "
+                                  "if it was the last step, are zero"
+                                : "nothing is published for it")
+                     << ". Look for very stiff or very light tissue, or lower step.max_step_s");
   }
-  return finite;
+  broken_ = true;
 }
 
 std::int64_t Health::troubles() const {
@@ -86,7 +88,7 @@ void Health::fill(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const bool any_new = sum > troubles_told_;
   troubles_told_ = sum;
   if (broken_) {
-    status.summary(Level::ERROR, "a step gave no finite answer");
+    status.summary(Level::ERROR, "a step had no finite answer");
   } else if (any_new) {
     status.summary(Level::WARN, "joint states refused, or motion cut short");
   } else {

@@ -111,7 +111,9 @@ void Outputs::advertise() {
 }
 
 /// RViz opened before or between recordings should not stay empty.
-void Outputs::showToNewcomer() { markers_publisher_.publish(scene_markers_.update(last_stamp_ns_)); }
+void Outputs::showToNewcomer() {
+  if (isFinite(simulator_)) markers_publisher_.publish(scene_markers_.update(last_stamp_ns_));
+}
 
 void Outputs::publish(const PlayedSample& played, int substeps, double step_time_s) {
   if (played.was_reset) {

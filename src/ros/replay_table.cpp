@@ -25,7 +25,8 @@ ReplayTable::ReplayTable(std::string file) : file_(std::move(file)), part_(file_
   stream_.precision(std::numeric_limits<double>::max_digits10);
   stream_ << "stamp_s,instrument,tip_x_m,tip_y_m,tip_z_m,tip_qx,tip_qy,tip_qz,tip_qw,force_x_n,force_y_n,force_z_n,"
              "torque_x_nm,torque_y_nm,torque_z_nm,static_contacts,kinetic_contacts,momentum_residual,penetration_m,"
-             "adhesion_n,complementarity_w,cone_violation_n,static_slip_m_per_s,kinetic_angle_rad,step_time_s\n";
+             "adhesion_n,complementarity_w,cone_violation_n,static_slip_m_per_s,kinetic_angle_rad,discarded,jumped,"
+             "step_time_s\n";
 }
 
 ReplayTable::~ReplayTable() {
@@ -35,13 +36,15 @@ ReplayTable::~ReplayTable() {
 }
 
 void ReplayTable::add(const Simulator& simulator, const PlayedSample& played, double step_time_s) {
-  const Residuals& residuals = simulator.report().residuals;
+  const StepReport& report = simulator.report();
+  const Residuals& residuals = report.residuals;
   for (const int instrument : played.instruments) {
     stream_ << toTime(played.stamp_ns) << ',';
     addInstrument(simulator, instrument);
     stream_ << ',' << residuals.momentum << ',' << residuals.penetration_m << ',' << residuals.adhesion_n << ','
             << residuals.complementarity_w << ',' << residuals.cone_violation_n << ',' << residuals.static_slip_m_per_s
-            << ',' << residuals.kinetic_angle_rad << ',' << step_time_s << '\n';
+            << ',' << residuals.kinetic_angle_rad << ',' << static_cast<int>(report.discarded) << ','
+            << static_cast<int>(report.jumped) << ',' << step_time_s << '\n';
   }
 }
 

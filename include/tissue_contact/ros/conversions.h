@@ -51,7 +51,9 @@ void fillContacts(const Simulator& simulator, std::int64_t stamp_ns, ContactArra
 /// The last step's report and the player's counts; all but substeps and step_time, which only the caller can measure.
 void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std::int64_t stamp_ns, Status& message);
 
-/// Whether every tissue position and wrench is finite: what is not is never published.
+bool isFinite(const Residuals& residuals);
+
+/// Whether every tissue position, contact, wrench and residual is finite: what is not is never published.
 bool isFinite(const Simulator& simulator);
 
 }  // namespace tissue_contact

@@ -22,7 +22,8 @@ class Health {
 
   /// Notes one played sample. Warns about each kind of refusal, and about gaps and jumps, at most every 5 s of wall
   /// time; about every reset once; reports an error when a step gave no finite answer, once until the next reset.
-  /// @param stepped whether this sample moved the simulator forward. @return whether the result may be published.
+  /// @param stepped whether this sample moved the simulator forward. @return whether the result is finite and so may
+  ///   be published.
   bool note(const PlayedSample& played, bool stepped);
 
   /// Summary and counts. OK; WARN when a joint state was refused, or a gap or jump was cut short, since the last call;
@@ -42,7 +43,7 @@ class Health {
   };
 
   void warn(const PlayedSample& played);
-  bool noteStep(const PlayedSample& played);
+  void noteStep(const PlayedSample& played, bool finite);
   std::int64_t troubles() const;
 
   const Simulator& simulator_;

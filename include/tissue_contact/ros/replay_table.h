@@ -22,7 +22,8 @@ class ReplayTable {
   ReplayTable& operator=(const ReplayTable&) = delete;
 
   /// One line per instrument of an accepted sample: stamp, tip pose in the world frame, wrench in the tip frame,
-  /// contacts of this instrument per state, residuals of the last step over all contacts, wall time per step.
+  /// contacts of this instrument per state, residuals of the last step over all contacts, 0 or 1 for `discarded` and
+  /// `jumped` of the interval that ended here (see StepReport), wall time per step.
   void add(const Simulator& simulator, const PlayedSample& played, double step_time_s);
 
   /// @throws std::runtime_error when the file could not be written completely.

@@ -4,12 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "tissue_contact/ros/conversions.h"
 #include "tissue_contact/scene/load_scene.h"
@@ -69,9 +71,35 @@ TEST(SceneMarkers, ShowTissueToolAndForcesInTheWorldFrame) {
     EXPECT_EQ(marker.header.stamp, ros::Time(2, 0));
     EXPECT_TRUE(ids.emplace(marker.ns, marker.id).second) << marker.ns << marker.id;
     EXPECT_TRUE(marker.type != Marker::TRIANGLE_LIST || marker.points.size() % 3 == 0);
-    if (marker.type != Marker::ARROW || marker.action != Marker::ADD) continue;
-    EXPECT_LT(marker.points[1].z, marker.points[0].z);  // the force on the tissue points down
   }
+}
+
+TEST(SceneMarkers, ArrowsAreTheForcesOnTheInstrumentFromTheContactPoints) {
+  Simulator simulator = makeSimulator();
+  MarkerStyle style;
+  style.force_arrow_m_per_n = 0.5;
+  SceneMarkers markers(simulator, style);
+  simulator.advance(0.1, {Vector3(0, 0, -0.005)});
+  std::vector<const SolvedContact*> pressing;
+  for (const SolvedContact& contact : simulator.contacts()) {
+    if (contact.state != ContactState::kOpen && contact.force_on_tissue_n.norm() > 0.0) pressing.push_back(&contact);
+  }
+  ASSERT_FALSE(pressing.empty());
+  std::size_t arrows = 0;
+  Vector3 sum = Vector3::Zero();
+  for (const Marker& marker : markers.update(kSecond).markers) {
+    if (marker.type != Marker::ARROW || marker.action != Marker::ADD) continue;
+    ASSERT_LT(arrows, pressing.size());
+    const SolvedContact& contact = *pressing[arrows++];
+    const Vector3 from(marker.points[0].x, marker.points[0].y, marker.points[0].z);
+    const Vector3 to(marker.points[1].x, marker.points[1].y, marker.points[1].z);
+    EXPECT_EQ(from, contact.contact.p_WC);
+    EXPECT_LE(((to - from) / 0.5 + contact.force_on_tissue_n).norm(), 1e-12);
+    sum += (to - from) / 0.5;
+  }
+  EXPECT_EQ(arrows, pressing.size());
+  EXPECT_GT(sum.z(), 0.01);                                    // the pressed tissue pushes the probe up
+  EXPECT_LE((sum - simulator.wrench(0).force).norm(), 1e-12);  // the tip keeps the world's axes
 }
 
 TEST(SceneMarkers, ArrowsVanishWhenTheContactIsLost) {
@@ -117,6 +145,53 @@ TEST(Conversions, StampsKeepEveryNanosecond) {
   EXPECT_EQ(sample.names, message.name);
   EXPECT_EQ(sample.positions, message.position);
   EXPECT_EQ(toTime(sample.stamp_ns), message.header.stamp);
+}
+
+TEST(Conversions, StatusTellsOfJumps) {
+  Simulator simulator = makeSimulator();
+  const JointStatePlayer player(simulator);
+  Status status;
+  simulator.advance(0.01, {Vector3(0, 0, -0.0005)});
+  fillStatus(simulator, player, kSecond, status);
+  EXPECT_FALSE(status.jumped);
+  EXPECT_FALSE(status.discarded);
+  simulator.advance(0.01, {Vector3(1e3, 0, 0)});
+  fillStatus(simulator, player, kSecond, status);
+  EXPECT_TRUE(status.jumped);
+  EXPECT_TRUE(isFinite(simulator));
+}
+
+TEST(Conversions, StatusOfADiscardedStepIsFiniteAndSaysSo) {
+  Scene scene = makeSimulator().scene();
+  scene.gravity_m_per_s2 = Vector3(0, 0, -1e308);  // beyond what the loader allows: overflows within a step of 10 s
+  scene.step.max_step_s = 10.0;
+  SceneEnvironment environment;
+  environment.package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
+  Simulator simulator(scene, environment);
+  const JointStatePlayer player(simulator);
+  simulator.advance(10.0, {Vector3::Zero()});
+  Status status;
+  fillStatus(simulator, player, kSecond, status);
+  EXPECT_TRUE(status.discarded);
+  EXPECT_TRUE(isFinite(simulator));
+  EXPECT_TRUE(std::isfinite(status.momentum_residual));
+  EXPECT_EQ(simulator.wrench(0).force, Vector3::Zero());
+}
+
+TEST(Conversions, NoResidualIsOverlookedByTheFiniteCheck) {
+  EXPECT_TRUE(isFinite(Residuals()));
+  double Residuals::*const all[] = {&Residuals::momentum,         &Residuals::penetration_m,
+                                    &Residuals::adhesion_n,       &Residuals::complementarity_w,
+                                    &Residuals::cone_violation_n, &Residuals::static_slip_m_per_s,
+                                    &Residuals::kinetic_angle_rad};
+  static_assert(sizeof(Residuals) == sizeof(all) / sizeof(all[0]) * sizeof(double), "a residual is missing here");
+  for (double Residuals::*const one : all) {
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+      Residuals residuals;
+      residuals.*one = bad;
+      EXPECT_FALSE(isFinite(residuals));
+    }
+  }
 }
 
 TEST(Conversions, PosesGoThereAndBack) {

@@ -1,0 +1,87 @@
+#!/usr/bin/python3
+"""An instrument that is suddenly a kilometre away, and back: placed, not swept; said in Status and CSV; all finite."""
+import csv
+import math
+import os
+import shutil
+import sys
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import WrenchStamped
+
+import harness
+from tissue_contact.msg import Status, TissueMesh
+
+AWAY = 40  # joint states with the instrument away: after one while pressing
+BACK = 60
+
+
+class Jump(unittest.TestCase):
+    def setUp(self):
+        self.directory = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.directory)
+        with open(harness.SCENE, encoding="utf-8") as stream:
+            text = stream.read()
+        for topic in ["status_rate_hz: 10", "mesh_rate_hz: 20"]:  # a message for every joint state
+            self.assertEqual(text.count(topic), 1)
+            text = text.replace(topic, topic.split()[0] + " 100")
+        self.scene = os.path.join(self.directory, "scene.yaml")
+        with open(self.scene, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        self.samples = [(stamp, (position[0] + 1e3, position[1], position[2]) if AWAY <= i < BACK else position)
+                        for i, (stamp, position) in enumerate(harness.press(100))]
+
+    def assert_all_finite(self, values):
+        values = list(values)
+        self.assertGreater(len(values), 0)
+        self.assertEqual([v for v in values if not math.isfinite(v)], [])
+
+    def test_replay(self):
+        bag = os.path.join(self.directory, "jump.bag")
+        out = os.path.join(self.directory, "jump.csv")
+        harness.write_bag(bag, self.samples)
+        code, errors = harness.replay(self.scene, bag, out)
+        self.assertEqual(code, 0, errors)
+        self.assertIn("2 jumps", errors)
+        with open(out, newline="", encoding="ascii") as stream:
+            rows = list(csv.DictReader(stream))
+        self.assertEqual([i for i, row in enumerate(rows) if row["jumped"] == "1"], [AWAY, BACK])
+        self.assertEqual({row["jumped"] for row in rows}, {"0", "1"})
+        self.assertEqual({row["discarded"] for row in rows}, {"0"})
+        self.assert_all_finite(float(value) for row in rows for key, value in row.items() if key != "instrument")
+        self.assertGreater(float(rows[AWAY - 1]["force_z_n"]), 0.05)
+        self.assertEqual({float(row["force_z_n"]) for row in rows[AWAY:BACK]}, {0.0})
+
+    def test_node(self):
+        with harness.node(self.scene):
+            wrenches = harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)
+            statuses = harness.Listener("/tissue_contact/status", Status)
+            meshes = harness.Listener("/tissue_contact/block/mesh", TissueMesh)
+            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+            source = harness.JointSource()
+            for stamp, position in self.samples:  # one by one: a status or mesh may be dropped by a full queue
+                source.send(stamp, position)
+                for listener in [wrenches, statuses, meshes]:
+                    listener.wait_for_stamp(stamp)
+
+            def told(messages):
+                return bool(messages) and ("jumps", "2") in [(v.key, v.value) for v in messages[-1].status[0].values]
+            diagnostics.wait(told, "two jumps")
+        self.assertEqual([i for i, status in enumerate(statuses.messages) if status.jumped], [AWAY, BACK])
+        self.assertFalse(any(status.discarded for status in statuses.messages))
+        self.assertEqual(len(wrenches.messages), len(self.samples))
+        self.assert_all_finite(getattr(v, axis) for w in wrenches.messages
+                               for v in [w.wrench.force, w.wrench.torque] for axis in "xyz")
+        self.assert_all_finite(getattr(p, axis) for m in meshes.messages for p in m.positions for axis in "xyz")
+        self.assert_all_finite(getattr(status, name) for status in statuses.messages for name in [
+            "momentum_residual", "penetration", "adhesion", "complementarity", "cone_violation", "static_slip",
+            "kinetic_angle"])
+
+
+if __name__ == "__main__":
+    rospy.init_node("jump")
+    rostest.rosrun("tissue_contact", "jump", Jump, sys.argv)
