@@ -5,7 +5,8 @@ Waits for the node, plays those topics of the bag that the node listens to, and 
   <instrument>_force.png     force on the instrument over time, in its tip frame
   <instrument>_friction.png  tangential over normal contact force (sums over contacts) over time
 Prints one line per second where there is no display. With `--show true` it first waits for RViz, and repeats the bag
-until RViz is closed.
+until RViz is closed. When the plots are written it creates the file that TISSUE_CONTACT_DONE_FILE in the environment
+names, if any: roslaunch does not pass exit codes on (see run_launch.py).
 """
 import argparse
 import os
@@ -288,6 +289,9 @@ def main():
         print("the last joint state has no wrench; the node's warnings say why", flush=True)
     for path in plot(recorder, friction_of(rospy.get_param(arguments.node + "/scene")), arguments.output):
         print("wrote " + path, flush=True)
+    if os.environ.get("TISSUE_CONTACT_DONE_FILE"):
+        with open(os.environ["TISSUE_CONTACT_DONE_FILE"], "w", encoding="utf-8"):
+            pass
     if shown and graph.is_shown():
         print("repeating the bag until RViz is closed", flush=True)
         start_player(arguments, topics, loop=True)

@@ -10,6 +10,7 @@ import tempfile
 import unittest
 
 import rosbag
+import rosgraph
 import rospy
 import rostest
 
@@ -18,13 +19,13 @@ import harness
 
 class Demo(unittest.TestCase):
     def setUp(self):
-        self.directory = tempfile.mkdtemp()
+        self.directory = tempfile.mkdtemp(suffix=" of demo")
         self.addCleanup(shutil.rmtree, self.directory)
 
     def launch(self, *arguments):
-        """Runs roslaunch until it ends; returns its exit code and all it printed."""
+        """What scripts/demo ends with: roslaunch on a master of its own. Returns the exit code and all it printed."""
         environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
-        command = ["roslaunch", "--disable-title", "tissue_contact"] + list(arguments)
+        command = [harness.program("run_launch.py")] + list(arguments)
         done = subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, universal_newlines=True, timeout=2 * harness.DEADLINE_S,
                               check=False)
@@ -52,21 +53,46 @@ class Demo(unittest.TestCase):
         self.assertGreater(max(float(depth) for _, _, _, _, depth in lines), 1.0, output)
 
     def test_psm_launch_takes_any_bag_and_scene(self):
-        bag = os.path.join(self.directory, "press.bag")
+        bag = os.path.join(self.directory, "my press.bag")  # with blanks, as people name their files
         harness.write_bag(bag, harness.press(50))
+        scene = shutil.copy(harness.SCENE, os.path.join(self.directory, "my scene.yaml"))
         plots = os.path.join(self.directory, "plots")
-        code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + harness.SCENE, "output:=" + plots)
+        code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + scene, "output:=" + plots)
         self.assertEqual(code, 0, output)
         self.assert_pictures(["probe_force.png", "probe_friction.png"])
 
     def test_bag_without_the_topic_ends_with_its_name(self):
         bag = os.path.join(self.directory, "other.bag")
         harness.write_bag(bag, harness.press(5), topic="/other/joint_states")
-        _, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + harness.SCENE,
-                                "output:=" + os.path.join(self.directory, "plots"))
+        code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + harness.SCENE,
+                                   "output:=" + os.path.join(self.directory, "plots"))
+        self.assertEqual(code, 1, output)
         self.assertIn("has no message on " + harness.TOPIC, output)
         self.assertIn("/other/joint_states", output)
         self.assert_pictures([])
+
+    def test_node_that_does_not_start_is_a_failure_even_beside_older_plots(self):
+        plots = os.path.join(self.directory, "plots")
+        os.mkdir(plots)
+        with open(os.path.join(plots, "probe_force.png"), "wb"):
+            pass
+        bag = os.path.join(self.directory, "press.bag")
+        harness.write_bag(bag, harness.press(5))
+        code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=no_such_scene.yaml", "output:=" + plots)
+        self.assertEqual(code, 1, output)
+        self.assertIn("no_such_scene.yaml", output)
+        code, output = self.launch("no_such.launch")
+        self.assertEqual(code, 1, output)
+
+    def test_the_master_of_others_is_left_alone(self):
+        bag = os.path.join(self.directory, "press.bag")
+        harness.write_bag(bag, harness.press(20))
+        master = rosgraph.Master(rospy.get_name())
+        before = (master.getParam("/run_id"), sorted(rospy.get_param_names()), master.getSystemState())
+        code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + harness.SCENE,
+                                   "output:=" + os.path.join(self.directory, "plots"))
+        self.assertEqual(code, 0, output)
+        self.assertEqual((master.getParam("/run_id"), sorted(rospy.get_param_names()), master.getSystemState()), before)
 
     def test_recording_is_what_its_script_makes(self):
         bags = [os.path.join(self.directory, name) for name in ["first.bag", "second.bag"]]
