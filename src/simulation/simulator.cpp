@@ -33,12 +33,14 @@ double meanSurfaceEdge(const std::vector<Tissue>& tissues) {
 
 std::vector<TissueSurface> surfacesOf(const std::vector<Tissue>& tissues) {
   std::vector<TissueSurface> surfaces;
+  surfaces.reserve(tissues.size());
   for (const Tissue& tissue : tissues) surfaces.push_back({tissue.surface(), tissue.fixed()});
   return surfaces;
 }
 
 std::vector<NodalVectors> restPositionsOf(const std::vector<Tissue>& tissues) {
   std::vector<NodalVectors> positions;
+  positions.reserve(tissues.size());
   for (const Tissue& tissue : tissues) positions.push_back(tissue.restPositions());
   return positions;
 }

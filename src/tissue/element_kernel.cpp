@@ -48,19 +48,19 @@ TISSUE_CONTACT_INLINE void deformationGradients(const ElementBatch& batch, const
   for (int lane = 0; lane < kLanes; ++lane) {
     const Tetrahedron& nodes = batch.nodes[lane];
     const double* const x0 = x + 3 * static_cast<std::ptrdiff_t>(nodes[0]);
-    for (int c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < 3; ++c) {
       const double* const xc = x + 3 * static_cast<std::ptrdiff_t>(nodes[c + 1]);
-      for (int r = 0; r < 3; ++r) gathered[r + 3 * c][lane] = xc[r] - x0[r];
+      for (std::size_t r = 0; r < 3; ++r) gathered[r + 3 * c][lane] = xc[r] - x0[r];
     }
   }
   Lanes D[9];
   for (int i = 0; i < 9; ++i) load(gathered[i], D[i]);
-  for (int c = 0; c < 3; ++c) {
+  for (std::size_t c = 0; c < 3; ++c) {
     Lanes a, b, d;
     load(batch.rest_inverse[3 * c], a);
     load(batch.rest_inverse[3 * c + 1], b);
     load(batch.rest_inverse[3 * c + 2], d);
-    for (int r = 0; r < 3; ++r) F.m[r + 3 * c] = D[r] * a + D[r + 3] * b + D[r + 6] * d;
+    for (std::size_t r = 0; r < 3; ++r) F.m[r + 3 * c] = D[r] * a + D[r + 3] * b + D[r + 6] * d;
   }
 }
 
@@ -84,8 +84,8 @@ TISSUE_CONTACT_INLINE void rotationMatrix(const LaneQuaternion& q, LaneMatrix& R
 
 /// S = R' F.
 TISSUE_CONTACT_INLINE void rotateBack(const LaneMatrix& R, const LaneMatrix& F, LaneMatrix& S) {
-  for (int c = 0; c < 3; ++c) {
-    for (int r = 0; r < 3; ++r) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t r = 0; r < 3; ++r) {
       S.m[r + 3 * c] = R.m[3 * r] * F.m[3 * c] + R.m[3 * r + 1] * F.m[3 * c + 1] + R.m[3 * r + 2] * F.m[3 * c + 2];
     }
   }
@@ -158,13 +158,13 @@ TISSUE_CONTACT_INLINE void addForces(const ElementBatch& batch, const KernelMate
                                      const LaneMatrix& S, double* forces) {
   LaneMatrix P;
   const Lanes pressure = material.lame_lambda * (S.m[0] + S.m[4] + S.m[8] - 3.0);
-  for (int c = 0; c < 3; ++c) {
-    for (int r = 0; r < 3; ++r) P.m[r + 3 * c] = material.lame_mu * (S.m[r + 3 * c] + S.m[c + 3 * r]);
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t r = 0; r < 3; ++r) P.m[r + 3 * c] = material.lame_mu * (S.m[r + 3 * c] + S.m[c + 3 * r]);
     P.m[4 * c] += pressure - 2.0 * material.lame_mu;
   }
   LaneMatrix turned;
-  for (int c = 0; c < 3; ++c) {
-    for (int r = 0; r < 3; ++r) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t r = 0; r < 3; ++r) {
       turned.m[r + 3 * c] = R == nullptr
                                 ? P.m[r + 3 * c]
                                 : R->m[r] * P.m[3 * c] + R->m[r + 3] * P.m[3 * c + 1] + R->m[r + 6] * P.m[3 * c + 2];
@@ -173,19 +173,19 @@ TISSUE_CONTACT_INLINE void addForces(const ElementBatch& batch, const KernelMate
   Lanes volume;
   load(batch.volume, volume);
   Lanes H[9];
-  for (int node = 0; node < 3; ++node) {
+  for (std::size_t node = 0; node < 3; ++node) {
     Lanes g0, g1, g2;  // grad N of node + 1: row of D_rest^-1
     load(batch.rest_inverse[node], g0);
     load(batch.rest_inverse[node + 3], g1);
     load(batch.rest_inverse[node + 6], g2);
-    for (int r = 0; r < 3; ++r) {
+    for (std::size_t r = 0; r < 3; ++r) {
       H[r + 3 * node] = -volume * (turned.m[r] * g0 + turned.m[r + 3] * g1 + turned.m[r + 6] * g2);
     }
   }
   for (int lane = 0; lane < kLanes; ++lane) {
     const Tetrahedron& nodes = batch.nodes[lane];
     double* const f0 = forces + 3 * static_cast<std::ptrdiff_t>(nodes[0]);
-    for (int node = 0; node < 3; ++node) {
+    for (std::size_t node = 0; node < 3; ++node) {
       double* const f = forces + 3 * static_cast<std::ptrdiff_t>(nodes[node + 1]);
       for (int r = 0; r < 3; ++r) {
         f[r] += H[r + 3 * node][lane];

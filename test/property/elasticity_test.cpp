@@ -177,7 +177,7 @@ TEST(NearestRotation, IsThePolarFactorForAnyGuess) {
     const Eigen::JacobiSVD<Matrix3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const double det = (svd.matrixU() * svd.matrixV().transpose()).determinant();
     // The nearest rotation is not unique when the two smallest singular values cancel (inverted) or both vanish.
-    const Vector3 sigma = svd.singularValues();
+    const Vector3& sigma = svd.singularValues();
     if (sigma[1] + det * sigma[2] < 1e-2) continue;
     const Matrix3 expected = svd.matrixU() * Vector3(1.0, 1.0, det).asDiagonal() * svd.matrixV().transpose();
     const Quaternion guess =

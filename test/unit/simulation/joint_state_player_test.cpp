@@ -71,6 +71,7 @@ PlayedSample playOne(JointStatePlayer& player, int topic, const JointStateSample
 /// A press that moves a little sideways: 30 samples at 10 ms, from `start_ns`.
 std::vector<JointStateSample> press(std::int64_t start_ns, double depth) {
   std::vector<JointStateSample> samples;
+  samples.reserve(30);
   for (int i = 0; i < 30; ++i) {
     samples.push_back({start_ns + i * 10 * kMillisecond, {"x", "y", "z"}, {1e-4 * i, 0.0, -depth * i / 29.0}});
   }
@@ -339,7 +340,7 @@ TEST(JointStatePlayer, WaitingSamplesAreBoundedInNumber) {
   std::int64_t stamp = kSecond;
   for (std::size_t i = 0; i < JointStatePlayer::kMaxWaiting; ++i) player.push(0, sample(stamp += 1000, 0.0));
   EXPECT_TRUE(drain(player).empty());
-  player.push(0, sample(stamp += 1000, 0.0));
+  player.push(0, sample(stamp + 1000, 0.0));
   EXPECT_EQ(drain(player).size(), 1U);
 }
 
