@@ -130,7 +130,8 @@ void ContactDetector::Implementation::detectPair(int tissue, const NodalVectors&
   surface.narrow_phase.findContacts(*shape.distance, X_WS, positions, candidates, margin, found);
   for (const ShapeContact& one : found) {
     Contact& contact = contacts.emplace_back();
-    contact.key = {tissue, shape.instrument, shape.contact_link, shape.shape, one.feature, one.corner};
+    contact.key = {tissue, shape.instrument, shape.contact_link, shape.shape, one.feature, one.corner, 0,
+                   -1,     {-1, -1, -1}};
     contact.nodes = one.nodes;
     contact.weights = one.weights;
     contact.p_WC.setZero();

@@ -131,7 +131,7 @@ PlaneRegion parsePlaneRegion(const YamlCursor& cursor) {
   return plane;
 }
 
-FixedRegion parseFixedRegion(const YamlCursor& cursor) {
+Region parseFixedRegion(const YamlCursor& cursor) {
   const YamlMap map = cursor.map(MapKind::kFixedRegion);
   const std::string kind = map.exactlyOne({"box", "plane", "sphere"});
   const YamlCursor& value = map.get(kind);

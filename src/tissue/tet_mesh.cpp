@@ -150,7 +150,7 @@ void describe(const SphereRegion& sphere, std::ostream& out) {
   out << "sphere around (" << sphere.center_m.transpose() << ") m of radius " << sphere.radius_m << " m";
 }
 
-[[noreturn]] void refuseRegion(const NodalVectors& x, const FixedRegion& region, std::size_t index,
+[[noreturn]] void refuseRegion(const NodalVectors& x, const Region& region, std::size_t index,
                                const std::string& source) {
   std::ostringstream message;
   message << "fixed region " << index << " (";
@@ -205,7 +205,7 @@ std::vector<Triangle> boundaryTriangles(const std::vector<Tetrahedron>& tetrahed
   return triangles;
 }
 
-std::vector<bool> fixedNodes(const NodalVectors& positions, const std::vector<FixedRegion>& regions,
+std::vector<bool> fixedNodes(const NodalVectors& positions, const std::vector<Region>& regions,
                              const std::string& source) {
   std::vector<bool> fixed(static_cast<std::size_t>(positions.cols()), false);
   const double rounding = roundingDistance(positions);

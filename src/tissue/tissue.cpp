@@ -1,6 +1,7 @@
 #include "tissue_contact/tissue/tissue.h"
 
 #include "tissue_contact/core/check.h"
+#include "tissue_contact/tissue/tet_elasticity.h"
 
 namespace tissue_contact {
 
@@ -50,7 +51,8 @@ Tissue::Tissue(const TissueDescription& description, const PlacedMesh& placed)
       masses_(lumpedMasses(placed.mesh, requirePositive("tissue '" + description.name + "': density_kg_per_m3",
                                                         description.material.density_kg_per_m3, "kg/m^3"))),
       damping_(description.damping),
-      elasticity_(placed.mesh.positions, placed.mesh.tetrahedra, placed.fixed, description.material) {
+      elasticity_(std::make_unique<TetElasticity>(placed.mesh.positions, placed.mesh.tetrahedra, placed.fixed,
+                                                  description.material)) {
   requireNonNegative("tissue '" + name_ + "': damping mass_per_s", damping_.mass_per_s, "1/s");
   requireNonNegative("tissue '" + name_ + "': damping stiffness_s", damping_.stiffness_s, "s");
 }

@@ -9,29 +9,35 @@
 
 namespace tissue_contact {
 
-/// Names one contact across steps: which shape touches which surface feature. Ordered, so contacts can be sorted.
+/// Names one contact across steps: which shape (or surface feature of another tissue) touches which surface feature.
+/// Ordered, so contacts can be sorted.
 struct ContactKey {
   int tissue = -1;
-  int instrument = -1;
-  int link = -1;   ///< index into Instrument::contactLinks()
-  int shape = -1;  ///< index into ContactLink::shapes
+  int instrument = -1;  ///< -1: tissue against tissue
+  int link = -1;        ///< index into Instrument::contactLinks()
+  int shape = -1;       ///< index into ContactLink::shapes
   /// Surface feature as sorted node indices: vertex (a, -1, -1), edge (a, b, -1), face (a, b, c).
   std::array<int, 3> feature = {-1, -1, -1};
   int corner = -1;  ///< corner or vertex of the shape this contact belongs to, -1 for the closest point of the feature
   /// 0: found in this step; 1 to kKeptPoints: a point of the same feature kept from earlier steps (ContactMemory).
   int slot = 0;
+  int other_tissue = -1;  ///< tissue against tissue: the one in the instrument's place, else -1
+  std::array<int, 3> other_feature = {-1, -1, -1};
 
   friend bool operator<(const ContactKey& a, const ContactKey& b) {
-    return std::tie(a.tissue, a.instrument, a.link, a.shape, a.feature, a.corner, a.slot) <
-           std::tie(b.tissue, b.instrument, b.link, b.shape, b.feature, b.corner, b.slot);
+    return std::tie(a.tissue, a.instrument, a.link, a.shape, a.feature, a.corner, a.slot, a.other_tissue,
+                    a.other_feature) < std::tie(b.tissue, b.instrument, b.link, b.shape, b.feature, b.corner, b.slot,
+                                                b.other_tissue, b.other_feature);
   }
   friend bool operator==(const ContactKey& a, const ContactKey& b) {
-    return std::tie(a.tissue, a.instrument, a.link, a.shape, a.feature, a.corner, a.slot) ==
-           std::tie(b.tissue, b.instrument, b.link, b.shape, b.feature, b.corner, b.slot);
+    return std::tie(a.tissue, a.instrument, a.link, a.shape, a.feature, a.corner, a.slot, a.other_tissue,
+                    a.other_feature) == std::tie(b.tissue, b.instrument, b.link, b.shape, b.feature, b.corner, b.slot,
+                                                 b.other_tissue, b.other_feature);
   }
 };
 
-/// A closest-point pair between a tissue surface point and an instrument shape.
+/// A closest-point pair between a tissue surface point and an instrument shape, or a point of another tissue's surface
+/// that takes the shape's place: n then points from `other_tissue` into `tissue`.
 struct Contact {
   ContactKey key;
   std::array<int, 3> nodes = {0, 0, 0};  ///< tissue nodes of the surface triangle
@@ -40,6 +46,8 @@ struct Contact {
   Matrix3 R_WC =
       Matrix3::Identity();  ///< columns (n, t1, t2); n is unit and points from the instrument INTO the tissue
   double gap_m = 0.0;       ///< signed distance along n from shape to tissue point; < 0: penetrating
+  std::array<int, 3> other_nodes = {0, 0, 0};  ///< tissue against tissue: nodes of the other surface point
+  Vector3 other_weights = Vector3::Zero();     ///< and their barycentric weights
 };
 
 }  // namespace tissue_contact

@@ -16,6 +16,8 @@ namespace tissue_contact {
 struct TissueSurface {
   std::vector<Triangle> triangles;
   std::vector<bool> fixed;  ///< per node; contacts whose weighted nodes are all fixed are dropped: nothing can move
+  /// > 0: an open sheet, touched from both sides, at half the thickness from its triangles. 0: the boundary of a volume.
+  double thickness_m = 0.0;
 };
 
 class ContactDetector {

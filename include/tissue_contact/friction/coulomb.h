@@ -10,10 +10,16 @@ namespace tissue_contact {
 /// What a contact is doing. Open: no impulse. Static: held, no sliding. Kinetic: sliding (or frictionless).
 enum class ContactState { kOpen, kStatic, kKinetic };
 
-/// Isotropic Coulomb law; both 0: frictionless.
+class AnisotropicFriction;
+
+/// The friction of one contact: isotropic by two coefficients (both 0: frictionless), or an anisotropic law in their
+/// place.
 struct CoulombLaw {
-  double mu_static = 0.0;   ///< >= mu_kinetic
-  double mu_kinetic = 0.0;  ///< >= 0
+  double mu_static = 0.0;                            ///< >= mu_kinetic
+  double mu_kinetic = 0.0;                           ///< >= 0
+  const AnisotropicFriction* anisotropic = nullptr;  ///< replaces both coefficients; see friction_law.h
+  Vector2 axis = Vector2::UnitX();                   ///< anisotropic: unit, the law's axis 1 in (t1, t2)
+  double kinetic_factor = 1.0;                       ///< anisotropic: times its kinetic friction (Stribeck), 0 to 1
 };
 
 /// Impulse in the contact frame (n, t1, t2), N s, acting on the tissue, and the state it belongs to.
@@ -30,6 +36,7 @@ struct ContactAnswer {
 /// m/s,
 ///   with the gap's share gap/dt added to its normal component.
 /// Sign: r_n >= 0 pushes the tissue away from the instrument, along n. Exact up to round-off; no allocation.
+/// Anisotropic laws: see solveAnisotropicContact (friction_law.h), to which this hands over.
 ContactAnswer solveCoulombContact(const Matrix3& W, const Vector3& q, const CoulombLaw& law, bool was_sliding);
 
 /// Point x of the disc |x| <= radius that minimises x'Wx/2 + s'x, W symmetric positive definite: the friction impulse

@@ -41,22 +41,40 @@ struct MeshDescription {
   bool remove_unreferenced_nodes = false;  ///< drop nodes that no tetrahedron uses instead of refusing the file
 };
 
-enum class ElasticModel { kLinear, kCorotational };
+/// Generated flat sheet (membrane, cloth, strip). Tissue frame T: origin at its centre, normal along z.
+struct SheetDescription {
+  Vector2 size_m = Vector2::Zero();
+  std::array<int, 2> cells = {0, 0};  ///< along x, y; 2 triangles each, alternating split
+  double thickness_m = 0.0;
+};
+
+/// Triangle mesh file (.stl, .obj, .dae) used as a membrane. File coordinates times the scale are metres in T.
+struct ShellDescription {
+  std::string file;  ///< absolute path
+  double scale_m_per_unit = 1.0;
+  double thickness_m = 0.0;
+};
+
+/// kLinear to kMassSpring are for volumes (block, mesh); kMembrane is for surfaces (sheet, shell) and their only model.
+enum class ElasticModel { kLinear, kCorotational, kNeoHookean, kMassSpring, kMembrane };
 
 struct MaterialDescription {
   ElasticModel model = ElasticModel::kCorotational;
   double youngs_modulus_pa = 0.0;
   double poissons_ratio = 0.0;
   double density_kg_per_m3 = 0.0;
+  /// Membranes: bending stiffness per width, N m; negative: that of a plate, E h^3 / (12 (1 - nu^2)).
+  double bending_stiffness_n_m = -1.0;
 };
 
-/// Rayleigh damping matrix D = mass_per_s * M + stiffness_s * K.
+/// Damping matrix D = mass_per_s * M + stiffness_s * K (Rayleigh; the second part is Kelvin-Voigt's, with
+/// viscosity = stiffness_s * modulus).
 struct DampingDescription {
   double mass_per_s = 0.0;
   double stiffness_s = 0.0;
 };
 
-/// Regions of the tissue frame T whose nodes are fixed (boundaries included).
+/// Regions of the tissue frame T (boundaries included): where nodes are fixed, where a material applies.
 struct BoxRegion {
   Vector3 min_m = Vector3::Zero();
   Vector3 max_m = Vector3::Zero();
@@ -69,15 +87,33 @@ struct SphereRegion {
   Vector3 center_m = Vector3::Zero();
   double radius_m = 0.0;
 };
-using FixedRegion = std::variant<BoxRegion, PlaneRegion, SphereRegion>;
+using Region = std::variant<BoxRegion, PlaneRegion, SphereRegion>;
+
+/// A named part of a tissue with a material, damping, fibre direction or friction of its own: the elements (and surface
+/// triangles) whose centroid lies in any of `where`. Where several regions hold an element, the last one counts.
+struct TissueRegion {
+  std::string name;                  ///< unique in its tissue
+  std::vector<Region> where;         ///< in the tissue frame T, at rest
+  MaterialDescription material;      ///< that of the tissue where the scene gives none; same `model` as the tissue's
+  double damping_stiffness_s = 0.0;  ///< that of the tissue where the scene gives none
+  Vector3 fibre_direction = Vector3::Zero();  ///< that of the tissue where the scene gives none
+};
 
 struct TissueDescription {
   std::string name;
-  std::variant<BlockDescription, MeshDescription> geometry;
+  std::variant<BlockDescription, MeshDescription, SheetDescription, ShellDescription> geometry;
   PoseDescription pose;  ///< of the tissue frame T
   MaterialDescription material;
   DampingDescription damping;
-  std::vector<FixedRegion> fixed;  ///< none: a free body
+  Vector3 fibre_direction = Vector3::Zero();  ///< at rest, in T, any length; zero: none. Carried by the deformation
+  std::vector<TissueRegion> regions;
+  std::vector<Region> fixed;  ///< none: a free body
+};
+
+/// Two tissues that may touch each other; the same one twice: folds of one tissue.
+struct TissuePair {
+  std::string tissue;
+  std::string other;
 };
 
 /// Collision geometry in its own frame S: sphere and box centred, cylinder centred with its axis along z (as in URDF).
@@ -120,12 +156,42 @@ struct InstrumentDescription {
   std::vector<ContactLinkDescription> contact_links;
 };
 
-/// Coulomb friction of one instrument-tissue pair. Pairs not listed are frictionless.
+/// A dry-friction law as numbers: what friction opposes sliding in each direction of the contact plane. Directions are
+/// angles from the law's axis 1 towards axis 2; axis 2 = n x axis 1, n from the instrument into the tissue.
+struct FrictionLawDescription {
+  enum class Kind {
+    kIsotropic,    ///< coefficients: mu
+    kOrthotropic,  ///< mu along axis 1, mu along axis 2: elliptic limit, force not collinear with sliding
+    kAsymmetric,   ///< mu sliding along +axis 1, mu along -axis 1, mu along axis 2: quarter ellipses
+    kTable,  ///< mu at each of `angles_rad` of the sliding direction, linear in between, periodic; force collinear
+    kTensor  ///< m11, m12, m21, m22: force = -M d; sym(M) must be positive semidefinite
+  };
+  enum class Axis {
+    kNone,  ///< isotropic laws
+    kLink,  ///< `link_axis` turns with the instrument link
+    kFibre  ///< the tissue's fibre direction, carried by its deformation
+  };
+  Kind kind = Kind::kIsotropic;
+  std::vector<double> static_coefficients;   ///< nowhere below the kinetic ones
+  std::vector<double> kinetic_coefficients;  ///< same number
+  std::vector<double> angles_rad;            ///< kTable: ascending, from 0, below 2 pi
+  Axis axis = Axis::kNone;
+  Vector3 link_axis = Vector3::UnitX();  ///< axis 1 in the link's frame, projected into the contact plane
+  /// Stribeck: kinetic coefficients are multiplied by a factor that depends on sliding speed, linear in between, held
+  /// beyond the ends. Empty: 1 at every speed.
+  std::vector<double> speeds_m_per_s;  ///< ascending, from 0
+  std::vector<double> speed_factors;   ///< 0 to 1: kinetic friction never exceeds static
+};
+
+/// Friction of one pair. Pairs not listed are frictionless. The most specific entry counts: with link and region, with
+/// link, with region, with neither.
 struct FrictionDescription {
-  std::string instrument;
+  std::string instrument;  ///< empty when `other_tissue` is given
+  std::string link;        ///< of the instrument; empty: all
   std::string tissue;
-  double static_coefficient = 0.0;   ///< mu_s >= mu_k
-  double kinetic_coefficient = 0.0;  ///< mu_k >= 0
+  std::string region;        ///< of the tissue; empty: everywhere
+  std::string other_tissue;  ///< tissue against tissue (or its own folds)
+  FrictionLawDescription law;
 };
 
 struct StepDescription {
@@ -133,11 +199,38 @@ struct StepDescription {
   double max_gap_s = 1.0;     ///< a longer interval between joint states is simulated as this long (counted)
 };
 
-struct SolverDescription {
-  int iterations = 30;      ///< upper bound on ICA iterations (relaxation sweep + contact passes) per step
-  int contact_passes = 2;   ///< predictor-corrector passes over the contacts per iteration
-  double tolerance = 3e-4;  ///< stop when one iteration changes momentum and impulses by less than this (relative)
+/// How a step's contact problem is solved. All but kPredictorCorrector and kReference are rivals kept for comparison.
+enum class SolverMethod {
+  kPredictorCorrector,  ///< the product: iterative predictor-corrector on ICA
+  kReference,           ///< Delassus matrix by sparse Cholesky, semismooth Newton: exact and slow
+  kCone4,               ///< ICA with the 4-sided cone compacted along the previous sliding velocity
+  kPolyhedral,          ///< ICA with a polyhedral cone of `cone_sides` sides (MLCP)
+  kCondensedLcp,        ///< static condensation to an LCP with a polyhedral cone, Lemke's pivoting
+  kImpulse              ///< frictionless step, then friction impulses (Bridson, Fedkiw & Anderson 2002)
 };
+
+/// What relaxes A v = b + J'lambda between the passes over the contacts.
+enum class RelaxationKind {
+  kGaussSeidel,  ///< block Gauss-Seidel sweeps: O(n) memory, right for small steps
+  kCholesky      ///< lagged sparse Cholesky factor: for stiff or near-incompressible tissue and large steps
+};
+
+struct SolverDescription {
+  SolverMethod method = SolverMethod::kPredictorCorrector;
+  RelaxationKind relaxation = RelaxationKind::kGaussSeidel;
+  int iterations = 30;         ///< upper bound on iterations (relaxation + contact passes) per step
+  int contact_passes = 2;      ///< predictor-corrector passes over the contacts per iteration
+  double tolerance = 3e-4;     ///< stop when one iteration changes momentum and impulses by less than this (relative)
+  double time_budget_s = 0.0;  ///< stop after this wall time per step; 0: none. Gives up bit-identical replay
+  int cone_sides = 8;          ///< of the polyhedral rivals, even, 4 to 64
+};
+
+/// The name of a method or relaxation in scene files and on command lines, and back.
+/// @throws std::invalid_argument naming the known ones.
+const char* solverMethodName(SolverMethod method);
+SolverMethod solverMethodByName(const std::string& name);
+const char* relaxationName(RelaxationKind relaxation);
+RelaxationKind relaxationByName(const std::string& name);
 
 /// Rates are of simulated (message) time; 0 switches a topic off.
 struct PublishDescription {
@@ -154,6 +247,7 @@ struct Scene {
   Vector3 gravity_m_per_s2 = Vector3::Zero();
   std::vector<TissueDescription> tissues;
   std::vector<InstrumentDescription> instruments;
+  std::vector<TissuePair> tissue_pairs;
   std::vector<FrictionDescription> friction;
   StepDescription step;
   SolverDescription solver;

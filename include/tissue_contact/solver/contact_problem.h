@@ -14,22 +14,30 @@
 
 namespace tissue_contact {
 
-/// Linear system of one tissue, A = diag(mass) + stiffness_scale * K. K is not copied, so a change of dt costs nothing.
+/// Linear system of one tissue, A = diag(mass) + stiffness_scale * K + damping_scale * D. K is not copied, so a change of dt costs nothing.
 /// For an implicit Euler step with Rayleigh damping D = alpha M + beta K: mass_i = (1 + alpha dt) m_i,
 /// stiffness_scale = dt (dt + beta), b = M v0 + dt f(x0).
 struct BodySystem {
-  const BlockMatrix* K = nullptr;            ///< N/m
+  const BlockMatrix* K = nullptr;  ///< N/m
+  const BlockMatrix* D = nullptr;  ///< N s/m, added as dt * D; null: damping is all in stiffness_scale and mass
   const std::vector<bool>* fixed = nullptr;  ///< per node: its velocity is 0
   double stiffness_scale = 0.0;              ///< s^2
+  double damping_scale = 0.0;                ///< s: dt where there is a D
   VectorX mass;                              ///< kg, per node
   NodalVectors b;                            ///< N s
 };
 
+/// A node a contact acts on.
+struct RowNode {
+  int body = 0;  ///< index into ContactProblem::bodies
+  int node = 0;
+  double weight = 0.0;  ///< barycentric, never 0; negative on the side n points away from (tissue against tissue)
+};
+
 /// One contact as the solver sees it.
 struct ContactRow {
-  int body = 0;  ///< index into ContactProblem::bodies
-  std::array<int, 3> nodes = {0, 0, 0};
-  Vector3 weights = Vector3::Zero();   ///< barycentric
+  std::array<RowNode, 4> nodes;        ///< no node twice
+  int node_count = 0;                  ///< 1 to 4
   Matrix3 R_WC = Matrix3::Identity();  ///< columns (n, t1, t2), n from the instrument into the tissue
   double gap_m = 0.0;                  ///< at the start of the step
   double required_u_n = 0.0;           ///< u_n must be at least this, m/s: -gap/dt, limited when penetrating deeply
@@ -53,9 +61,11 @@ struct ContactSolution {
 
 /// Relative velocity u = J v - u_tool of a contact in its frame, m/s.
 inline Vector3 relativeVelocity(const ContactRow& row, const std::vector<NodalVectors>& v) {
-  const NodalVectors& nodes = v[row.body];
-  const Vector3 tissue = row.weights[0] * nodes.col(row.nodes[0]) + row.weights[1] * nodes.col(row.nodes[1]) +
-                         row.weights[2] * nodes.col(row.nodes[2]);
+  Vector3 tissue = Vector3::Zero();
+  for (int a = 0; a < row.node_count; ++a) {
+    const RowNode& at = row.nodes[a];
+    tissue += at.weight * v[at.body].col(at.node);
+  }
   return row.R_WC.transpose() * tissue - row.u_tool;
 }
 

@@ -1,82 +1,34 @@
 /// @file
-/// Room `tissue`: linear and corotational elasticity on four-node tetrahedra. Positions in; elastic forces and the
-/// stiffness matrix of the step's linearisation out.
-///
-/// Per element, with D = [x1-x0, x2-x0, x3-x0], F = D D_rest^-1 and R the rotation nearest to F (R = I when linear):
-///   strain  e = sym(R'F) - I,   stress  P = R (2 mu e + lambda tr(e) I),   force on node i  f_i = -V P grad N_i.
-/// Stiffness blocks with c_i = R grad N_i:  K_ij = V (lambda c_i c_j' + mu c_j c_i' + mu (c_i . c_j) I),
-/// the stiffness-warping tangent, which leaves out dR/dx and is therefore symmetric positive semidefinite.
-/// Source: Mueller & Gross, "Interactive Virtual Materials", GI 2004, eq. 10-13; the rotation is the polar factor of F
-/// (Etzmuss, Keckeisen, Strasser, PG 2003).
+/// Room `tissue`: what every tissue model gives a time step, whatever its elements. Positions in; elastic forces and the
+/// stiffness (and damping) matrix of the step's linearisation out.
 #pragma once
 
-#include <vector>
+#include <memory>
 
 #include "tissue_contact/core/block_matrix.h"
 #include "tissue_contact/core/types.h"
-#include "tissue_contact/scene/scene.h"
 
 namespace tissue_contact {
-
-struct ElementBatch;
 
 /// Model: const after construction. Thread-safe for different states.
 class Elasticity {
  public:
-  /// What changes while simulating. Rotations are kept four elements at a time, as (w, x, y, z) of any length.
+  /// What changes while simulating. Use a state only with the model that made it.
   struct State {
-    std::vector<std::array<std::array<double, 4>, 4>> rotations;          ///< of each element at the last update
-    std::vector<std::array<std::array<double, 4>, 4>> tangent_rotations;  ///< those `stiffness` was computed with
-    std::vector<unsigned char> turned;                                    ///< scratch: elements to refresh, a bit each
-    BlockMatrix stiffness;                                                ///< K, N/m
+    virtual ~State() = default;
+    BlockMatrix stiffness;  ///< K, N/m, symmetric; rows of fixed nodes hold nothing
+    BlockMatrix damping;    ///< D, N s/m, where materials damp differently by region; else no rows
   };
-
-  /// @param rest 3 x n, m. @throws std::invalid_argument for a material out of range.
-  Elasticity(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
-             const MaterialDescription& material);
-  ~Elasticity();
-  Elasticity(const Elasticity&);
-  Elasticity(Elasticity&&) noexcept;
+  virtual ~Elasticity() = default;
 
   /// State of the undeformed body; allocates.
-  State makeState() const;
+  virtual std::unique_ptr<State> makeState() const = 0;
 
-  /// Elastic forces (N, overwritten) at positions x (m), and the stiffness brought up to date. An element's share of
-  /// the stiffness is recomputed only when it has turned by more than kTangentAngle since; forces are always exact. No
-  /// allocation.
-  void update(const NodalVectors& x, State& state, NodalVectors& forces) const;
+  /// Elastic forces (N, overwritten) at positions x (m), and the matrices brought up to date. No allocation.
+  virtual void update(const NodalVectors& x, State& state, NodalVectors& forces) const = 0;
 
-  /// Elastic energy (J): sum V (mu e:e + lambda/2 tr(e)^2). For tests and energy reports.
-  double energy(const NodalVectors& x) const;
-
-  /// 0.01 rad: the tangent is then off by 1 % of the force increment within one step, below the first-order error of
-  /// the implicit Euler step itself.
-  static constexpr double kTangentAngle = 0.01;
-
- private:
-  struct Element {
-    Tetrahedron nodes;
-    Matrix3 rest_inverse;  ///< D_rest^-1, 1/m; its rows are grad N_1..N_3
-    double volume;         ///< m^3
-    std::array<std::array<int, 4>, 4>
-        at;  ///< where block (i, j) is in K: index into values, the node if i = j; -1: not stored
-  };
-
-  void addElement(const NodalVectors& rest, const Tetrahedron& tet, const std::vector<bool>& fixed);
-  void fillBatches();
-  void addStiffness(const Element& element, const Quaternion& rotation, double sign, BlockMatrix& K) const;
-  void refreshStiffness(std::size_t batch, State& state) const;
-
-  bool corotational_;
-  double lame_lambda_;  ///< Pa
-  double lame_mu_;      ///< Pa
-  std::vector<Element> elements_;
-  std::vector<ElementBatch> batches_;  ///< the same elements, laid out for the force kernel
-  BlockMatrix pattern_;
+  /// Elastic energy (J), 0 undeformed. For tests and energy reports.
+  virtual double energy(const NodalVectors& x) const = 0;
 };
-
-/// Rotation nearest to F (polar factor; where F is inverted, the nearest proper rotation), starting from a guess.
-/// Newton on the stationarity of tr(R'F), falling back to an SVD; converged to round-off, so the guess only saves time.
-Quaternion nearestRotation(const Matrix3& F, const Quaternion& guess);
 
 }  // namespace tissue_contact

@@ -46,7 +46,7 @@ std::vector<Triangle> boundaryTriangles(const std::vector<Tetrahedron>& tetrahed
 /// diagonal of the mesh's bounding box counts as on the boundary, since neither coordinates nor regions are free of
 /// rounding.
 /// @throws std::invalid_argument naming `source`, the region and the mesh's bounding box when a region holds no node.
-std::vector<bool> fixedNodes(const NodalVectors& positions, const std::vector<FixedRegion>& regions,
+std::vector<bool> fixedNodes(const NodalVectors& positions, const std::vector<Region>& regions,
                              const std::string& source);
 
 }  // namespace tissue_contact

@@ -1,7 +1,8 @@
 /// @file
-/// Room `tissue`: one tissue of a scene, placed in the world: mesh, surface, fixed nodes, masses and elasticity.
+/// Room `tissue`: one tissue of a scene, placed in the world: mesh, surface, fixed nodes, regions, masses, elasticity.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,13 +21,25 @@ class Tissue {
 
   const std::string& name() const { return name_; }
   int nodeCount() const { return static_cast<int>(rest_.cols()); }
-  const NodalVectors& restPositions() const { return rest_; }  ///< m, world frame
-  const std::vector<Tetrahedron>& tetrahedra() const { return tetrahedra_; }
-  const std::vector<Triangle>& surface() const { return surface_; }
+  const NodalVectors& restPositions() const { return rest_; }                 ///< m, world frame
+  const std::vector<Tetrahedron>& tetrahedra() const { return tetrahedra_; }  ///< none for a membrane
+  const std::vector<Triangle>& surface() const { return surface_; }           ///< a membrane's triangles, once each
+
+  /// Thickness of a membrane, m: it can be touched from both sides, at half of it from its triangles. 0: a volume.
+  double thickness() const { return thickness_; }
+
+  /// Per surface triangle: index into TissueDescription::regions, -1 where none. Empty: the tissue has no regions.
+  const std::vector<int>& surfaceRegions() const { return surface_regions_; }
+
+  /// Per surface triangle: the fibre direction at rest, projected into it, as coefficients over its edges (x1 - x0,
+  /// x2 - x0); applied to the deformed edges they give the carried direction. Empty: the tissue has no fibres.
+  const std::vector<Vector2>& surfaceFibres() const { return surface_fibres_; }
+
   const std::vector<bool>& fixed() const { return fixed_; }
   const VectorX& nodeMasses() const { return masses_; }  ///< kg, lumped: a quarter of each tetrahedron's mass
+  /// Rayleigh damping; stiffness_s is 0 where regions differ in it, the elasticity's state then has a damping matrix.
   const DampingDescription& damping() const { return damping_; }
-  const Elasticity& elasticity() const { return elasticity_; }
+  const Elasticity& elasticity() const { return *elasticity_; }
 
  private:
   struct PlacedMesh;
@@ -40,7 +53,10 @@ class Tissue {
   std::vector<bool> fixed_;
   VectorX masses_;
   DampingDescription damping_;
-  Elasticity elasticity_;
+  double thickness_ = 0.0;
+  std::vector<int> surface_regions_;
+  std::vector<Vector2> surface_fibres_;
+  std::unique_ptr<const Elasticity> elasticity_;
 };
 
 }  // namespace tissue_contact

@@ -64,7 +64,7 @@ TEST_F(SceneTest, FillsPoses) {
 }
 
 TEST_F(SceneTest, FillsFixedRegions) {
-  const std::vector<FixedRegion> fixed = parse(kFullScene).tissues.at(0).fixed;
+  const std::vector<Region> fixed = parse(kFullScene).tissues.at(0).fixed;
   ASSERT_EQ(fixed.size(), 3U);
   EXPECT_EQ(std::get<BoxRegion>(fixed[0]).min_m, Vector3(-1, -2, -3));
   EXPECT_EQ(std::get<BoxRegion>(fixed[0]).max_m, Vector3(1, 2, 3));

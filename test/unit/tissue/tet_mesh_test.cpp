@@ -160,7 +160,7 @@ TEST(BoundaryTriangles, RefusesAFaceOfThreeElements) {
 
 TEST(BoundaryTriangles, OfNothingIsNothing) { EXPECT_TRUE(boundaryTriangles({}).empty()); }
 
-std::vector<bool> fixedOf(const std::vector<FixedRegion>& regions) {
+std::vector<bool> fixedOf(const std::vector<Region>& regions) {
   return fixedNodes(twoTetrahedra().positions, regions, "tissue 'liver'");
 }
 
@@ -191,7 +191,7 @@ TEST(FixedNodes, CountsANodeOnTheBoundaryDespiteRounding) {
 }
 
 TEST(FixedNodes, NamesTheRegionThatHoldsNoNodeAndTheMesh) {
-  const FixedRegion good = SphereRegion{{0, 0, 0}, 0.1};
+  const Region good = SphereRegion{{0, 0, 0}, 0.1};
   expectMessage(
       [&] {
         fixedOf({good, BoxRegion{{2, 3, 4}, {5, 6, 7}}});

@@ -1,4 +1,4 @@
-#include "tissue_contact/tissue/elasticity.h"
+#include "tissue_contact/tissue/tet_elasticity.h"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -63,8 +63,8 @@ Quaternion nearestRotation(const Matrix3& F, const Quaternion& guess) {
   return rotationBySvd(F);
 }
 
-Elasticity::Elasticity(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
-                       const std::vector<bool>& fixed, const MaterialDescription& material)
+TetElasticity::TetElasticity(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
+                             const std::vector<bool>& fixed, const MaterialDescription& material)
     : corotational_(material.model == ElasticModel::kCorotational) {
   const double E = requirePositive("youngs_modulus_pa", material.youngs_modulus_pa, "Pa");
   const double nu = requireInside("poissons_ratio", material.poissons_ratio, -1.0, 0.5);
@@ -76,11 +76,9 @@ Elasticity::Elasticity(const NodalVectors& rest, const std::vector<Tetrahedron>&
   fillBatches();
 }
 
-Elasticity::~Elasticity() = default;
-Elasticity::Elasticity(const Elasticity&) = default;
-Elasticity::Elasticity(Elasticity&&) noexcept = default;
+TetElasticity::~TetElasticity() = default;
 
-void Elasticity::addElement(const NodalVectors& rest, const Tetrahedron& tet, const std::vector<bool>& fixed) {
+void TetElasticity::addElement(const NodalVectors& rest, const Tetrahedron& tet, const std::vector<bool>& fixed) {
   Element element;
   element.nodes = tet;
   Matrix3 D;
@@ -95,7 +93,7 @@ void Elasticity::addElement(const NodalVectors& rest, const Tetrahedron& tet, co
   elements_.push_back(element);
 }
 
-void Elasticity::fillBatches() {
+void TetElasticity::fillBatches() {
   batches_.resize((elements_.size() + kLanes - 1) / kLanes);
   for (std::size_t slot = 0; slot < batches_.size() * kLanes; ++slot) {
     const bool used = slot < elements_.size();
@@ -108,19 +106,20 @@ void Elasticity::fillBatches() {
   }
 }
 
-Elasticity::State Elasticity::makeState() const {
+std::unique_ptr<Elasticity::State> TetElasticity::makeState() const {
   RotationBatch identity{};
   identity[0].fill(1.0);
-  State state;
+  auto result = std::make_unique<RotationState>();
+  RotationState& state = *result;
   state.rotations.assign(batches_.size(), identity);
   state.tangent_rotations = state.rotations;
   state.turned.assign(batches_.size(), 0);
   state.stiffness = pattern_;
   for (const Element& element : elements_) addStiffness(element, Quaternion::Identity(), 1.0, state.stiffness);
-  return state;
+  return result;
 }
 
-void Elasticity::addStiffness(const Element& element, const Quaternion& rotation, double sign, BlockMatrix& K) const {
+void TetElasticity::addStiffness(const Element& element, const Quaternion& rotation, double sign, BlockMatrix& K) const {
   const Eigen::Matrix<double, 3, 4> c = rotation.toRotationMatrix() * shapeGradients(element.rest_inverse);
   const double lambda = sign * element.volume * lame_lambda_;
   const double mu = sign * element.volume * lame_mu_;
@@ -139,7 +138,7 @@ void Elasticity::addStiffness(const Element& element, const Quaternion& rotation
   }
 }
 
-void Elasticity::refreshStiffness(std::size_t batch, State& state) const {
+void TetElasticity::refreshStiffness(std::size_t batch, RotationState& state) const {
   const auto rotation = [batch](const std::vector<RotationBatch>& rotations, std::size_t lane) {
     const RotationBatch& q = rotations[batch];
     return Quaternion(q[0][lane], q[1][lane], q[2][lane], q[3][lane]).normalized();
@@ -153,7 +152,8 @@ void Elasticity::refreshStiffness(std::size_t batch, State& state) const {
   }
 }
 
-void Elasticity::update(const NodalVectors& x, State& state, NodalVectors& forces) const {
+void TetElasticity::update(const NodalVectors& x, State& any_state, NodalVectors& forces) const {
+  auto& state = static_cast<RotationState&>(any_state);  // made by makeState()
   forces.setZero();
   const KernelMaterial material{lame_lambda_, lame_mu_};
   if (!corotational_) {
@@ -167,7 +167,7 @@ void Elasticity::update(const NodalVectors& x, State& state, NodalVectors& force
   }
 }
 
-double Elasticity::energy(const NodalVectors& x) const {
+double TetElasticity::energy(const NodalVectors& x) const {
   double energy = 0.0;
   for (const Element& element : elements_) {
     Matrix3 D;

@@ -1,0 +1,41 @@
+/// @file
+/// Room `contact`: tissue surfaces against each other, and folds of one surface against itself. Surface positions in,
+/// contacts out.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "tissue_contact/contact/contact.h"
+#include "tissue_contact/contact/contact_detector.h"
+#include "tissue_contact/core/types.h"
+
+namespace tissue_contact {
+
+/// Indices of two tissues that may touch; the same index twice: folds of one tissue.
+struct TouchingTissues {
+  int tissue = 0;
+  int other = 0;
+};
+
+class TissuePairDetector {
+ public:
+  /// @param surfaces of all tissues of the scene. @param rest their positions at rest, m: parts of one surface that are
+  /// near each other at rest are no folds. @throws std::invalid_argument for an unknown index or sizes that differ.
+  TissuePairDetector(std::vector<TouchingTissues> pairs, std::vector<TissueSurface> surfaces,
+                     const std::vector<NodalVectors>& rest);
+  ~TissuePairDetector();
+  TissuePairDetector(TissuePairDetector&&) noexcept;
+  TissuePairDetector& operator=(TissuePairDetector&&) noexcept;
+
+  /// Appends every vertex-face and edge-edge pair nearer than `margin_m`: `tissue` and `nodes` hold one point, the
+  /// `other_*` members the point in the instrument's place, n from it into `tissue`. At most 4 nodes have a weight.
+  /// Per call sorted by key. Deterministic: depends on the arguments alone. Not thread-safe.
+  void detect(const std::vector<NodalVectors>& positions, double margin_m, std::vector<Contact>& contacts);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace tissue_contact

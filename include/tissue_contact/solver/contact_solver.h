@@ -1,0 +1,52 @@
+/// @file
+/// Room `solver`: what every solver of a step's contact problem offers. A contact problem and a warm start in;
+/// velocities, impulses, states and a report out.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "tissue_contact/scene/scene.h"
+#include "tissue_contact/solver/contact_problem.h"
+#include "tissue_contact/solver/residuals.h"
+
+namespace tissue_contact {
+
+/// Why a solver stopped.
+enum class StopReason { kTolerance, kIterations, kTimeBudget };
+
+struct SolverReport {
+  int iterations = 0;
+  StopReason stop = StopReason::kIterations;
+  Residuals residuals;  ///< after the last sweep
+
+  bool converged() const { return stop == StopReason::kTolerance; }
+};
+
+/// Seconds on a clock that never goes back. The core has none of its own: a time budget needs one from outside.
+using Clock = std::function<double()>;
+
+/// Holds its workspace: one object per thread. Deterministic unless a time budget is set.
+class ContactSolver {
+ public:
+  virtual ~ContactSolver() = default;
+
+  /// @param solution in: warm start (sizes must match the problem); out: the answer. Fixed nodes keep v = 0.
+  virtual SolverReport solve(const ContactProblem& problem, ContactSolution& solution) = 0;
+
+  /// Forgets what it carries from step to step (factors, caches): the next answer depends on its arguments alone.
+  virtual void reset() {}
+
+  /// Bytes held now for nodes and for contacts, capacity included.
+  struct Memory {
+    std::size_t per_nodes = 0;     ///< bytes in all that grow with the number of nodes
+    std::size_t per_contacts = 0;  ///< bytes in all that grow with the number of contacts
+  };
+  virtual Memory memory() const = 0;
+};
+
+/// The solver a scene asks for. @param clock needed only for a time budget.
+/// @throws std::invalid_argument for options out of range, or a time budget without a clock.
+std::unique_ptr<ContactSolver> makeContactSolver(const SolverDescription& description, const Clock& clock = nullptr);
+
+}  // namespace tissue_contact
