@@ -1,134 +1,83 @@
 #include "tissue_contact/solver/iterative_predictor_corrector.h"
 
-#include <Eigen/LU>
 #include <cmath>
+#include <utility>
 
-#include "tissue_contact/core/check.h"
+#include "solver/relaxation.h"
 
 namespace tissue_contact {
+namespace {
 
-IterativePredictorCorrector::IterativePredictorCorrector(const SolverOptions& options) : options_(options) {
-  requirePositive("solver iterations", options.iterations);
-  requirePositive("solver contact_passes", options.contact_passes);
-  requirePositive("solver tolerance", options.tolerance);
+std::unique_ptr<Relaxation> makeRelaxation(RelaxationKind kind) {
+  return kind == RelaxationKind::kCholesky ? makeCholeskyRelaxation() : makeGaussSeidelRelaxation();
 }
 
-void IterativePredictorCorrector::prepareBodies(const ContactProblem& problem) {
-  block_inverse_.resize(problem.bodies.size());
-  contact_impulses_.resize(problem.bodies.size());
-  scratch_.resize(problem.bodies.size());
-  double load = 0.0;
-  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    const BodySystem& body = problem.bodies[k];
-    const int nodes = body.K->rows();
-    block_inverse_[k].resize(nodes);
-    for (int i = 0; i < nodes; ++i) {
-      Matrix3 block = body.stiffness_scale * body.K->diagonal[i];
-      block.diagonal().array() += body.mass[i];
-      block_inverse_[k][i] = (*body.fixed)[i] ? Matrix3(Matrix3::Zero()) : Matrix3(block.inverse());
-    }
-    contact_impulses_[k].setZero(3, nodes);
-    scratch_[k].resize(3, nodes);
-    load += body.b.squaredNorm();
-  }
-  load_scale_ = std::sqrt(load);
+double norm(const std::vector<Vector3>& impulses) {
+  double sum = 0.0;
+  for (const Vector3& impulse : impulses) sum += impulse.squaredNorm();
+  return std::sqrt(sum);
 }
 
-void IterativePredictorCorrector::prepareContacts(const ContactProblem& problem, ContactSolution& solution) {
-  prepared_.resize(problem.contacts.size());
-  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
-    const ContactRow& row = problem.contacts[c];
-    Prepared& contact = prepared_[c];
-    contact.W.setZero();
-    contact.flips = 0;
-    for (int a = 0; a < 3; ++a) {
-      const Matrix3& inverse = block_inverse_[row.body][row.nodes[a]];
-      contact.response[a] = row.weights[a] * (inverse * row.R_WC);
-      const bool fixed = (*problem.bodies[row.body].fixed)[row.nodes[a]];
-      contact.distribution[a] = fixed ? Matrix3(Matrix3::Zero()) : Matrix3(row.weights[a] * row.R_WC);
-      contact.W += row.weights[a] * (row.R_WC.transpose() * contact.response[a]);
-    }
-    contact.usable = contact.W(0, 0) > 0.0;
-    if (!contact.usable) {
-      solution.impulses[c].setZero();
-      solution.states[c] = ContactState::kOpen;
-    }
-    NodalVectors& p = contact_impulses_[row.body];
-    for (int a = 0; a < 3; ++a) p.col(row.nodes[a]) += contact.distribution[a] * solution.impulses[c];
-  }
+}  // namespace
+
+IterativePredictorCorrector::IterativePredictorCorrector(const SolverDescription& description, Clock clock)
+    : description_(description),
+      clock_(std::move(clock)),
+      relaxation_(makeRelaxation(description.relaxation)),
+      corrector_(std::make_unique<ContactCorrector>(description.method, description.cone_sides)) {
+  requireSolverOptions(description, clock_);
 }
 
-double IterativePredictorCorrector::sweep(const ContactProblem& problem, bool forward,
-                                          std::vector<NodalVectors>& v) const {
-  double change = 0.0;
-  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    const BodySystem& body = problem.bodies[k];
-    const BlockMatrix& K = *body.K;
-    const int nodes = K.rows();
-    for (int step = 0; step < nodes; ++step) {
-      const int i = forward ? step : nodes - 1 - step;
-      if ((*body.fixed)[i]) continue;
-      const Vector3 v_i = v[k].col(i);
-      const Vector3 elastic = K.offDiagonalProduct(i, v[k]) + K.diagonal[i] * v_i;
-      const Vector3 defect =
-          body.b.col(i) + contact_impulses_[k].col(i) - body.mass[i] * v_i - body.stiffness_scale * elastic;
-      v[k].col(i) = v_i + block_inverse_[k][i] * defect;
-      change += defect.squaredNorm();
-    }
-  }
-  return std::sqrt(change);
-}
+IterativePredictorCorrector::~IterativePredictorCorrector() = default;
 
-double IterativePredictorCorrector::contactPass(const ContactProblem& problem, ContactSolution& solution) {
-  double change = 0.0;
-  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
-    Prepared& contact = prepared_[c];
-    if (!contact.usable) continue;
-    const ContactRow& row = problem.contacts[c];
-    Vector3& impulse = solution.impulses[c];
-    Vector3 q = relativeVelocity(row, solution.v) - contact.W * impulse;
-    q[0] -= row.required_u_n;
-    const bool kinetic_limit = row.was_sliding || contact.flips > kMaxFlips;
-    const ContactAnswer answer = solveCoulombContact(contact.W, q, row.law, kinetic_limit);
-    const bool both_touch = answer.state != ContactState::kOpen && solution.states[c] != ContactState::kOpen;
-    if (both_touch && answer.state != solution.states[c]) ++contact.flips;
-    solution.states[c] = answer.state;
-    const Vector3 delta = answer.impulse - impulse;
-    impulse = answer.impulse;
-    for (int a = 0; a < 3; ++a) {
-      solution.v[row.body].col(row.nodes[a]) += contact.response[a] * delta;
-      contact_impulses_[row.body].col(row.nodes[a]) += contact.distribution[a] * delta;
-    }
-    change += delta.squaredNorm();
-  }
-  return std::sqrt(change);
-}
+void IterativePredictorCorrector::reset() { relaxation_->reset(); }
 
-bool IterativePredictorCorrector::small(double momentum_change, double impulse_change,
-                                        const ContactSolution& solution) const {
-  double impulses = 0.0;
-  for (const Vector3& impulse : solution.impulses) impulses += impulse.squaredNorm();
-  impulses = std::sqrt(impulses);
-  return momentum_change <= options_.tolerance * (load_scale_ + impulses) &&
-         impulse_change <= options_.tolerance * impulses;
+bool IterativePredictorCorrector::converged(double momentum_change, double impulse_change,
+                                            const ContactSolution& solution) const {
+  const double impulses = norm(solution.impulses);
+  return momentum_change <= description_.tolerance * (load_scale_ + impulses) &&
+         impulse_change <= description_.tolerance * impulses;
 }
 
 SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, ContactSolution& solution) {
-  prepareBodies(problem);
-  prepareContacts(problem, solution);
-  SolverReport report;
-  while (report.iterations < options_.iterations && !report.converged) {
-    const double momentum_change = sweep(problem, report.iterations % 2 == 0, solution.v);
-    double impulse_change = 0.0;
-    for (int pass = 0; pass < options_.contact_passes; ++pass) {
-      const double pass_change = contactPass(problem, solution);
-      if (pass == 0) impulse_change = pass_change;
-    }
-    ++report.iterations;
-    report.converged = small(momentum_change, impulse_change, solution);
+  const double start = clock_ ? clock_() : 0.0;
+  double load = 0.0;
+  scratch_.resize(problem.bodies.size());
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
+    load += problem.bodies[k].b.squaredNorm();
+    scratch_[k].resize(3, problem.bodies[k].K->rows());
   }
+  load_scale_ = std::sqrt(load);
+  relaxation_->prepare(problem, solution);
+  corrector_->prepare(problem, solution);
+  SolverReport report;
+  for (bool stop = false; !stop;) {
+    const double momentum_change = relaxation_->relax(problem, report.iterations, *corrector_, solution);
+    const double enough = description_.tolerance * norm(solution.impulses);
+    const double impulse_change =
+        relaxation_->correctContacts(problem, description_.contact_passes, enough, *corrector_, solution);
+    ++report.iterations;
+    stop = true;
+    if (converged(momentum_change, impulse_change, solution)) {
+      report.stop = StopReason::kTolerance;
+    } else if (report.iterations >= description_.iterations) {
+      report.stop = StopReason::kIterations;
+    } else if (description_.time_budget_s > 0.0 && clock_() - start >= description_.time_budget_s) {
+      report.stop = StopReason::kTimeBudget;
+    } else {
+      stop = false;
+    }
+  }
+  relaxation_->finish(problem, solution);
   report.residuals = computeResiduals(problem, solution, scratch_);
   return report;
+}
+
+ContactSolver::Memory IterativePredictorCorrector::memory() const {
+  Memory memory = relaxation_->memory();
+  memory.per_contacts += corrector_->bytes();
+  for (const NodalVectors& scratch : scratch_) memory.per_nodes += scratch.size() * sizeof(double);
+  return memory;
 }
 
 }  // namespace tissue_contact

@@ -45,8 +45,11 @@ class ContactSolver {
   virtual Memory memory() const = 0;
 };
 
+/// @throws std::invalid_argument naming the option that is out of range, or a time budget without a clock.
+void requireSolverOptions(const SolverDescription& description, const Clock& clock);
+
 /// The solver a scene asks for. @param clock needed only for a time budget.
-/// @throws std::invalid_argument for options out of range, or a time budget without a clock.
+/// @throws std::invalid_argument as requireSolverOptions.
 std::unique_ptr<ContactSolver> makeContactSolver(const SolverDescription& description, const Clock& clock = nullptr);
 
 }  // namespace tissue_contact

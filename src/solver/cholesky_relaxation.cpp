@@ -1,0 +1,192 @@
+/// P is A of an earlier step, so one relaxation is a back-substitution. Of W_P = J P^-1 J' only the compliance between the
+/// touched nodes S is kept (FactoredBody); a pass over the contacts tracks the velocities of S alone.
+#include <algorithm>
+#include <cmath>
+
+#include "solver/factored_body.h"
+#include "solver/relaxation.h"
+
+namespace tissue_contact {
+namespace {
+
+/// Share of the defect that one relaxation may leave before the factor is renewed at the next step.
+constexpr double kStaleContraction = 0.3;
+/// Share above which waiting does not pay: the factor is renewed at once.
+constexpr double kUselessContraction = 0.9;
+/// Round-off leaves a defect of its own (relative to the loads), which says nothing about the factor.
+constexpr double kRoundOff = 1e-12;
+
+class CholeskyRelaxation : public Relaxation {
+ public:
+  void prepare(const ContactProblem& problem, ContactSolution& solution) override;
+  double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
+               ContactSolution& solution) override;
+  double correctContacts(const ContactProblem& problem, int passes, double enough, ContactCorrector& corrector,
+                         ContactSolution& solution) override;
+  void finish(const ContactProblem& problem, ContactSolution& solution) override;
+  void reset() override { bodies_.clear(); }
+  ContactSolver::Memory memory() const override;
+
+ private:
+  /// A contact's nodes as indices into the touched nodes of their bodies.
+  struct Local {
+    std::array<int, 4> index;
+    Matrix3 W;  ///< contact frame, 1/kg; W(0, 0) = 0: nothing of it can move
+  };
+
+  double computeDefect(const ContactProblem& problem, const ContactSolution& solution);
+  double relaxOnce(const ContactProblem& problem, ContactSolution& solution, double before);
+  void prepareContact(const ContactProblem& problem, std::size_t contact, ContactSolution& solution);
+  double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution);
+  Vector3 trackedVelocity(const ContactRow& row, const Local& local) const;
+  void addImpulse(const ContactRow& row, const Local& local, const Vector3& impulse_W);
+
+  std::vector<FactoredBody> bodies_;
+  std::vector<NodalVectors> impulses_;  ///< J'lambda per body
+  std::vector<NodalVectors> defect_;    ///< b + J'lambda - A v per body, kept up to date
+  std::vector<VectorX> tracked_;        ///< per body: velocities of its touched nodes during the passes
+  std::vector<Local> contacts_;
+  double loads_ = 0.0;  ///< |b|, N s
+};
+
+void CholeskyRelaxation::prepare(const ContactProblem& problem, ContactSolution& solution) {
+  bodies_.resize(problem.bodies.size());
+  impulses_.resize(bodies_.size());
+  defect_.resize(bodies_.size());
+  tracked_.resize(bodies_.size());
+  contacts_.resize(problem.contacts.size());
+  loads_ = 0.0;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const BodySystem& body = problem.bodies[k];
+    bodies_[k].prepare(body);
+    impulses_[k].setZero(3, body.K->rows());
+    defect_[k].resize(3, body.K->rows());
+    loads_ += body.b.squaredNorm();
+  }
+  loads_ = std::sqrt(loads_);
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+    const ContactRow& row = problem.contacts[c];
+    const Vector3 impulse_W = row.R_WC * solution.impulses[c];
+    for (int a = 0; a < row.node_count; ++a) {
+      impulses_[row.nodes[a].body].col(row.nodes[a].node) += row.nodes[a].weight * impulse_W;
+    }
+  }
+  // The first relaxation comes before the compliances, which would be lost with a factor that proves useless.
+  const double before = computeDefect(problem, solution);
+  if (relaxOnce(problem, solution, before) > kUselessContraction * before && before > kRoundOff * loads_) {
+    for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].renew(problem.bodies[k]);
+    relaxOnce(problem, solution, computeDefect(problem, solution));
+  }
+  for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].beginTouching(4 * problem.contacts.size());
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) prepareContact(problem, c, solution);
+}
+
+void CholeskyRelaxation::prepareContact(const ContactProblem& problem, std::size_t contact, ContactSolution& solution) {
+  const ContactRow& row = problem.contacts[contact];
+  Local& local = contacts_[contact];
+  Matrix3 W_W = Matrix3::Zero();
+  for (int a = 0; a < row.node_count; ++a) local.index[a] = bodies_[row.nodes[a].body].touch(row.nodes[a].node);
+  for (int a = 0; a < row.node_count; ++a) {
+    for (int b = 0; b < row.node_count; ++b) {
+      const RowNode& one = row.nodes[a];
+      const RowNode& two = row.nodes[b];
+      if (one.body != two.body || local.index[a] < 0 || local.index[b] < 0) continue;
+      W_W += (one.weight * two.weight) * bodies_[one.body].compliance(local.index[a], local.index[b]);
+    }
+  }
+  local.W = row.R_WC.transpose() * W_W * row.R_WC;
+  if (local.W(0, 0) > 0.0) return;
+  solution.impulses[contact].setZero();
+  solution.states[contact] = ContactState::kOpen;
+}
+
+double CholeskyRelaxation::computeDefect(const ContactProblem& problem, const ContactSolution& solution) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    sum += bodyDefect(problem.bodies[k], solution.v[k], impulses_[k], defect_[k]);
+  }
+  return std::sqrt(sum);
+}
+
+/// v += P^-1 defect. @return the defect it leaves.
+double CholeskyRelaxation::relaxOnce(const ContactProblem& problem, ContactSolution& solution, double before) {
+  for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].relax(defect_[k], solution.v[k]);
+  const double after = computeDefect(problem, solution);
+  if (after > kStaleContraction * before && after > kRoundOff * loads_) {
+    for (FactoredBody& body : bodies_) body.markStale();
+  }
+  return after;
+}
+
+double CholeskyRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& /*corrector*/,
+                                 ContactSolution& solution) {
+  double sum = 0.0;
+  for (const NodalVectors& defect : defect_) sum += defect.squaredNorm();
+  if (iteration == 0) return std::sqrt(sum);  // prepare() has relaxed already
+  return relaxOnce(problem, solution, std::sqrt(sum));
+}
+
+Vector3 CholeskyRelaxation::trackedVelocity(const ContactRow& row, const Local& local) const {
+  Vector3 tissue = Vector3::Zero();
+  for (int a = 0; a < row.node_count; ++a) {
+    if (local.index[a] < 0) continue;
+    tissue += row.nodes[a].weight * tracked_[row.nodes[a].body].segment<3>(3 * local.index[a]);
+  }
+  return row.R_WC.transpose() * tissue - row.u_tool;
+}
+
+void CholeskyRelaxation::addImpulse(const ContactRow& row, const Local& local, const Vector3& impulse_W) {
+  for (int a = 0; a < row.node_count; ++a) {
+    if (local.index[a] < 0) continue;
+    const RowNode& at = row.nodes[a];
+    const Vector3 share = at.weight * impulse_W;
+    impulses_[at.body].col(at.node) += share;
+    defect_[at.body].col(at.node) += share;
+    bodies_[at.body].addResponse(local.index[a], share, tracked_[at.body]);
+  }
+}
+
+double CholeskyRelaxation::contactPass(const ContactProblem& problem, ContactCorrector& corrector,
+                                       ContactSolution& solution) {
+  double change = 0.0;
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+    const Local& local = contacts_[c];
+    if (!(local.W(0, 0) > 0.0)) continue;
+    const ContactRow& row = problem.contacts[c];
+    const Vector3 delta = corrector.correct(problem, c, local.W, trackedVelocity(row, local), solution);
+    if (delta.isZero(0.0)) continue;
+    addImpulse(row, local, row.R_WC * delta);
+    change += delta.squaredNorm();
+  }
+  return std::sqrt(change);
+}
+
+double CholeskyRelaxation::correctContacts(const ContactProblem& problem, int passes, double enough,
+                                           ContactCorrector& corrector, ContactSolution& solution) {
+  for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].gatherTouched(solution.v[k], tracked_[k]);
+  const double first = contactPass(problem, corrector, solution);
+  double last = first;
+  for (int pass = 1; pass < passes && last > enough; ++pass) last = contactPass(problem, corrector, solution);
+  return first;
+}
+
+void CholeskyRelaxation::finish(const ContactProblem& problem, ContactSolution& solution) {
+  (void)problem;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].relax(defect_[k], solution.v[k]);
+}
+
+ContactSolver::Memory CholeskyRelaxation::memory() const {
+  ContactSolver::Memory memory;
+  memory.per_contacts = contacts_.capacity() * sizeof(Local);
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    memory.per_nodes += bodies_[k].factorBytes() + 2 * impulses_[k].size() * sizeof(double);
+    memory.per_contacts += bodies_[k].complianceBytes() + tracked_[k].size() * sizeof(double);
+  }
+  return memory;
+}
+
+}  // namespace
+
+std::unique_ptr<Relaxation> makeCholeskyRelaxation() { return std::make_unique<CholeskyRelaxation>(); }
+
+}  // namespace tissue_contact

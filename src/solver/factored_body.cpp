@@ -1,0 +1,95 @@
+#include "solver/factored_body.h"
+
+#include <algorithm>
+
+namespace tissue_contact {
+namespace {
+
+/// The factor serves while the scales in A change by less than this ratio: P^-1 A then stays well inside (0, 2), where
+/// the relaxation converges.
+constexpr double kScaleRatio = 1.25;
+
+/// Touched nodes remembered beyond those of the present step: 72 MB.
+constexpr std::size_t kMostNodes = 1000;
+
+bool isNear(double now, double then) { return now <= kScaleRatio * then && then <= kScaleRatio * now; }
+
+}  // namespace
+
+void FactoredBody::prepare(const BodySystem& body) {
+  const bool close = isNear(body.stiffness_scale, stiffness_scale_) && isNear(body.damping_scale, damping_scale_) &&
+                     isNear(body.mass.sum(), total_mass_);
+  if (!valid_ || stale_ || !close) renew(body);
+}
+
+void FactoredBody::renew(const BodySystem& body) {
+  system_.assemble(body);
+  if (!analysed_) factor_.analyzePattern(system_.matrix());
+  analysed_ = true;
+  factor_.factorize(system_.matrix());
+  valid_ = factor_.info() == Eigen::Success;
+  stale_ = false;
+  stiffness_scale_ = body.stiffness_scale;
+  damping_scale_ = body.damping_scale;
+  total_mass_ = body.mass.sum();
+  index_of_.resize(body.K->rows(), -1);
+  forget();
+}
+
+void FactoredBody::forget() {
+  touched_.clear();
+  std::fill(index_of_.begin(), index_of_.end(), -1);
+}
+
+void FactoredBody::relax(const NodalVectors& defect, NodalVectors& v) {
+  if (!valid_ || system_.size() == 0) return;
+  system_.gather(defect, right_);
+  left_ = factor_.solve(right_);
+  system_.scatterAdd(left_, v);
+}
+
+void FactoredBody::beginTouching(std::size_t expected) {
+  if (touched_.size() + expected > std::max(kMostNodes, expected)) forget();
+}
+
+int FactoredBody::touch(int node) {
+  const int row = system_.firstRow(node);
+  if (!valid_ || row < 0) return -1;
+  if (index_of_[node] >= 0) return index_of_[node];
+  const int added = static_cast<int>(touched_.size());
+  index_of_[node] = added;
+  touched_.push_back(node);
+  const int needed = 3 * (added + 1);
+  if (C_.rows() < needed) C_.conservativeResize(2 * needed, 2 * needed);
+  right_.resize(system_.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    right_.setZero();
+    right_[row + axis] = 1.0;
+    left_ = factor_.solve(right_);
+    for (int b = 0; b <= added; ++b) {
+      const Vector3 column = left_.segment<3>(system_.firstRow(touched_[b]));
+      C_.block<3, 1>(3 * b, 3 * added + axis) = column;
+      C_.block<1, 3>(3 * added + axis, 3 * b) = column.transpose();
+    }
+  }
+  return added;
+}
+
+void FactoredBody::gatherTouched(const NodalVectors& v, VectorX& velocities) const {
+  velocities.resize(3 * static_cast<Eigen::Index>(touched_.size()));
+  for (std::size_t s = 0; s < touched_.size(); ++s) {
+    velocities.segment<3>(3 * static_cast<Eigen::Index>(s)) = v.col(touched_[s]);
+  }
+}
+
+void FactoredBody::addResponse(int touched, const Vector3& impulse_W, VectorX& velocities) const {
+  const Eigen::Index rows = velocities.size();
+  for (int axis = 0; axis < 3; ++axis) velocities += impulse_W[axis] * C_.col(3 * touched + axis).head(rows);
+}
+
+std::size_t FactoredBody::factorBytes() const {
+  if (!valid_) return system_.bytes();
+  return system_.bytes() + factor_.matrixL().nestedExpression().nonZeros() * (sizeof(double) + sizeof(int));
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,56 @@
+/// @file
+/// Room `solver`, private: one body's A factored at some earlier step, and the compliance P^-1 between its touched nodes.
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <vector>
+
+#include "solver/sparse_system.h"
+
+namespace tissue_contact {
+
+/// The compliance C = (P^-1)_SS grows by one column per newly touched node. It is symmetric, so the rows that earlier
+/// columns lack are in the new column. It lives as long as the factor.
+class FactoredBody {
+ public:
+  /// Begins a step: renews the factor if it is stale or A has changed too much.
+  void prepare(const BodySystem& body);
+  void renew(const BodySystem& body);  ///< factors A of this step; allocates
+  void markStale() { stale_ = true; }  ///< renew at the next prepare()
+
+  /// v += P^-1 defect.
+  void relax(const NodalVectors& defect, NodalVectors& v);
+
+  /// Makes room for at most `expected` nodes: forgets older ones where they are many.
+  void beginTouching(std::size_t expected);
+  /// Index of a node in S, added if it is new (three back-substitutions); -1 for a fixed node.
+  int touch(int node);
+  /// Block between two nodes of S, 1/kg.
+  Matrix3 compliance(int a, int b) const { return C_.block<3, 3>(3 * a, 3 * b); }
+
+  /// Velocities of S, m/s; and what an impulse (N s, world axes) at one of them adds.
+  void gatherTouched(const NodalVectors& v, VectorX& velocities) const;
+  void addResponse(int touched, const Vector3& impulse_W, VectorX& velocities) const;
+
+  std::size_t factorBytes() const;
+  std::size_t complianceBytes() const { return C_.size() * sizeof(double) + touched_.capacity() * sizeof(int); }
+
+ private:
+  void forget();
+
+  SparseSystem system_;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;
+  bool analysed_ = false;
+  bool valid_ = false;
+  bool stale_ = false;
+  double stiffness_scale_ = 0.0;
+  double damping_scale_ = 0.0;
+  double total_mass_ = 0.0;
+  VectorX right_;
+  VectorX left_;
+  std::vector<int> index_of_;  ///< per node: index into touched_, else -1
+  std::vector<int> touched_;   ///< S
+  Eigen::MatrixXd C_;          ///< the first 3 |S| rows and columns mean something
+};
+
+}  // namespace tissue_contact

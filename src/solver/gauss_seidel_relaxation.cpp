@@ -1,0 +1,238 @@
+#include <Eigen/LU>
+#include <cmath>
+
+#include "solver/relaxation.h"
+
+namespace tissue_contact {
+namespace {
+
+class GaussSeidelRelaxation : public Relaxation {
+ public:
+  void prepare(const ContactProblem& problem, ContactSolution& solution) override;
+  double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
+               ContactSolution& solution) override;
+  double correctContacts(const ContactProblem& problem, int passes, double enough, ContactCorrector& corrector,
+                         ContactSolution& solution) override;
+  void finish(const ContactProblem& /*problem*/, ContactSolution& /*solution*/) override {}
+  ContactSolver::Memory memory() const override;
+
+ private:
+  /// The local operator, contact frame, 1/kg; W(0, 0) = 0: no node of it can move.
+  using LocalOperator = Matrix3;
+
+  void prepareBodies(const ContactProblem& problem);
+  void prepareContacts(const ContactProblem& problem, ContactSolution& solution);
+  void findNodeContacts(const ContactProblem& problem);
+  void relaxNode(const BodySystem& body, std::size_t k, int i, NodalVectors& v, double& change) const;
+  double sweep(const ContactProblem& problem, bool forward, std::vector<NodalVectors>& v) const;
+  double sweepHolding(const ContactProblem& problem, bool forward, ContactCorrector& corrector,
+                      ContactSolution& solution);
+  double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution);
+  double correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution);
+  void apply(const ContactRow& row, const Vector3& impulse_W, std::vector<NodalVectors>& v);
+
+  std::vector<std::vector<Matrix3>> block_inverse_;  ///< P_i^-1 per body and node; 0 for fixed nodes
+  std::vector<NodalVectors> contact_impulses_;       ///< J'lambda per body
+  std::vector<LocalOperator> W_;                     ///< per contact
+  std::vector<std::vector<int>> node_contact_;       ///< per body and node: the contact that alone holds it, else -1
+  bool holding_ = false;                             ///< some node_contact_ is not -1
+};
+
+void GaussSeidelRelaxation::prepare(const ContactProblem& problem, ContactSolution& solution) {
+  prepareBodies(problem);
+  prepareContacts(problem, solution);
+  findNodeContacts(problem);
+}
+
+void GaussSeidelRelaxation::prepareBodies(const ContactProblem& problem) {
+  block_inverse_.resize(problem.bodies.size());
+  contact_impulses_.resize(problem.bodies.size());
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
+    const BodySystem& body = problem.bodies[k];
+    const int nodes = body.K->rows();
+    block_inverse_[k].resize(nodes);
+    for (int i = 0; i < nodes; ++i) {
+      Matrix3 block = body.stiffness_scale * body.K->diagonal[i];
+      if (body.D != nullptr) block += body.damping_scale * body.D->diagonal[i];
+      block.diagonal().array() += body.mass[i];
+      block_inverse_[k][i] = (*body.fixed)[i] ? Matrix3(Matrix3::Zero()) : Matrix3(block.inverse());
+    }
+    contact_impulses_[k].setZero(3, nodes);
+  }
+}
+
+void GaussSeidelRelaxation::prepareContacts(const ContactProblem& problem, ContactSolution& solution) {
+  W_.resize(problem.contacts.size());
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+    const ContactRow& row = problem.contacts[c];
+    Matrix3 W_W = Matrix3::Zero();  // in world axes
+    for (int a = 0; a < row.node_count; ++a) {
+      const RowNode& at = row.nodes[a];
+      W_W += (at.weight * at.weight) * block_inverse_[at.body][at.node];
+    }
+    if (isFrictionless(row.law)) {
+      W_[c](0, 0) = row.R_WC.col(0).dot(W_W * row.R_WC.col(0));
+      solution.impulses[c].tail<2>().setZero();  // the frame has turned since: no friction may be left in the warm start
+    } else {
+      W_[c] = row.R_WC.transpose() * W_W * row.R_WC;
+    }
+    if (!(W_[c](0, 0) > 0.0)) {
+      solution.impulses[c].setZero();
+      solution.states[c] = ContactState::kOpen;
+      continue;
+    }
+    const Vector3 impulse_W = row.R_WC * solution.impulses[c];
+    for (int a = 0; a < row.node_count; ++a) {
+      contact_impulses_[row.nodes[a].body].col(row.nodes[a].node) += row.nodes[a].weight * impulse_W;
+    }
+  }
+}
+
+/// Nodes with one contact, which acts on no other node: those the sweep can hold.
+void GaussSeidelRelaxation::findNodeContacts(const ContactProblem& problem) {
+  constexpr int kShared = -2;
+  if (holding_) {
+    for (std::vector<int>& contacts : node_contact_) std::fill(contacts.begin(), contacts.end(), -1);
+  }
+  holding_ = false;
+  node_contact_.resize(problem.bodies.size());
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+    const ContactRow& row = problem.contacts[c];
+    if (row.node_count == 1 && !isFrictionless(row.law) && W_[c](0, 0) > 0.0) holding_ = true;
+  }
+  if (!holding_) return;
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k) node_contact_[k].assign(problem.bodies[k].K->rows(), -1);
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+    const ContactRow& row = problem.contacts[c];
+    const bool single = row.node_count == 1 && !isFrictionless(row.law) && W_[c](0, 0) > 0.0;
+    for (int a = 0; a < row.node_count; ++a) {
+      int& holder = node_contact_[row.nodes[a].body][row.nodes[a].node];
+      holder = holder == -1 && single ? static_cast<int>(c) : kShared;
+    }
+  }
+}
+
+void GaussSeidelRelaxation::relaxNode(const BodySystem& body, std::size_t k, int i, NodalVectors& v,
+                                      double& change) const {
+  const Vector3 v_i = v.col(i);
+  const Vector3 elastic = body.K->offDiagonalProduct(i, v) + body.K->diagonal[i] * v_i;
+  Vector3 defect = body.b.col(i) + contact_impulses_[k].col(i) - body.mass[i] * v_i - body.stiffness_scale * elastic;
+  if (body.D != nullptr) {
+    defect -= body.damping_scale * (body.D->offDiagonalProduct(i, v) + body.D->diagonal[i] * v_i);
+  }
+  v.col(i) = v_i + block_inverse_[k][i] * defect;
+  change += defect.squaredNorm();
+}
+
+double GaussSeidelRelaxation::sweep(const ContactProblem& problem, bool forward, std::vector<NodalVectors>& v) const {
+  double change = 0.0;
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
+    const BodySystem& body = problem.bodies[k];
+    const int nodes = body.K->rows();
+    for (int step = 0; step < nodes; ++step) {
+      const int i = forward ? step : nodes - 1 - step;
+      if (!(*body.fixed)[i]) relaxNode(body, k, i, v[k], change);
+    }
+  }
+  return std::sqrt(change);
+}
+
+/// As sweep(), and a node whose own contact is static is projected at once: its tangential velocity becomes the tool's,
+/// its impulse the reaction. A reaction that leaves the limit releases the node.
+double GaussSeidelRelaxation::sweepHolding(const ContactProblem& problem, bool forward, ContactCorrector& corrector,
+                                           ContactSolution& solution) {
+  double change = 0.0;
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
+    const BodySystem& body = problem.bodies[k];
+    const int nodes = body.K->rows();
+    for (int step = 0; step < nodes; ++step) {
+      const int i = forward ? step : nodes - 1 - step;
+      if ((*body.fixed)[i]) continue;
+      const int c = node_contact_[k][i];
+      double node_change = 0.0;
+      relaxNode(body, k, i, solution.v[k], node_change);
+      if (c < 0 || solution.states[c] != ContactState::kStatic) {
+        change += node_change;
+        continue;
+      }
+      const ContactRow& row = problem.contacts[c];
+      const Vector3 delta = corrector.correct(problem, c, W_[c], relativeVelocity(row, solution.v), solution);
+      apply(row, row.R_WC * delta, solution.v);
+    }
+  }
+  return std::sqrt(change);
+}
+
+double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
+                                    ContactSolution& solution) {
+  const bool forward = iteration % 2 == 0;
+  return holding_ ? sweepHolding(problem, forward, corrector, solution) : sweep(problem, forward, solution.v);
+}
+
+/// v += P^-1 J' impulse of one contact; `impulse_W` in world axes, N s.
+void GaussSeidelRelaxation::apply(const ContactRow& row, const Vector3& impulse_W, std::vector<NodalVectors>& v) {
+  for (int a = 0; a < row.node_count; ++a) {
+    const RowNode& at = row.nodes[a];
+    const Vector3 share = at.weight * impulse_W;
+    v[at.body].col(at.node) += block_inverse_[at.body][at.node] * share;
+    contact_impulses_[at.body].col(at.node) += share;
+  }
+}
+
+/// The answer of a frictionless contact: nothing tangential is computed. @return the change of its impulse, N s.
+double GaussSeidelRelaxation::correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution) {
+  const Vector3 n = row.R_WC.col(0);
+  Vector3 tissue = Vector3::Zero();
+  for (int a = 0; a < row.node_count; ++a) {
+    const RowNode& at = row.nodes[a];
+    tissue += at.weight * solution.v[at.body].col(at.node);
+  }
+  Vector3& impulse = solution.impulses[contact];
+  const double wanted = impulse[0] - (n.dot(tissue) - row.u_tool[0] - row.required_u_n) / W_[contact](0, 0);
+  const double normal = wanted > 0.0 ? wanted : 0.0;
+  const double change = normal - impulse[0];
+  impulse = Vector3(normal, 0.0, 0.0);
+  solution.states[contact] = normal > 0.0 ? ContactState::kKinetic : ContactState::kOpen;
+  if (change != 0.0) apply(row, n * change, solution.v);
+  return change;
+}
+
+double GaussSeidelRelaxation::contactPass(const ContactProblem& problem, ContactCorrector& corrector,
+                                          ContactSolution& solution) {
+  double change = 0.0;
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+    if (!(W_[c](0, 0) > 0.0)) continue;
+    const ContactRow& row = problem.contacts[c];
+    if (isFrictionless(row.law)) {
+      const double normal = correctNormal(row, c, solution);
+      change += normal * normal;
+      continue;
+    }
+    const Vector3 delta = corrector.correct(problem, c, W_[c], relativeVelocity(row, solution.v), solution);
+    apply(row, row.R_WC * delta, solution.v);
+    change += delta.squaredNorm();
+  }
+  return std::sqrt(change);
+}
+
+double GaussSeidelRelaxation::correctContacts(const ContactProblem& problem, int passes, double /*enough*/,
+                                              ContactCorrector& corrector, ContactSolution& solution) {
+  const double first = contactPass(problem, corrector, solution);
+  for (int pass = 1; pass < passes; ++pass) contactPass(problem, corrector, solution);
+  return first;
+}
+
+ContactSolver::Memory GaussSeidelRelaxation::memory() const {
+  ContactSolver::Memory memory;
+  for (const std::vector<Matrix3>& blocks : block_inverse_) memory.per_nodes += blocks.capacity() * sizeof(Matrix3);
+  for (const NodalVectors& p : contact_impulses_) memory.per_nodes += p.size() * sizeof(double);
+  for (const std::vector<int>& holders : node_contact_) memory.per_nodes += holders.capacity() * sizeof(int);
+  memory.per_contacts = W_.capacity() * sizeof(LocalOperator);
+  return memory;
+}
+
+}  // namespace
+
+std::unique_ptr<Relaxation> makeGaussSeidelRelaxation() { return std::make_unique<GaussSeidelRelaxation>(); }
+
+}  // namespace tissue_contact

@@ -1,0 +1,42 @@
+/// @file
+/// Room `solver`, private: what the predictor-corrector's loop needs from a splitting A = P - N: relaxing the velocities
+/// with impulses held, and passes over the contacts on the local operator W_P = J P^-1 J'.
+#pragma once
+
+#include <memory>
+
+#include "solver/contact_corrector.h"
+#include "tissue_contact/solver/contact_solver.h"
+
+namespace tissue_contact {
+
+class Relaxation {
+ public:
+  virtual ~Relaxation() = default;
+
+  /// Begins a step. Contacts on nodes that cannot move lose their impulse.
+  virtual void prepare(const ContactProblem& problem, ContactSolution& solution) = 0;
+
+  /// Relaxes v with the impulses held (MICA's projections aside). @return |A v - b - J'lambda| met on the way, N s.
+  virtual double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
+                       ContactSolution& solution) = 0;
+
+  /// At most `passes` passes over the contacts; may stop early when impulses change by less than `enough` (N s).
+  /// @return |change of the impulses| of the first pass, N s.
+  virtual double correctContacts(const ContactProblem& problem, int passes, double enough, ContactCorrector& corrector,
+                                 ContactSolution& solution) = 0;
+
+  /// Ends a step: brings v in line with the impulses.
+  virtual void finish(const ContactProblem& problem, ContactSolution& solution) = 0;
+
+  virtual void reset() {}
+  virtual ContactSolver::Memory memory() const = 0;
+};
+
+/// P = block diagonal of A; one sweep per relaxation, alternating direction.
+std::unique_ptr<Relaxation> makeGaussSeidelRelaxation();
+
+/// P = A of an earlier step, factored.
+std::unique_ptr<Relaxation> makeCholeskyRelaxation();
+
+}  // namespace tissue_contact
