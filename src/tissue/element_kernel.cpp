@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "tissue_contact/tissue/elasticity.h"
+#include "tissue_contact/tissue/tet_elasticity.h"
 
 // One build of the kernel for AVX2 and one for any processor, chosen when the library is loaded.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)

@@ -119,7 +119,8 @@ std::unique_ptr<Elasticity::State> TetElasticity::makeState() const {
   return result;
 }
 
-void TetElasticity::addStiffness(const Element& element, const Quaternion& rotation, double sign, BlockMatrix& K) const {
+void TetElasticity::addStiffness(const Element& element, const Quaternion& rotation, double sign,
+                                 BlockMatrix& K) const {
   const Eigen::Matrix<double, 3, 4> c = rotation.toRotationMatrix() * shapeGradients(element.rest_inverse);
   const double lambda = sign * element.volume * lame_lambda_;
   const double mu = sign * element.volume * lame_mu_;

@@ -1,7 +1,5 @@
 /// What every elastic model must have: forces that are the gradient of an energy, a symmetric stiffness that is their
 /// gradient, and no force for rigid motions.
-#include "tissue_contact/tissue/tet_elasticity.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -9,6 +7,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "tissue_contact/tissue/tet_elasticity.h"
 #include "tissue_contact/tissue/tet_mesh.h"
 
 namespace tissue_contact {
@@ -137,7 +136,7 @@ TEST_P(CorotationalProperty, RotationGivesNoForceAndTurnsTheForces) {
 TEST_P(CorotationalProperty, TangentFollowsRotationAndLagsByItsThreshold) {
   const TetElasticity elasticity(mesh.positions, mesh.tetrahedra, free, material);
   const auto made = elasticity.makeState();
-    Elasticity::State& state = *made;
+  Elasticity::State& state = *made;
   const Eigen::MatrixXd K_rest = dense(state.stiffness);
   NodalVectors f(3, mesh.positions.cols());
   const auto turned = [&](double angle) {

@@ -1,12 +1,11 @@
 /// Form J: closed forms of linear elasticity, solved statically: patch test, bar in tension, cantilever under
 /// refinement.
-#include "tissue_contact/tissue/elasticity.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCholesky>
 #include <cmath>
 
+#include "tissue_contact/tissue/tet_elasticity.h"
 #include "tissue_contact/tissue/tet_mesh.h"
 
 namespace tissue_contact {
@@ -17,9 +16,9 @@ class StaticSolver {
  public:
   StaticSolver(const TetMesh& mesh, const std::vector<bool>& prescribed, const MaterialDescription& material)
       : prescribed_(prescribed),
-        stiffness_(Elasticity(mesh.positions, mesh.tetrahedra, std::vector<bool>(prescribed.size(), false), material)
+        stiffness_(TetElasticity(mesh.positions, mesh.tetrahedra, std::vector<bool>(prescribed.size(), false), material)
                        .makeState()
-                       .stiffness) {}
+                       ->stiffness) {}
 
   /// @param u in: the displacements of prescribed nodes; out: all of them.
   void solve(const NodalVectors& loads, NodalVectors& u) const {
