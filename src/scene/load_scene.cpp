@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <set>
 
 #include "scene_sections.h"
 
@@ -13,13 +12,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Range kGravityRange{-1000.0, 1000.0, "m/s^2"};
-constexpr Range kFrictionRange{0.0, 10.0};
 constexpr Range kMaxStepRange{1e-6, 1.0, "s", "give seconds: 1 ms is 0.001"};
 constexpr Range kMaxGapRange{1e-6, 60.0, "s", "give seconds"};
-constexpr int kMaxIterations = 10000;
-constexpr int kMaxContactPasses = 100;
-// Below the spacing of doubles near 1 a residual can never fall.
-constexpr Range kToleranceRange{1e-16, 0.1};
 constexpr Range kRateRange{0.0, 10000.0, "Hz", "0 switches the topic off"};
 
 /// Where each name was first given. One set for tissues and instruments: both become topics of the same node.
@@ -31,47 +25,6 @@ void addName(const std::string& name, const YamlCursor& cursor, NameLines& lines
     cursor.fail("the name " + inQuotes(name) + " is already used (line " + std::to_string(first->second) +
                 "); tissues and instruments need different names");
   }
-}
-
-/// The name under `key`, which must be that of an element of `list`.
-template <typename Element>
-std::string parseReference(const YamlMap& map, const std::string& key, const std::vector<Element>& list) {
-  const YamlCursor& cursor = map.get(key);
-  std::string name = cursor.text();
-  std::string known;
-  for (const Element& element : list) {
-    if (element.name == name) return name;
-    known += (known.empty() ? "" : ", ") + element.name;
-  }
-  cursor.fail("unknown " + key + " " + inQuotes(name) + "; the scene has " + (known.empty() ? "none" : known));
-}
-
-FrictionDescription parseFriction(const YamlCursor& cursor, const Scene& scene) {
-  const YamlMap map = cursor.map(MapKind::kFriction);
-  FrictionDescription friction;
-  friction.instrument = parseReference(map, "instrument", scene.instruments);
-  friction.tissue = parseReference(map, "tissue", scene.tissues);
-  const YamlCursor& static_cursor = map.get("static");
-  friction.static_coefficient = static_cursor.number(kFrictionRange);
-  friction.kinetic_coefficient = map.get("kinetic").number(kFrictionRange);
-  if (friction.static_coefficient < friction.kinetic_coefficient) {
-    static_cursor.fail(
-        "the static coefficient is smaller than the kinetic one; it must be >= kinetic; swap or equal them");
-  }
-  return friction;
-}
-
-std::vector<FrictionDescription> parseFrictionPairs(const YamlCursor& cursor, const Scene& scene) {
-  std::vector<FrictionDescription> pairs;
-  std::set<std::pair<std::string, std::string>> seen;
-  for (const YamlCursor& element : cursor.list(0)) {
-    pairs.push_back(parseFriction(element, scene));
-    if (!seen.emplace(pairs.back().instrument, pairs.back().tissue).second) {
-      element.fail("the pair " + inQuotes(pairs.back().instrument) + " and " + inQuotes(pairs.back().tissue) +
-                   " is given twice; remove one");
-    }
-  }
-  return pairs;
 }
 
 StepDescription parseStep(const YamlCursor& cursor) {
@@ -87,17 +40,6 @@ StepDescription parseStep(const YamlCursor& cursor) {
     cursor.fail("max_gap_s is more than 100000 times max_step_s; shorten max_gap_s or lengthen max_step_s");
   }
   return step;
-}
-
-SolverDescription parseSolver(const YamlCursor& cursor) {
-  const YamlMap map = cursor.map(MapKind::kSolver);
-  SolverDescription solver;
-  if (const YamlCursor* value = map.find("iterations")) solver.iterations = value->integer(1, kMaxIterations);
-  if (const YamlCursor* value = map.find("contact_passes")) {
-    solver.contact_passes = value->integer(1, kMaxContactPasses);
-  }
-  if (const YamlCursor* value = map.find("tolerance")) solver.tolerance = value->number(kToleranceRange);
-  return solver;
 }
 
 PublishDescription parsePublish(const YamlCursor& cursor) {
@@ -156,6 +98,7 @@ Scene parseScene(const std::string& yaml, const std::string& file, const Package
   if (const YamlCursor* value = map.find("world_frame")) scene.world_frame = parseFrame(*value);
   if (const YamlCursor* value = map.find("gravity_m_per_s2")) scene.gravity_m_per_s2 = value->vector3(kGravityRange);
   parseBodies(map, paths, scene);
+  if (const YamlCursor* value = map.find("tissue_pairs")) scene.tissue_pairs = parseTissuePairs(*value, scene);
   if (const YamlCursor* value = map.find("friction")) scene.friction = parseFrictionPairs(*value, scene);
   if (const YamlCursor* value = map.find("step")) scene.step = parseStep(*value);
   if (const YamlCursor* value = map.find("solver")) scene.solver = parseSolver(*value);

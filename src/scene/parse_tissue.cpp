@@ -8,32 +8,22 @@ namespace {
 constexpr int kMaxCellsPerAxis = 200;
 constexpr int kTetrahedraPerCell = 5;
 constexpr int kMaxTetrahedra = 2000000;
+constexpr int kMaxSheetCellsPerAxis = 1000;  // 2 triangles per cell: as many elements as a block may have
 // Beyond this the smallest cells of a block are slivers whose stiffness drowns the others in round-off.
 constexpr double kMaxCellRatio = 1e4;
 
-constexpr Range kBlockSizeRange{1e-6, 10.0, "m", "give metres, not millimetres"};
+constexpr Range kSizeRange{1e-6, 10.0, "m", "give metres, not millimetres"};
+constexpr Range kThicknessRange{1e-6, 1.0, "m", "give metres: 2 mm is 0.002"};
 constexpr Range kGrowthRange{1.0, 3.0};
 constexpr Range kScaleRange{1e-6, 1000.0, "m per file unit", "a file in millimetres has 0.001"};
-constexpr Range kYoungRange{1.0, 1e12, "Pa", "give pascals: 5 kPa is 5000, 1 MPa is 1e6"};
-constexpr Range kPoissonRange{-1.0, 0.5, "", "0.5 itself (incompressible) cannot be simulated, 0.49 can", true, true};
-constexpr Range kDensityRange{1.0, 1e5, "kg/m^3", "give kilograms per cubic metre: water is 1000, not 1"};
-constexpr Range kMassDampingRange{0.0, 1e4, "1/s"};
-constexpr Range kStiffnessDampingRange{0.0, 10.0, "s", "give seconds: 2 ms is 0.002"};
-constexpr Range kNormalRange{-1000.0, 1000.0};
+constexpr std::pair<const char*, AxisGrading::FineAt> kFineAt[] = {{"minimum", AxisGrading::FineAt::kMinimum},
+                                                                   {"center", AxisGrading::FineAt::kCenter},
+                                                                   {"maximum", AxisGrading::FineAt::kMaximum}};
 
 AxisGrading parseAxisGrading(const YamlCursor& cursor, int cells) {
   const YamlMap map = cursor.map(MapKind::kAxisGrading);
   AxisGrading grading;
-  if (const YamlCursor* value = map.find("fine_at")) {
-    const std::string text = value->text();
-    if (text == "minimum") {
-      grading.fine_at = AxisGrading::FineAt::kMinimum;
-    } else if (text == "maximum") {
-      grading.fine_at = AxisGrading::FineAt::kMaximum;
-    } else if (text != "center") {
-      value->fail("is " + inQuotes(text) + "; it must be minimum, center or maximum");
-    }
-  }
+  if (const YamlCursor* value = map.find("fine_at")) grading.fine_at = value->choice(kFineAt);
   const YamlCursor& growth = map.get("growth");
   grading.growth = growth.number(kGrowthRange);
   const int steps = grading.fine_at == AxisGrading::FineAt::kCenter ? (cells - 1) / 2 : cells - 1;
@@ -48,7 +38,7 @@ AxisGrading parseAxisGrading(const YamlCursor& cursor, int cells) {
 BlockDescription parseBlock(const YamlCursor& cursor) {
   const YamlMap map = cursor.map(MapKind::kBlock);
   BlockDescription block;
-  block.size_m = map.get("size_m").vector3(kBlockSizeRange);
+  block.size_m = map.get("size_m").vector3(kSizeRange);
   const YamlCursor& cells = map.get("cells");
   const std::vector<YamlCursor> counts = cells.tuple(3);
   int tetrahedra = kTetrahedraPerCell;
@@ -83,62 +73,33 @@ MeshDescription parseMesh(const YamlCursor& cursor, const PathContext& paths) {
   return mesh;
 }
 
-MaterialDescription parseMaterial(const YamlCursor& cursor) {
-  const YamlMap map = cursor.map(MapKind::kMaterial);
-  MaterialDescription material;
-  if (const YamlCursor* value = map.find("model")) {
-    const std::string text = value->text();
-    if (text == "linear") {
-      material.model = ElasticModel::kLinear;
-    } else if (text != "corotational") {
-      value->fail("is " + inQuotes(text) + "; it must be linear or corotational");
-    }
-  }
-  material.youngs_modulus_pa = map.get("youngs_modulus_pa").number(kYoungRange);
-  material.poissons_ratio = map.get("poissons_ratio").number(kPoissonRange);
-  material.density_kg_per_m3 = map.get("density_kg_per_m3").number(kDensityRange);
-  return material;
+SheetDescription parseSheet(const YamlCursor& cursor) {
+  const YamlMap map = cursor.map(MapKind::kSheet);
+  const std::vector<YamlCursor> size = map.get("size_m").tuple(2);
+  const std::vector<YamlCursor> cells = map.get("cells").tuple(2);
+  SheetDescription sheet;
+  sheet.size_m = Vector2(size[0].number(kSizeRange), size[1].number(kSizeRange));
+  sheet.cells = {cells[0].integer(1, kMaxSheetCellsPerAxis), cells[1].integer(1, kMaxSheetCellsPerAxis)};
+  sheet.thickness_m = map.get("thickness_m").number(kThicknessRange);
+  return sheet;
 }
 
-DampingDescription parseDamping(const YamlCursor& cursor) {
-  const YamlMap map = cursor.map(MapKind::kDamping);
-  DampingDescription damping;
-  if (const YamlCursor* value = map.find("mass_per_s")) damping.mass_per_s = value->number(kMassDampingRange);
-  if (const YamlCursor* value = map.find("stiffness_s")) damping.stiffness_s = value->number(kStiffnessDampingRange);
-  return damping;
+ShellDescription parseShell(const YamlCursor& cursor, const PathContext& paths) {
+  const YamlMap map = cursor.map(MapKind::kShell);
+  ShellDescription shell;
+  shell.file = parseFile(map.get("file"), paths, {".stl", ".obj", ".dae"});
+  if (const YamlCursor* value = map.find("scale_m_per_unit")) shell.scale_m_per_unit = value->number(kScaleRange);
+  shell.thickness_m = map.get("thickness_m").number(kThicknessRange);
+  return shell;
 }
 
-BoxRegion parseBoxRegion(const YamlCursor& cursor) {
-  const YamlMap map = cursor.map(MapKind::kFixedBox);
-  BoxRegion box;
-  box.min_m = map.get("min_m").vector3(kPositionRange);
-  box.max_m = map.get("max_m").vector3(kPositionRange);
-  if ((box.min_m.array() > box.max_m.array()).any()) {
-    cursor.fail("has a min_m greater than its max_m; min_m must be <= max_m along each axis; swap them");
-  }
-  return box;
-}
-
-PlaneRegion parsePlaneRegion(const YamlCursor& cursor) {
-  const YamlMap map = cursor.map(MapKind::kFixedPlane);
-  PlaneRegion plane;
-  plane.point_m = map.get("point_m").vector3(kPositionRange);
-  const YamlCursor& normal = map.get("normal");
-  plane.normal = normal.vector3(kNormalRange);
-  const double length = plane.normal.norm();
-  if (!(length >= 1e-6)) normal.fail("has length " + std::to_string(length) + "; it must point somewhere: [0, 0, 1]");
-  plane.normal /= length;
-  return plane;
-}
-
-Region parseFixedRegion(const YamlCursor& cursor) {
-  const YamlMap map = cursor.map(MapKind::kFixedRegion);
-  const std::string kind = map.exactlyOne({"box", "plane", "sphere"});
+decltype(TissueDescription::geometry) parseGeometry(const YamlMap& map, const PathContext& paths) {
+  const std::string kind = map.exactlyOne({"block", "mesh", "sheet", "shell"});
   const YamlCursor& value = map.get(kind);
-  if (kind == "box") return parseBoxRegion(value);
-  if (kind == "plane") return parsePlaneRegion(value);
-  const YamlMap sphere = value.map(MapKind::kFixedSphere);
-  return SphereRegion{sphere.get("center_m").vector3(kPositionRange), sphere.get("radius_m").number(kShapeSizeRange)};
+  if (kind == "block") return parseBlock(value);
+  if (kind == "mesh") return parseMesh(value, paths);
+  if (kind == "sheet") return parseSheet(value);
+  return parseShell(value, paths);
 }
 
 }  // namespace
@@ -147,16 +108,16 @@ TissueDescription parseTissue(const YamlCursor& cursor, const PathContext& paths
   const YamlMap map = cursor.map(MapKind::kTissue);
   TissueDescription tissue;
   tissue.name = parseName(map.get("name"));
-  if (map.exactlyOne({"block", "mesh"}) == "block") {
-    tissue.geometry = parseBlock(map.get("block"));
-  } else {
-    tissue.geometry = parseMesh(map.get("mesh"), paths);
-  }
+  tissue.geometry = parseGeometry(map, paths);
+  const bool is_membrane = std::holds_alternative<SheetDescription>(tissue.geometry) ||
+                           std::holds_alternative<ShellDescription>(tissue.geometry);
   if (const YamlCursor* value = map.find("pose")) tissue.pose = parsePose(*value, MapKind::kPose);
-  tissue.material = parseMaterial(map.get("material"));
+  tissue.material = parseMaterial(map.get("material"), is_membrane);
   if (const YamlCursor* value = map.find("damping")) tissue.damping = parseDamping(*value);
+  if (const YamlCursor* value = map.find("fibre_direction")) tissue.fibre_direction = parseDirection(*value);
+  if (const YamlCursor* value = map.find("regions")) tissue.regions = parseTissueRegions(*value, tissue);
   if (const YamlCursor* value = map.find("fixed")) {
-    for (const YamlCursor& region : value->list(0)) tissue.fixed.push_back(parseFixedRegion(region));
+    for (const YamlCursor& region : value->list(0)) tissue.fixed.push_back(parseRegion(region));
   }
   return tissue;
 }

@@ -13,6 +13,8 @@ constexpr std::size_t kMaxNameLength = 64;
 // A full turn: angles typed in degrees are mostly beyond it.
 constexpr Range kAngleRange{-6.2832, 6.2832, "rad", "give radians, not degrees"};
 constexpr double kQuaternionNormTolerance = 1e-3;
+constexpr Range kDirectionRange{-1000.0, 1000.0};
+constexpr double kLeastDirectionLength = 1e-6;
 
 // Not std::isalpha: a locale may call more letters alphabetic than ROS allows in a name.
 bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
@@ -52,7 +54,7 @@ std::string parseName(const YamlCursor& cursor) {
   std::string name = cursor.text();
   if (!isNamePart(name) || name.size() > kMaxNameLength) {
     cursor.fail("is " + inQuotes(name) +
-                "; a name becomes part of ROS topics, so it must begin with a letter, hold only letters, digits and "
+                "; names become parts of ROS topics, so each must begin with a letter, hold only letters, digits and "
                 "underscores, and have at most 64 characters");
   }
   return name;
@@ -117,6 +119,15 @@ PoseDescription parsePose(const YamlCursor& cursor, MapKind kind) {
   }
   if (const YamlCursor* value = map.find("tf_frame")) pose.tf_frame = parseFrame(*value);
   return pose;
+}
+
+Vector3 parseDirection(const YamlCursor& cursor) {
+  const Vector3 direction = cursor.vector3(kDirectionRange);
+  const double length = direction.norm();
+  if (!(length >= kLeastDirectionLength)) {
+    cursor.fail("has length " + std::to_string(length) + "; it must point somewhere: [0, 0, 1]");
+  }
+  return direction / length;
 }
 
 }  // namespace tissue_contact

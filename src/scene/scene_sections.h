@@ -32,10 +32,23 @@ std::string parseFrame(const YamlCursor& cursor);
 std::string parseFile(const YamlCursor& cursor, const PathContext& paths, const std::vector<std::string>& extensions);
 /// `kind` is kPose or kShapePose (without tf_frame).
 PoseDescription parsePose(const YamlCursor& cursor, MapKind kind);
+/// A direction of any length but 0; returned as a unit vector.
+Vector3 parseDirection(const YamlCursor& cursor);
 
+Region parseRegion(const YamlCursor& cursor);
+/// `is_membrane`: the tissue is a sheet or shell.
+MaterialDescription parseMaterial(const YamlCursor& cursor, bool is_membrane);
+DampingDescription parseDamping(const YamlCursor& cursor);
+/// `tissue` has all but its regions: what they inherit.
+std::vector<TissueRegion> parseTissueRegions(const YamlCursor& cursor, const TissueDescription& tissue);
 TissueDescription parseTissue(const YamlCursor& cursor, const PathContext& paths);
 InstrumentDescription parseInstrument(const YamlCursor& cursor, const PathContext& paths);
 /// One link of contact_links.
 ContactLinkDescription parseContactLink(const YamlCursor& cursor, const PathContext& paths);
+/// `scene` has its tissues.
+std::vector<TissuePair> parseTissuePairs(const YamlCursor& cursor, const Scene& scene);
+/// `scene` has its tissues, instruments and tissue pairs.
+std::vector<FrictionDescription> parseFrictionPairs(const YamlCursor& cursor, const Scene& scene);
+SolverDescription parseSolver(const YamlCursor& cursor);
 
 }  // namespace tissue_contact

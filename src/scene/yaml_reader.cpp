@@ -27,12 +27,6 @@ std::string typeName(const YAML::Node& node) {
   return inQuotes(node.Scalar());
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 /// Levenshtein distance: insertions, deletions and replacements that turn `a` into `b`.
 std::size_t editDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -47,21 +41,6 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
     }
   }
   return row.back();
-}
-
-/// The allowed key that was probably meant, or "". A key without its unit suffix counts as close.
-std::string nearestKey(const std::string& key, const std::vector<std::string>& allowed) {
-  if (key.empty() || key.size() > kMaxShownBytes) return "";
-  std::string nearest;
-  std::size_t least = std::max<std::size_t>(2, key.size() / 2);
-  for (const std::string& candidate : allowed) {
-    const bool lacks_suffix = candidate.size() > key.size() && candidate.compare(0, key.size() + 1, key + "_") == 0;
-    const std::size_t distance = lacks_suffix ? 1 : editDistance(key, candidate);
-    if (distance > least || (distance == least && !nearest.empty())) continue;
-    nearest = candidate;
-    least = distance;
-  }
-  return nearest;
 }
 
 /// The number that the whole of `text` spells, independent of the process's locale.
@@ -110,6 +89,26 @@ std::string inQuotes(const std::string& text) {
   return "\"" + shown + (shown.size() < text.size() ? "...\"" : "\"");
 }
 
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::string suggestion(const std::string& word, const std::vector<std::string>& allowed) {
+  if (word.empty() || word.size() > kMaxShownBytes) return "";
+  std::string nearest;
+  std::size_t least = std::max<std::size_t>(2, word.size() / 2);
+  for (const std::string& candidate : allowed) {
+    const bool lacks_suffix = candidate.size() > word.size() && candidate.compare(0, word.size() + 1, word + "_") == 0;
+    const std::size_t distance = lacks_suffix ? 1 : editDistance(word, candidate);
+    if (distance > least || (distance == least && !nearest.empty())) continue;
+    nearest = candidate;
+    least = distance;
+  }
+  return nearest.empty() ? "" : "did you mean " + inQuotes(nearest) + "? ";
+}
+
 YamlCursor::YamlCursor(const YAML::Node& node, std::string file, std::string path, int line)
     : node_(node), file_(std::move(file)), path_(std::move(path)), line_(line) {}
 
@@ -148,18 +147,21 @@ YamlCursor YamlCursor::element(const YAML::Node& node, std::size_t index) const 
   return {node, file_, path_ + "[" + std::to_string(index) + "]", line};
 }
 
-std::vector<YamlCursor> YamlCursor::list(std::size_t minimum) const {
+std::vector<YamlCursor> YamlCursor::list(std::size_t minimum, std::size_t maximum) const {
   if (!node_.IsSequence()) fail("is " + typeName(node_) + "; it must be a list");
   if (node_.size() < minimum) {
     fail("has " + std::to_string(node_.size()) + " elements; it must have at least " + std::to_string(minimum));
+  }
+  if (node_.size() > maximum) {
+    fail("has " + std::to_string(node_.size()) + " elements; at most " + std::to_string(maximum) + " are allowed");
   }
   std::vector<YamlCursor> all;
   for (const auto& node : node_) all.push_back(element(node, all.size()));
   return all;
 }
 
-std::vector<YamlCursor> YamlCursor::tuple(std::size_t length) const {
-  const std::string wanted = "it must be a list of " + std::to_string(length) + " numbers";
+std::vector<YamlCursor> YamlCursor::tuple(std::size_t length, const std::string& elements) const {
+  const std::string wanted = "it must be a list of " + std::to_string(length) + " " + elements;
   if (!node_.IsSequence()) fail("is " + typeName(node_) + "; " + wanted);
   if (node_.size() != length) fail("has " + std::to_string(node_.size()) + " elements; " + wanted);
   return list(length);
@@ -215,13 +217,20 @@ std::string YamlCursor::text() const {
   return value;
 }
 
+std::size_t YamlCursor::indexOfWord(const std::vector<std::string>& allowed) const {
+  const std::string word = text();
+  const auto found = std::find(allowed.begin(), allowed.end(), word);
+  if (found == allowed.end()) {
+    fail("is " + inQuotes(word) + "; " + suggestion(word, allowed) + "allowed here: " + joined(allowed));
+  }
+  return static_cast<std::size_t>(found - allowed.begin());
+}
+
 YamlMap::YamlMap(const YamlCursor& cursor, MapKind kind)
     : cursor_(cursor), keys_(mapKeys(kind)), entries_(cursor.entries()) {
   for (const auto& [key, value] : entries_) {
     if (std::find(keys_.keys.begin(), keys_.keys.end(), key) != keys_.keys.end()) continue;
-    const std::string nearest = nearestKey(key, keys_.keys);
-    value.fail("unknown key" + (nearest.empty() ? "" : "; did you mean " + inQuotes(nearest) + "?") +
-               (nearest.empty() ? "; " : " ") + "allowed here: " + joined(keys_.keys));
+    value.fail("unknown key; " + suggestion(key, keys_.keys) + "allowed here: " + joined(keys_.keys));
   }
 }
 

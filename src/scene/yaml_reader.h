@@ -5,6 +5,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +28,12 @@ struct Range {
 /// `text` in quotes, shortened and with control characters replaced, fit for a one-line message.
 std::string inQuotes(const std::string& text);
 
+/// "a, b, c".
+std::string joined(const std::vector<std::string>& words);
+
+/// `did you mean "<the nearest of allowed>"? `, or "" when none is near. A word without its unit suffix counts as near.
+std::string suggestion(const std::string& word, const std::vector<std::string>& allowed);
+
 class YamlMap;
 
 /// One value of the file with the place it stands at. Cheap to copy; the yaml-cpp tree is shared.
@@ -44,10 +51,11 @@ class YamlCursor {
   YamlMap map(MapKind kind) const;
   /// Entries of a map with free keys, in file order; keys given twice are refused.
   std::vector<std::pair<std::string, YamlCursor>> entries() const;
-  /// Elements of a list of at least `minimum` elements.
-  std::vector<YamlCursor> list(std::size_t minimum) const;
-  /// Elements of a list of exactly `length` elements.
-  std::vector<YamlCursor> tuple(std::size_t length) const;
+  /// Elements of a list of `minimum` to `maximum` elements.
+  std::vector<YamlCursor> list(std::size_t minimum,
+                               std::size_t maximum = std::numeric_limits<std::size_t>::max()) const;
+  /// Elements of a list of exactly `length` elements; `elements` says in messages what they are.
+  std::vector<YamlCursor> tuple(std::size_t length, const std::string& elements = "numbers") const;
 
   /// Plain (unquoted) numbers. NaN and infinity are outside every range.
   double number(const Range& range) const;
@@ -56,8 +64,16 @@ class YamlCursor {
   bool boolean() const;
   /// Non-empty text of at most 4096 bytes without control characters.
   std::string text() const;
+  /// The value that the word given here stands for.
+  template <typename Value, std::size_t kCount>
+  Value choice(const std::pair<const char*, Value> (&choices)[kCount]) const {
+    std::vector<std::string> words;
+    for (const auto& entry : choices) words.emplace_back(entry.first);
+    return choices[indexOfWord(words)].second;
+  }
 
  private:
+  std::size_t indexOfWord(const std::vector<std::string>& allowed) const;
   std::string scalar(const std::string& wanted) const;
   YamlCursor element(const YAML::Node& node, std::size_t index) const;
 

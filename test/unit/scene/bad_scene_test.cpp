@@ -27,7 +27,7 @@ const BadScene kKeys[] = {
     {"world_frame: lab", "word_frame: lab", "1: word_frame", "unknown key; did you mean \"world_frame\"?"},
     {"youngs_modulus_pa: 5e3", "youngs_modulus: 5e3", "17: tissues[0].material.youngs_modulus",
      "did you mean \"youngs_modulus_pa\"? allowed here: model, youngs_modulus_pa, poissons_ratio, density_kg_per_m3"},
-    {"  contact_passes: 3", "  zzz: 3", "66: solver.zzz", "unknown key; allowed here: iterations, contact_passes"},
+    {"  contact_passes: 3", "  zzz: 3", "66: solver.zzz", "unknown key; allowed here: method, relaxation, iterations"},
     {"  iterations: 20", "  iterations: 20\n  iterations: 30", "66: solver.iterations",
      "given twice (first in line 65)"},
     {"      outer_pitch: pitch", "      outer_yaw: pitch", "42: instruments[0].joint_names.outer_yaw", "given twice"},
@@ -71,8 +71,8 @@ const BadScene kTypes[] = {
     {"    fixed:\n", "    fixed: none\n    damping_:\n", "24: tissues[0].damping_", "did you mean \"damping\"?"},
     {"    contact_links: [jaw]", "    contact_links: jaw", "59: instruments[1].contact_links", "it must be a list"},
     {"    contact_links: [jaw]", "    contact_links: []", "59: instruments[1].contact_links", "at least 1"},
-    {"model: linear", "model: neohookean", "16: tissues[0].material.model", "must be linear or corotational"},
-    {"fine_at: minimum", "fine_at: left", "9: tissues[0].block.grading.x.fine_at", "minimum, center or maximum"},
+    {"model: linear", "model: neohookean", "16: tissues[0].material.model", "did you mean \"neo_hookean\"? allowed here: linear, "},
+    {"fine_at: minimum", "fine_at: left", "9: tissues[0].block.grading.x.fine_at", "allowed here: minimum, center, maximum"},
     {"    tip_link: tip\n    contact_links:\n", "    tip_link: [tip]\n    contact_links:\n",
      "45: instruments[0].tip_link", "is a list; it must be text"},
     {"      outer_pitch: pitch", "      outer_pitch: yaw", "42: instruments[0].joint_names.outer_pitch",
@@ -139,7 +139,7 @@ const BadScene kNames[] = {
     {"instrument: arm, tissue: pad", "instrument: leg, tissue: pad", "61: friction[0].instrument",
      "unknown instrument \"leg\"; the scene has arm, arm2"},
     {"instrument: arm, tissue: pad", "instrument: arm, tissue: pat", "61: friction[0].tissue",
-     "unknown tissue \"pat\"; the scene has pad, organ"},
+     "unknown tissue \"pat\"; did you mean \"pad\"? the scene has pad, organ"},
     {"instrument: arm, tissue: organ", "instrument: arm, tissue: pad", "62: friction[1]", "is given twice"},
 };
 INSTANTIATE_TEST_SUITE_P(Names, BadSceneTest, testing::ValuesIn(kNames));

@@ -118,8 +118,10 @@ TEST_F(SceneTest, FillsFrictionPairs) {
   ASSERT_EQ(friction.size(), 2U);
   EXPECT_EQ(friction[0].instrument, "arm");
   EXPECT_EQ(friction[0].tissue, "pad");
-  EXPECT_EQ(friction[0].static_coefficient, 0.6);
-  EXPECT_EQ(friction[0].kinetic_coefficient, 0.4);
+  EXPECT_EQ(friction[0].law.kind, FrictionLawDescription::Kind::kIsotropic);
+  EXPECT_EQ(friction[0].law.static_coefficients, std::vector<double>{0.6});
+  EXPECT_EQ(friction[0].law.kinetic_coefficients, std::vector<double>{0.4});
+  EXPECT_EQ(friction[0].law.axis, FrictionLawDescription::Axis::kNone);
   EXPECT_EQ(friction[1].tissue, "organ");
 }
 
