@@ -78,7 +78,7 @@ SheetDescription parseSheet(const YamlCursor& cursor) {
   const std::vector<YamlCursor> size = map.get("size_m").tuple(2);
   const std::vector<YamlCursor> cells = map.get("cells").tuple(2);
   SheetDescription sheet;
-  sheet.size_m = Vector2(size[0].number(kSizeRange), size[1].number(kSizeRange));
+  sheet.size_m = Vector2{size[0].number(kSizeRange), size[1].number(kSizeRange)};
   sheet.cells = {cells[0].integer(1, kMaxSheetCellsPerAxis), cells[1].integer(1, kMaxSheetCellsPerAxis)};
   sheet.thickness_m = map.get("thickness_m").number(kThicknessRange);
   return sheet;

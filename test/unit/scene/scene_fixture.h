@@ -13,6 +13,23 @@
 
 namespace tissue_contact {
 
+/// `text` with its only occurrence of `from` replaced.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos || text.find(from, at + 1) != std::string::npos) {
+    throw std::logic_error("\"" + from + "\" does not occur exactly once");
+  }
+  return text.replace(at, from.size(), to);
+}
+
+/// One place of a good scene, spoilt.
+struct BadScene {
+  const char* from;     ///< what of the good scene is replaced
+  const char* to;       ///< by what
+  const char* where;    ///< start of the message: line and key path
+  const char* problem;  ///< text the message must hold
+};
+
 /// A directory of its own for each test, removed afterwards.
 class SceneTest : public testing::Test {
  protected:
@@ -20,7 +37,7 @@ class SceneTest : public testing::Test {
     std::string pattern = (std::filesystem::temp_directory_path() / "scene_test_XXXXXX").string();
     if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary directory");
     directory_ = pattern;
-    for (const char* name : {"arm.urdf", "organ.vtk", "jaw.STL"}) write(name, "x");
+    for (const char* name : {"arm.urdf", "organ.vtk", "jaw.STL", "skin.obj"}) write(name, "x");
   }
   ~SceneTest() override { std::filesystem::remove_all(directory_); }
 
@@ -48,17 +65,43 @@ class SceneTest : public testing::Test {
     return "";
   }
 
+  void expectRefused(const std::string& good, const BadScene& bad) const {
+    const std::string message = refusal(replaced(good, bad.from, bad.to));
+    EXPECT_EQ(message.find(std::string("scene.yaml:") + bad.where + ": "), 0U) << message;
+    EXPECT_NE(message.find(bad.problem), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+
+  /// How many of 2000 copies of `good` with a few bytes changed or lost (seeded) are refused; anything thrown but
+  /// std::invalid_argument ends the test.
+  int refusedWhenDamaged(const std::string& good) const {
+    unsigned state = 12345;
+    const auto random = [&state](std::size_t below) {
+      state = state * 1664525U + 1013904223U;
+      return static_cast<std::size_t>(state >> 8U) % below;
+    };
+    int refused = 0;
+    for (int round = 0; round < 2000; ++round) {
+      std::string damaged = good;
+      for (std::size_t i = 0, changes = 1 + random(4); i < changes; ++i) {
+        const std::size_t at = random(damaged.size());
+        if (random(3) == 0) {
+          damaged.erase(at, 1 + random(30));
+        } else {
+          damaged[at] = static_cast<char>(random(2) == 0 ? random(256) : "{}[]:-,&*!|>'\"%@\n\t #?"[random(22)]);
+        }
+      }
+      try {
+        parse(damaged);
+      } catch (const std::invalid_argument&) {
+        ++refused;
+      }
+    }
+    return refused;
+  }
+
   std::filesystem::path directory_;
 };
-
-/// `text` with its only occurrence of `from` replaced.
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  if (at == std::string::npos || text.find(from, at + 1) != std::string::npos) {
-    throw std::logic_error("\"" + from + "\" does not occur exactly once");
-  }
-  return text.replace(at, from.size(), to);
-}
 
 /// Line numbers matter to the tests: keep them in step.
 inline const char* const kFullScene = R"(world_frame: lab
