@@ -26,14 +26,6 @@ RobotModel readUrdf(const InstrumentDescription& instrument, const SceneEnvironm
   return parseUrdf(environment.urdf_text(parameter), "parameter '" + parameter + "'", "", environment.package_path);
 }
 
-template <typename Description>
-std::size_t indexOf(const std::vector<Description>& all, const std::string& name, const char* kind) {
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].name == name) return i;
-  }
-  throw std::invalid_argument(std::string("friction names the unknown ") + kind + " '" + name + "'");
-}
-
 }  // namespace
 
 std::vector<Instrument> buildInstruments(const Scene& scene, const SceneEnvironment& environment) {
@@ -51,16 +43,6 @@ std::vector<Tissue> buildTissues(const Scene& scene, const SceneEnvironment& env
     tissues.emplace_back(description, placeInWorld(description.pose, "tissue '" + description.name + "'", environment));
   }
   return tissues;
-}
-
-std::vector<std::vector<CoulombLaw>> buildFrictionTable(const Scene& scene) {
-  std::vector<std::vector<CoulombLaw>> laws(scene.instruments.size(), std::vector<CoulombLaw>(scene.tissues.size()));
-  for (const FrictionDescription& pair : scene.friction) {
-    const std::size_t i = indexOf(scene.instruments, pair.instrument, "instrument");
-    const std::size_t t = indexOf(scene.tissues, pair.tissue, "tissue");
-    laws[i][t] = {pair.static_coefficient, pair.kinetic_coefficient};
-  }
-  return laws;
 }
 
 }  // namespace tissue_contact

@@ -8,7 +8,8 @@ namespace {
 bool keyBefore(const Contact& a, const Contact& b) { return a.key < b.key; }
 
 bool sameShapes(const ContactKey& a, const ContactKey& b) {
-  return a.tissue == b.tissue && a.instrument == b.instrument && a.link == b.link && a.shape == b.shape;
+  return a.tissue == b.tissue && a.instrument == b.instrument && a.link == b.link && a.shape == b.shape &&
+         a.other_tissue == b.other_tissue;
 }
 
 ContactKey withSlot(ContactKey key, int slot) {
@@ -52,6 +53,10 @@ void ContactMemory::addKeptPoints(const ContactDetector& detector, const std::ve
     std::array<bool, kKeptPoints + 1> used{};
     for (; end < remembered_.size() && withSlot(remembered_[end].contact.key, 0) == feature; ++end) {
       used[remembered_[end].contact.key.slot] = true;
+    }
+    if (feature.other_tissue >= 0) {  // tissue against tissue: the pair's own feature is its point
+      first = end;
+      continue;
     }
     Contact probe;
     probe.key = feature;

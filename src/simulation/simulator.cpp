@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <stdexcept>
 
 #include "tissue_contact/contact/contact_detector.h"
+#include "tissue_contact/contact/tissue_pair_detector.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/simulation/contact_memory.h"
+#include "tissue_contact/simulation/friction_table.h"
 #include "tissue_contact/simulation/instrument_motion.h"
-#include "tissue_contact/solver/iterative_predictor_corrector.h"
 
 namespace tissue_contact {
 namespace {
@@ -34,8 +37,21 @@ double meanSurfaceEdge(const std::vector<Tissue>& tissues) {
 std::vector<TissueSurface> surfacesOf(const std::vector<Tissue>& tissues) {
   std::vector<TissueSurface> surfaces;
   surfaces.reserve(tissues.size());
-  for (const Tissue& tissue : tissues) surfaces.push_back({tissue.surface(), tissue.fixed()});
+  for (const Tissue& tissue : tissues) surfaces.push_back({tissue.surface(), tissue.fixed(), tissue.thickness()});
   return surfaces;
+}
+
+/// The scene's tissue pairs by index; names are checked when the scene is loaded.
+std::vector<TouchingTissues> touchingTissues(const Scene& scene) {
+  const auto index = [&](const std::string& name) {
+    for (std::size_t t = 0; t < scene.tissues.size(); ++t) {
+      if (scene.tissues[t].name == name) return static_cast<int>(t);
+    }
+    throw std::invalid_argument("tissue_pairs names the unknown tissue '" + name + "'");
+  };
+  std::vector<TouchingTissues> pairs;
+  for (const TissuePair& pair : scene.tissue_pairs) pairs.push_back({index(pair.tissue), index(pair.other)});
+  return pairs;
 }
 
 std::vector<NodalVectors> restPositionsOf(const std::vector<Tissue>& tissues) {
@@ -54,6 +70,7 @@ struct Simulator::Implementation {
   void detectContacts(double dt);
   void assembleTissues(double dt);
   void assembleContacts(double dt);
+  void placeRow(const Contact& contact, double dt, ContactRow& row) const;
   void moveTissues(double dt);
   void recordContacts(double dt);
   void sumWrenches();
@@ -61,43 +78,44 @@ struct Simulator::Implementation {
   const Scene scene;
   const std::vector<Instrument> instruments;
   const std::vector<Tissue> tissues;
-  const std::vector<std::vector<CoulombLaw>> laws;  ///< [instrument][tissue]
-  const double mean_edge;                           ///< of all tissue surfaces, m
+  const FrictionTable friction;
+  const double mean_edge;  ///< of all tissue surfaces, m
 
   InstrumentMotion motion;
-  std::vector<NodalVectors> x;                    ///< per tissue
-  std::vector<Elasticity::State> elastic_states;  ///< per tissue
-  std::vector<NodalVectors> forces;               ///< elastic, per tissue
+  std::vector<NodalVectors> x;                                     ///< per tissue
+  std::vector<std::unique_ptr<Elasticity::State>> elastic_states;  ///< per tissue
+  std::vector<NodalVectors> forces;                                ///< elastic, per tissue
   ContactDetector detector;
+  std::optional<TissuePairDetector> pair_detector;  ///< only where tissues touch each other
   std::vector<Contact> contacts;
   ContactMemory memory;
   std::vector<ContactMemory::Inherited> answers;  ///< per contact: inherited before the solve, found after it
   ContactProblem problem;
   ContactSolution solution;  ///< v is the tissues' velocity
-  IterativePredictorCorrector solver;
+  std::unique_ptr<ContactSolver> solver;
   std::vector<SolvedContact> solved;
   std::vector<Wrench> wrenches;  ///< per instrument
   StepReport report;
   long step_count = 0;
+  double last_dt = 0.0;  ///< of the step before, s
 };
 
 Simulator::Implementation::Implementation(const Scene& description, const SceneEnvironment& environment)
     : scene(description),
       instruments(buildInstruments(scene, environment)),
       tissues(buildTissues(scene, environment)),
-      laws(buildFrictionTable(scene)),
+      friction(scene, instruments, tissues),
       mean_edge(meanSurfaceEdge(tissues)),
       motion(instruments),
       detector(instruments, surfacesOf(tissues), restPositionsOf(tissues)),
-      solver({scene.solver.iterations, scene.solver.contact_passes, scene.solver.tolerance}) {
+      solver(makeContactSolver(scene.solver, environment.clock)) {
   requirePositive("step.max_step_s", scene.step.max_step_s, "s");
+  if (!scene.tissue_pairs.empty()) {
+    pair_detector.emplace(touchingTissues(scene), surfacesOf(tissues), restPositionsOf(tissues));
+  }
   elastic_states.resize(tissues.size());
   forces = restPositionsOf(tissues);  // for their sizes
   problem.bodies.resize(tissues.size());
-  for (std::size_t t = 0; t < tissues.size(); ++t) {
-    problem.bodies[t].K = &elastic_states[t].stiffness;
-    problem.bodies[t].fixed = &tissues[t].fixed();
-  }
   reset();
 }
 
@@ -108,13 +126,19 @@ void Simulator::Implementation::reset() {
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     solution.v[t].setZero(3, tissues[t].nodeCount());
     elastic_states[t] = tissues[t].elasticity().makeState();
+    Elasticity::State& state = *elastic_states[t];
+    problem.bodies[t].K = &state.stiffness;
+    problem.bodies[t].D = state.damping.rows() > 0 ? &state.damping : nullptr;
+    problem.bodies[t].fixed = &tissues[t].fixed();
   }
+  solver->reset();
   memory.clear();
   contacts.clear();
   solved.clear();
   wrenches.assign(instruments.size(), Wrench());
   report = StepReport();
   step_count = 0;
+  last_dt = 0.0;
 }
 
 /// One implicit step: the rooms in order.
@@ -122,14 +146,15 @@ void Simulator::Implementation::step(double dt) {
   detectContacts(dt);
   assembleTissues(dt);
   assembleContacts(dt);
-  const SolverReport solver_report = solver.solve(problem, solution);
+  const SolverReport solver_report = solver->solve(problem, solution);
   report.iterations = solver_report.iterations;
-  report.converged = solver_report.converged;
+  report.stop = solver_report.stop;
   report.residuals = solver_report.residuals;
   moveTissues(dt);
   motion.finishStep();
   ++step_count;
   recordContacts(dt);
+  last_dt = dt;
 }
 
 void Simulator::Implementation::detectContacts(double dt) {
@@ -142,6 +167,10 @@ void Simulator::Implementation::detectContacts(double dt) {
   constexpr double kMostEdges = 1e6;
   margin = std::min(margin, kMostEdges * mean_edge);
   detector.detect(x, motion.startPoses(), margin, contacts);
+  if (pair_detector) {
+    pair_detector->detect(x, margin + kMarginFactor * tissue_travel, contacts);
+    std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) { return a.key < b.key; });
+  }
   memory.addKeptPoints(detector, x, motion.startPoses(), margin, contacts);
 }
 
@@ -150,8 +179,9 @@ void Simulator::Implementation::assembleTissues(double dt) {
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     const Tissue& tissue = tissues[t];
     BodySystem& body = problem.bodies[t];
-    tissue.elasticity().update(x[t], elastic_states[t], forces[t]);
+    tissue.elasticity().update(x[t], *elastic_states[t], forces[t]);
     body.stiffness_scale = dt * (dt + tissue.damping().stiffness_s);
+    body.damping_scale = body.D != nullptr ? dt : 0.0;
     body.mass = (1.0 + dt * tissue.damping().mass_per_s) * tissue.nodeMasses();
     body.b = solution.v[t] * tissue.nodeMasses().asDiagonal();
     body.b += dt * forces[t];
@@ -169,22 +199,44 @@ void Simulator::Implementation::assembleContacts(double dt) {
   solution.states.resize(contacts.size());
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];
-    const ContactKey& key = contact.key;
-    const Vector3 p_tool = contact.p_WC - contact.gap_m * contact.R_WC.col(0);
-    const double recovery = kRecoveryPerStep * motion.smallestHalfExtent(key.instrument, key.link, key.shape);
+    const ContactMemory::Inherited& before = answers[c];
     ContactRow& row = problem.contacts[c];
-    row.body = key.tissue;
-    row.nodes = contact.nodes;
-    row.weights = contact.weights;
-    row.R_WC = contact.R_WC;
-    row.gap_m = contact.gap_m;
-    row.required_u_n = std::min(-contact.gap_m, recovery) / dt;
-    row.u_tool = contact.R_WC.transpose() * motion.pointVelocity(key.instrument, key.link, p_tool, dt);
-    row.law = laws[key.instrument][key.tissue];
-    row.was_sliding = answers[c].state == ContactState::kKinetic;
-    solution.impulses[c] = dt * (contact.R_WC.transpose() * answers[c].force_W);
-    solution.states[c] = answers[c].state;
+    placeRow(contact, dt, row);
+    row.was_sliding = before.state == ContactState::kKinetic;
+    const double speed = row.was_sliding && last_dt > 0.0 ? before.slip_W.norm() / last_dt : 0.0;
+    row.law = friction.at(contact, x, motion.startPoses(), speed);
+    if (before.state == ContactState::kStatic) {
+      row.u_tool.tail<2>() -= contact.R_WC.rightCols<2>().transpose() * before.slip_W / dt;
+    }
+    solution.impulses[c] = dt * (contact.R_WC.transpose() * before.force_W);
+    solution.states[c] = before.state;
   }
+}
+
+/// Nodes, frame, gap and tool velocity of a contact.
+void Simulator::Implementation::placeRow(const Contact& contact, double dt, ContactRow& row) const {
+  const ContactKey& key = contact.key;
+  row.node_count = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (contact.weights[i] != 0.0) row.nodes[row.node_count++] = {key.tissue, contact.nodes[i], contact.weights[i]};
+  }
+  row.R_WC = contact.R_WC;
+  row.gap_m = contact.gap_m;
+  double recovery = 0.0;
+  if (key.instrument >= 0) {
+    const double to_shape = contact.gap_m + 0.5 * tissues[key.tissue].thickness();
+    const Vector3 p_tool = contact.p_WC - to_shape * contact.R_WC.col(0);
+    row.u_tool = contact.R_WC.transpose() * motion.pointVelocity(key.instrument, key.link, p_tool, dt);
+    recovery = kRecoveryPerStep * motion.smallestHalfExtent(key.instrument, key.link, key.shape);
+  } else {
+    for (int i = 0; i < 3; ++i) {
+      if (contact.other_weights[i] == 0.0) continue;
+      row.nodes[row.node_count++] = {key.other_tissue, contact.other_nodes[i], -contact.other_weights[i]};
+    }
+    row.u_tool.setZero();
+    recovery = kRecoveryPerStep * mean_edge;
+  }
+  row.required_u_n = std::min(-contact.gap_m, recovery) / dt;
 }
 
 void Simulator::Implementation::moveTissues(double dt) {
@@ -196,7 +248,7 @@ void Simulator::Implementation::moveTissues(double dt) {
     return;
   }
   report.discarded = true;
-  report.converged = false;
+  report.stop = StopReason::kIterations;
   report.residuals = Residuals();
   for (NodalVectors& v : solution.v) v.setZero();
   for (Vector3& impulse : solution.impulses) impulse.setZero();
@@ -213,6 +265,8 @@ void Simulator::Implementation::recordContacts(double dt) {
                    contact.weights[2] * nodes.col(contact.nodes[2]);
     answers[c].state = solution.states[c];
     answers[c].force_W = contact.R_WC * solution.impulses[c] / dt;
+    const Vector2 slip = dt * relativeVelocity(problem.contacts[c], solution.v).tail<2>();
+    answers[c].slip_W = contact.R_WC.rightCols<2>() * slip;
     solved[c] = {contact, answers[c].state, answers[c].force_W};
     report.open_contacts += answers[c].state == ContactState::kOpen;
     report.static_contacts += answers[c].state == ContactState::kStatic;
@@ -225,6 +279,7 @@ void Simulator::Implementation::sumWrenches() {
   wrenches.assign(instruments.size(), Wrench());
   for (const SolvedContact& contact : solved) {
     const ContactKey& key = contact.contact.key;
+    if (key.instrument < 0) continue;
     const Pose& X_WTip = motion.startPoses()[key.instrument][instruments[key.instrument].tipLink()];
     const Vector3 force_W = -contact.force_on_tissue_n;
     Wrench& wrench = wrenches[key.instrument];
@@ -294,5 +349,8 @@ const NodalVectors& Simulator::velocities(int tissue) const { return implementat
 const std::vector<SolvedContact>& Simulator::contacts() const { return implementation_->solved; }
 const StepReport& Simulator::report() const { return implementation_->report; }
 long Simulator::stepCount() const { return implementation_->step_count; }
+const ContactProblem& Simulator::lastProblem() const { return implementation_->problem; }
+const ContactSolution& Simulator::lastSolution() const { return implementation_->solution; }
+ContactSolver::Memory Simulator::solverMemory() const { return implementation_->solver->memory(); }
 
 }  // namespace tissue_contact

@@ -2,6 +2,7 @@
 /// touched nodes S is kept (FactoredBody); a pass over the contacts tracks the velocities of S alone.
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "solver/factored_body.h"
 #include "solver/relaxation.h"
@@ -41,7 +42,7 @@ class CholeskyRelaxation : public Relaxation {
   Vector3 trackedVelocity(const ContactRow& row, const Local& local) const;
   void addImpulse(const ContactRow& row, const Local& local, const Vector3& impulse_W);
 
-  std::vector<FactoredBody> bodies_;
+  std::deque<FactoredBody> bodies_;  ///< a factor cannot be moved
   std::vector<NodalVectors> impulses_;  ///< J'lambda per body
   std::vector<NodalVectors> defect_;    ///< b + J'lambda - A v per body, kept up to date
   std::vector<VectorX> tracked_;        ///< per body: velocities of its touched nodes during the passes

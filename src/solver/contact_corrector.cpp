@@ -18,10 +18,10 @@ Vector3 ContactCorrector::correct(const ContactProblem& problem, std::size_t con
   Vector3 q = u - W * impulse;
   q[0] -= row.required_u_n;
   const bool kinetic_limit = row.was_sliding || flips_[contact] > kMaxFlips;
-  const ContactAnswer answer = method_ == SolverMethod::kPredictorCorrector
-                                   ? solveCoulombContact(W, q, row.law, kinetic_limit)
-                                   : solveRivalContact(method_, cone_sides_, W, q, row.law, kinetic_limit,
-                                                       previous_sliding_[contact]);
+  const ContactAnswer answer =
+      method_ == SolverMethod::kPredictorCorrector
+          ? solveCoulombContact(W, q, row.law, kinetic_limit)
+          : solveRivalContact(method_, cone_sides_, W, q, row.law, kinetic_limit, previous_sliding_[contact]);
   ContactState& state = solution.states[contact];
   const bool both_touch = answer.state != ContactState::kOpen && state != ContactState::kOpen;
   if (both_touch && answer.state != state && flips_[contact] <= kMaxFlips) ++flips_[contact];

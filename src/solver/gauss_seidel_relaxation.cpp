@@ -71,8 +71,12 @@ void GaussSeidelRelaxation::prepareContacts(const ContactProblem& problem, Conta
       W_W += (at.weight * at.weight) * block_inverse_[at.body][at.node];
     }
     if (isFrictionless(row.law)) {
-      W_[c](0, 0) = row.R_WC.col(0).dot(W_W * row.R_WC.col(0));
-      solution.impulses[c].tail<2>().setZero();  // the frame has turned since: no friction may be left in the warm start
+      const Vector3 n = row.R_WC.col(0);
+      const Vector3 response = W_W * n;
+      W_[c](0, 0) = n.dot(response);
+      solution.impulses[c]
+          .tail<2>()
+          .setZero();  // the frame has turned since: no friction may be left in the warm start
     } else {
       W_[c] = row.R_WC.transpose() * W_W * row.R_WC;
     }

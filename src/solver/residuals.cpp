@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "solver/sparse_system.h"
+#include "tissue_contact/friction/friction_law.h"
+
 namespace tissue_contact {
 namespace {
 
@@ -17,27 +20,45 @@ double momentumResidual(const ContactProblem& problem, const ContactSolution& so
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     const ContactRow& row = problem.contacts[c];
     const Vector3 impulse = row.R_WC * solution.impulses[c];
-    for (int a = 0; a < 3; ++a) {
-      if (!(*problem.bodies[row.body].fixed)[row.nodes[a]]) {
-        contact_impulses[row.body].col(row.nodes[a]) += row.weights[a] * impulse;
-      }
+    for (int a = 0; a < row.node_count; ++a) {
+      const RowNode& at = row.nodes[a];
+      if (!(*problem.bodies[at.body].fixed)[at.node]) contact_impulses[at.body].col(at.node) += at.weight * impulse;
     }
   }
   double defect = 0.0;
   double scale = 0.0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    const BodySystem& body = problem.bodies[k];
-    const NodalVectors& v = solution.v[k];
-    for (int i = 0; i < body.K->rows(); ++i) {
-      if ((*body.fixed)[i]) continue;
-      const Vector3 elastic = body.K->diagonal[i] * v.col(i) + body.K->offDiagonalProduct(i, v);
-      const Vector3 p = contact_impulses[k].col(i);
-      defect += (body.mass[i] * v.col(i) + body.stiffness_scale * elastic - body.b.col(i) - p).squaredNorm();
-      scale += p.squaredNorm();
-    }
+    scale += contact_impulses[k].squaredNorm();
+    defect += bodyDefect(problem.bodies[k], solution.v[k], contact_impulses[k], contact_impulses[k]);
   }
   if (std::isnan(defect)) return defect;
   return scale == 0.0 ? 0.0 : std::sqrt(defect / scale);
+}
+
+Vector2 inLawAxes(const CoulombLaw& law, const Vector2& t) {
+  return {law.axis.dot(t), law.axis.x() * t.y() - law.axis.y() * t.x()};
+}
+
+/// How far friction is beyond what the contact's law allows, N; negative inside.
+double coneViolation(const ContactRow& row, ContactState state, const Vector3& force) {
+  const bool kinetic = state != ContactState::kStatic || row.was_sliding;
+  const Vector2 friction = force.tail<2>();
+  if (row.law.anisotropic == nullptr) {
+    return friction.norm() - (kinetic ? row.law.mu_kinetic : row.law.mu_static) * force[0];
+  }
+  if (friction.isZero(0.0)) return 0.0;
+  const double limit_share =
+      row.law.anisotropic->use(inLawAxes(row.law, friction), kinetic) / (kinetic ? row.law.kinetic_factor : 1.0);
+  return friction.norm() - (limit_share > 0.0 ? friction.norm() / limit_share : 0.0) * force[0];
+}
+
+/// Angle between the friction force and the one its law asks for at this sliding, rad.
+double kineticAngle(const CoulombLaw& law, const Vector2& friction, const Vector2& sliding) {
+  const Vector2 asked = law.anisotropic == nullptr
+                            ? Vector2(-sliding)
+                            : law.anisotropic->slidingForce(inLawAxes(law, sliding).normalized());
+  const Vector2 found = law.anisotropic == nullptr ? friction : inLawAxes(law, friction);
+  return std::abs(std::atan2(found.x() * asked.y() - found.y() * asked.x(), found.dot(asked)));
 }
 
 }  // namespace
@@ -57,13 +78,11 @@ Residuals computeResiduals(const ContactProblem& problem, const ContactSolution&
     if (state == ContactState::kOpen) continue;
     const Vector2 friction = force.tail<2>();
     const Vector2 sliding = u.tail<2>();
-    const double mu = state == ContactState::kStatic && !row.was_sliding ? row.law.mu_static : row.law.mu_kinetic;
-    worsen(worst.cone_violation_n, friction.norm() - mu * force[0]);
+    worsen(worst.cone_violation_n, coneViolation(row, state, force));
     if (state == ContactState::kStatic) {
       worsen(worst.static_slip_m_per_s, sliding.norm());
     } else if (friction.norm() > 0.0 && sliding.norm() > 0.0) {
-      const double cross = friction.x() * sliding.y() - friction.y() * sliding.x();
-      worsen(worst.kinetic_angle_rad, std::abs(std::atan2(cross, -friction.dot(sliding))));
+      worsen(worst.kinetic_angle_rad, kineticAngle(row.law, friction, sliding));
     }
   }
   worst.momentum = momentumResidual(problem, solution, scratch);

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "tissue_contact/friction/coulomb.h"
 #include "tissue_contact/instrument/instrument.h"
 #include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/scene/scene.h"
@@ -20,13 +19,11 @@ struct SceneEnvironment {
   PackagePath package_path;                                            ///< directory of a ROS package
   std::function<std::string(const std::string& parameter)> urdf_text;  ///< URDF held by a parameter; throws if missing
   std::function<Pose(const std::string& tf_frame)> frame_pose;         ///< X_WF of a tf frame; throws if unknown
+  std::function<double()> clock;  ///< seconds, never back; for solver.time_budget_s alone
 };
 
 /// @throws std::invalid_argument naming what is wrong in the scene or its files.
 std::vector<Instrument> buildInstruments(const Scene& scene, const SceneEnvironment& environment);
 std::vector<Tissue> buildTissues(const Scene& scene, const SceneEnvironment& environment);
-
-/// Laws as [instrument][tissue]; pairs the scene does not list are frictionless.
-std::vector<std::vector<CoulombLaw>> buildFrictionTable(const Scene& scene);
 
 }  // namespace tissue_contact

@@ -24,6 +24,9 @@ class ContactMemory {
   struct Inherited {
     Vector3 force_W = Vector3::Zero();  ///< N on the tissue, world frame
     ContactState state = ContactState::kOpen;
+    /// How far the tissue slid against the tool in the step, m, world frame. For a static contact: what the solver has
+    /// left over, which the next step takes back, so that a held contact does not creep.
+    Vector3 slip_W = Vector3::Zero();
   };
 
   void clear() { remembered_.clear(); }

@@ -13,7 +13,7 @@
 #include "tissue_contact/instrument/instrument.h"
 #include "tissue_contact/scene/scene.h"
 #include "tissue_contact/simulation/build_scene.h"
-#include "tissue_contact/solver/residuals.h"
+#include "tissue_contact/solver/contact_solver.h"
 #include "tissue_contact/tissue/tissue.h"
 
 namespace tissue_contact {
@@ -30,8 +30,8 @@ struct StepReport {
   int substeps = 0;        ///< implicit steps taken for the last advance
   bool jumped = false;     ///< an instrument moved too far for sub-stepping: it was put at its new place without a path
   bool discarded = false;  ///< a step gave no finite answer: tissues were stopped where they were
-  int iterations = 0;      ///< ICA iterations of its last step
-  bool converged = false;
+  int iterations = 0;      ///< solver iterations of its last step
+  StopReason stop = StopReason::kTolerance;
   Residuals residuals;  ///< of its last step, computed after the last sweep
   int open_contacts = 0;
   int static_contacts = 0;
@@ -75,6 +75,13 @@ class Simulator {
   const std::vector<SolvedContact>& contacts() const;
   const StepReport& report() const;
   long stepCount() const;  ///< implicit steps since the last reset
+
+  /// The contact problem of the last step and its answer, e.g. for writeContactProblem().
+  const ContactProblem& lastProblem() const;
+  const ContactSolution& lastSolution() const;
+
+  /// Bytes held by the solver.
+  ContactSolver::Memory solverMemory() const;
 
  private:
   void requireJointPositions(int instrument, const VectorX& joint_positions) const;

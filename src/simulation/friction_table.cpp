@@ -1,0 +1,179 @@
+#include "tissue_contact/simulation/friction_table.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace tissue_contact {
+
+struct FrictionTable::Entry {
+  FrictionLawDescription numbers;
+  CoulombLaw law;                                          ///< axis and kinetic factor are filled in per contact
+  std::unique_ptr<const AnisotropicFriction> anisotropic;  ///< what law.anisotropic points to
+};
+
+/// What is needed to find the surface triangle of a contact; empty for tissues without regions and fibres.
+struct FrictionTable::Surface {
+  const Tissue* tissue = nullptr;
+  std::vector<std::vector<int>> triangles_of_node;
+
+  /// The first surface triangle that has all nodes of the contact, -1 where not kept.
+  int triangleOf(const std::array<int, 3>& nodes) const {
+    if (triangles_of_node.empty()) return -1;
+    for (const int t : triangles_of_node[nodes[0]]) {
+      const Triangle& triangle = tissue->surface()[t];
+      const auto has = [&](int node) { return std::find(triangle.begin(), triangle.end(), node) != triangle.end(); };
+      if (has(nodes[1]) && has(nodes[2])) return t;
+    }
+    return -1;
+  }
+};
+
+namespace {
+
+template <typename Named>
+int indexOf(const std::vector<Named>& all, const std::string& name, const std::string& kind,
+            std::string (*name_of)(const Named&)) {
+  std::string known;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (name_of(all[i]) == name) return static_cast<int>(i);
+    known += (i == 0 ? "" : ", ") + name_of(all[i]);
+  }
+  throw std::invalid_argument("friction names the unknown " + kind + " '" + name + "'; there is " +
+                              (known.empty() ? "none" : known));
+}
+
+std::string nameOfInstrument(const InstrumentDescription& instrument) { return instrument.name; }
+std::string nameOfTissue(const TissueDescription& tissue) { return tissue.name; }
+std::string nameOfRegion(const TissueRegion& region) { return region.name; }
+std::string nameOfLink(const ContactLink& link) { return link.name; }
+
+/// Entries in the order in which later ones replace earlier ones: neither, region, link, link and region.
+int specificity(const FrictionDescription& entry) {
+  return (entry.link.empty() ? 0 : 2) + (entry.region.empty() ? 0 : 1);
+}
+
+}  // namespace
+
+FrictionTable::~FrictionTable() = default;
+FrictionTable::FrictionTable(FrictionTable&&) noexcept = default;
+
+FrictionTable::FrictionTable(const Scene& scene, const std::vector<Instrument>& instruments,
+                             const std::vector<Tissue>& tissues) {
+  std::vector<ByRegion> none;
+  for (const TissueDescription& tissue : scene.tissues) none.emplace_back(1 + tissue.regions.size(), -1);
+  for (const Instrument& instrument : instruments) {
+    by_link_.emplace_back(instrument.contactLinks().size(), none);
+    std::vector<int>& links = links_.emplace_back();
+    for (const ContactLink& link : instrument.contactLinks()) links.push_back(link.link);
+  }
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    between_tissues_.emplace_back(tissues.size(), none[t]);
+    Surface& surface = surfaces_.emplace_back();
+    surface.tissue = &tissues[t];
+    if (tissues[t].surfaceRegions().empty() && tissues[t].surfaceFibres().empty()) continue;
+    surface.triangles_of_node.resize(tissues[t].nodeCount());
+    for (std::size_t i = 0; i < tissues[t].surface().size(); ++i) {
+      for (const int node : tissues[t].surface()[i]) surface.triangles_of_node[node].push_back(static_cast<int>(i));
+    }
+  }
+  std::vector<FrictionDescription> sorted = scene.friction;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const FrictionDescription& a, const FrictionDescription& b) {
+    return specificity(a) < specificity(b);
+  });
+  for (const FrictionDescription& description : sorted) add(description, scene, instruments, tissues);
+}
+
+void FrictionTable::add(const FrictionDescription& description, const Scene& scene,
+                        const std::vector<Instrument>& instruments, const std::vector<Tissue>& tissues) {
+  const int tissue = indexOf(scene.tissues, description.tissue, "tissue", nameOfTissue);
+  const TissueDescription& described = scene.tissues[tissue];
+  const int region = description.region.empty() ? -1
+                                                : indexOf(described.regions, description.region,
+                                                          "region of tissue '" + described.name + "'", nameOfRegion);
+  if (description.law.axis == FrictionLawDescription::Axis::kFibre && tissues[tissue].surfaceFibres().empty()) {
+    throw std::invalid_argument("friction on tissue '" + described.name +
+                                "' follows its fibres, but it has no fibre_direction; give it one");
+  }
+  const int index = static_cast<int>(entries_.size());
+  Entry& entry = entries_.emplace_back();
+  entry.numbers = description.law;
+  entry.anisotropic = makeAnisotropicFriction(description.law);
+  entry.law.anisotropic = entry.anisotropic.get();
+  if (entry.anisotropic == nullptr) {
+    entry.law.mu_static = description.law.static_coefficients.at(0);
+    entry.law.mu_kinetic = description.law.kinetic_coefficients.at(0);
+  }
+  const auto put = [&](ByRegion& by_region) {
+    if (region >= 0) {
+      by_region[1 + region] = index;
+    } else {
+      std::fill(by_region.begin(), by_region.end(), index);
+    }
+  };
+  if (description.instrument.empty()) {
+    const int other = indexOf(scene.tissues, description.other_tissue, "tissue", nameOfTissue);
+    put(between_tissues_[tissue][other]);
+    return;
+  }
+  const int instrument = indexOf(scene.instruments, description.instrument, "instrument", nameOfInstrument);
+  if (!description.link.empty()) {
+    const int link = indexOf(instruments[instrument].contactLinks(), description.link,
+                             "contact link of instrument '" + description.instrument + "'", nameOfLink);
+    put(by_link_[instrument][link][tissue]);
+    return;
+  }
+  for (std::vector<ByRegion>& of_link : by_link_[instrument]) put(of_link[tissue]);
+}
+
+const FrictionTable::Entry* FrictionTable::entryOf(const ContactKey& key, int triangle) const {
+  const auto in = [&](const ByRegion& by_region, const Tissue& tissue) {
+    const bool has_regions = triangle >= 0 && !tissue.surfaceRegions().empty();
+    return by_region[has_regions ? 1 + tissue.surfaceRegions()[triangle] : 0];
+  };
+  int index = -1;
+  if (key.instrument >= 0) {
+    index = in(by_link_[key.instrument][key.link][key.tissue], *surfaces_[key.tissue].tissue);
+  } else {
+    index = in(between_tissues_[key.tissue][key.other_tissue], *surfaces_[key.tissue].tissue);
+    // An entry holds for the pair, whichever tissue it names first; its fibres and regions are those of `tissue`.
+    if (index < 0) index = between_tissues_[key.other_tissue][key.tissue][0];
+  }
+  return index < 0 ? nullptr : &entries_[index];
+}
+
+Vector3 FrictionTable::axisOf(const Entry& entry, const Contact& contact, int triangle,
+                              const std::vector<NodalVectors>& x, const std::vector<std::vector<Pose>>& X_WL) const {
+  const ContactKey& key = contact.key;
+  if (entry.numbers.axis == FrictionLawDescription::Axis::kLink && key.instrument >= 0) {
+    return X_WL[key.instrument][links_[key.instrument][key.link]].linear() * entry.numbers.link_axis;
+  }
+  const Tissue& tissue = *surfaces_[key.tissue].tissue;
+  if (triangle < 0 || tissue.surfaceFibres().empty()) return Vector3::Zero();
+  const Triangle& nodes = tissue.surface()[triangle];
+  const Vector2& along = tissue.surfaceFibres()[triangle];
+  const NodalVectors& p = x[key.tissue];
+  return along[0] * (p.col(nodes[1]) - p.col(nodes[0])) + along[1] * (p.col(nodes[2]) - p.col(nodes[0]));
+}
+
+CoulombLaw FrictionTable::at(const Contact& contact, const std::vector<NodalVectors>& x,
+                             const std::vector<std::vector<Pose>>& X_WL, double sliding_speed) const {
+  const int triangle = surfaces_[contact.key.tissue].triangleOf(contact.nodes);
+  const Entry* entry = entryOf(contact.key, triangle);
+  if (entry == nullptr) return {};
+  CoulombLaw law = entry->law;
+  const double factor = entry->numbers.speeds_m_per_s.empty() ? 1.0 : kineticFactor(entry->numbers, sliding_speed);
+  if (law.anisotropic == nullptr) {
+    law.mu_kinetic *= factor;
+    return law;
+  }
+  law.kinetic_factor = factor;
+  // An axis along the normal has no direction in the contact plane: the frame's own t1 stands in.
+  const Vector2 in_plane = contact.R_WC.rightCols<2>().transpose() * axisOf(*entry, contact, triangle, x, X_WL);
+  const double length = in_plane.norm();
+  if (length > 0.0) law.axis = in_plane / length;
+  return law;
+}
+
+}  // namespace tissue_contact
