@@ -34,7 +34,8 @@ struct SceneMapKeys {
 };
 
 /// Every key the loader knows, so that the documentation can be checked against it. Maps of joint names have free keys
-/// and are not listed; tissues[].pose also stands for instruments[].base_pose, tissues[].block.grading.x for y and z.
+/// and are not listed; tissues[].pose also stands for instruments[].base_pose, tissues[].block.grading.x for y and z,
+/// tissues[].fixed[] for tissues[].regions[].where[].
 std::vector<SceneMapKeys> sceneKeys();
 
 }  // namespace tissue_contact

@@ -54,10 +54,11 @@ TEST(SceneDocument, HasExactlyTheKeysOfTheLoader) {
 
 TEST_F(SceneTest, ExampleOfTheDocumentLoadsAndUsesEveryKey) {
   for (const char* directory : {"meshes", "urdf"}) std::filesystem::create_directory(directory_ / directory);
-  for (const char* file : {"meshes/liver.vtk", "meshes/cover.stl", "urdf/psm_classic.urdf"}) write(file, "x");
+  for (const char* file : {"meshes/liver.vtk", "meshes/cover.stl", "meshes/gut.obj", "urdf/psm_classic.urdf"})
+    write(file, "x");
   const std::string yaml = example();
   const Scene scene = parse(yaml);
-  EXPECT_EQ(scene.tissues.size(), 2U);
+  EXPECT_EQ(scene.tissues.size(), 4U);
   EXPECT_EQ(scene.instruments.size(), 2U);
   for (const SceneMapKeys& map : sceneKeys()) {
     for (const std::string& key : map.keys)
