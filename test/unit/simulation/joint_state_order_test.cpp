@@ -1,0 +1,211 @@
+/// @file
+/// JointStatePlayer on two topics: in which order their samples are played, waiting, and loops of both.
+#include <utility>
+
+#include "joint_state_player_fixture.h"
+
+namespace tissue_contact {
+namespace {
+
+std::unique_ptr<Simulator> twoProbes() { return makeSimulator(probe("a", "/a", -0.015) + probe("b", "/b", 0.015)); }
+
+/// Pushes (topic, sample) in the given order, draining after each.
+Trace run(Simulator& simulator, JointStatePlayer& player, const std::vector<std::pair<int, JointStateSample>>& order) {
+  Trace trace;
+  const auto drainInto = [&] {
+    while (auto played = player.playNext()) {
+      if (played->verdict == Verdict::kAccepted) trace.add(*played, simulator);
+    }
+  };
+  for (const auto& [topic, s] : order) {
+    player.push(topic, s);
+    drainInto();
+  }
+  player.finish();
+  drainInto();
+  return trace;
+}
+
+TEST(JointStatePlayer, WaitsForTheOtherTopic) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  player.push(0, sample(kSecond, 0.0));
+  EXPECT_TRUE(drain(player).empty());
+  player.push(1, sample(kSecond + kMillisecond, 0.0));
+  const std::vector<PlayedSample> first = drain(player);
+  ASSERT_EQ(first.size(), 1U);  // the second topic's sample waits for the first's next one
+  EXPECT_EQ(first[0].topic, 0);
+  EXPECT_EQ(first[0].instruments, std::vector<int>{0});
+  player.push(0, sample(kSecond + 10 * kMillisecond, 0.0));
+  const std::vector<PlayedSample> second = drain(player);
+  ASSERT_EQ(second.size(), 1U);
+  EXPECT_EQ(second[0].topic, 1);
+  EXPECT_EQ(second[0].instruments, std::vector<int>{1});
+}
+
+TEST(JointStatePlayer, SameStampOnTwoTopicsNeedsNoWaitAndNoStep) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  for (int i = 0; i < 3; ++i) {
+    const std::int64_t stamp = kSecond + i * 10 * kMillisecond;
+    player.push(1, sample(stamp, 0.001 * i));
+    EXPECT_TRUE(drain(player).empty());
+    player.push(0, sample(stamp, -0.001 * i));
+    const std::vector<PlayedSample> played = drain(player);
+    ASSERT_EQ(played.size(), 2U);
+    EXPECT_EQ(played[0].topic, 0);
+    EXPECT_EQ(played[1].topic, 1);
+    EXPECT_EQ(played[1].verdict, Verdict::kAccepted);
+    EXPECT_EQ(played[1].instruments, std::vector<int>{1});
+    EXPECT_EQ(simulator->stepCount(), 10 * i);
+  }
+  EXPECT_EQ(simulator->jointPositions(0).z(), -0.002);
+  EXPECT_EQ(simulator->jointPositions(1).z(), 0.001);  // its newest target takes effect in the next interval
+}
+
+TEST(JointStatePlayer, StopsWaitingAfterMaxGapAndRefusesWhatComesLate) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  player.push(0, sample(kSecond, 0.0));
+  player.push(0, sample(kSecond + 49 * kMillisecond, 0.0));
+  EXPECT_TRUE(drain(player).empty());
+  player.push(0, sample(kSecond + 50 * kMillisecond, 0.0));
+  EXPECT_EQ(drain(player).size(), 1U);
+  player.push(1, sample(kSecond - kMillisecond, -0.001));
+  const std::vector<PlayedSample> late = drain(player);
+  ASSERT_FALSE(late.empty());
+  EXPECT_EQ(late[0].verdict, Verdict::kLate);
+  EXPECT_NE(late[0].detail.find("already at 1.000000000 s"), std::string::npos) << late[0].detail;
+  EXPECT_EQ(player.count(Verdict::kLate), 1);
+  EXPECT_EQ(simulator->jointPositions(1), Vector3::Zero());
+}
+
+TEST(JointStatePlayer, FinishReleasesWhatWaits) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  player.push(0, sample(kSecond, 0.0));
+  player.push(0, sample(kSecond + kMillisecond, 0.0));
+  EXPECT_TRUE(drain(player).empty());
+  player.finish();
+  EXPECT_EQ(drain(player).size(), 2U);
+}
+
+TEST(JointStatePlayer, WaitingSamplesAreBoundedInNumber) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  std::int64_t stamp = kSecond;
+  for (std::size_t i = 0; i < JointStatePlayer::kMaxWaiting; ++i) player.push(0, sample(stamp += 1000, 0.0));
+  EXPECT_TRUE(drain(player).empty());
+  player.push(0, sample(stamp + 1000, 0.0));
+  EXPECT_EQ(drain(player).size(), 1U);
+}
+
+/// Samples of two topics in the order of their stamps, topic 1 shifted by 3 ms.
+std::vector<std::pair<int, JointStateSample>> twoPresses() {
+  std::vector<std::pair<int, JointStateSample>> order;
+  const std::vector<JointStateSample> a = press(kSecond, 0.006);
+  const std::vector<JointStateSample> b = press(kSecond + 3 * kMillisecond, 0.005);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    order.emplace_back(0, a[i]);
+    order.emplace_back(1, b[i]);
+  }
+  return order;
+}
+
+TEST(JointStatePlayer, ArrivalOrderOfTopicsDoesNotMatter) {
+  const auto in_order = twoPresses();
+  const auto reference_simulator = twoProbes();
+  JointStatePlayer reference_player(*reference_simulator);
+  const Trace reference = run(*reference_simulator, reference_player, in_order);
+  EXPECT_EQ(reference.stamps.size(), 60U);
+  EXPECT_TRUE(std::is_sorted(reference.stamps.begin(), reference.stamps.end()));
+  EXPECT_TRUE(reference.pressed());
+  for (const int late_topic : {0, 1}) {
+    for (const std::size_t lag : {1U, 2U, 4U}) {  // in samples of 10 ms; 5 would be max_gap_s
+      std::vector<std::pair<int, JointStateSample>> order;
+      std::vector<std::pair<int, JointStateSample>> held;
+      for (const auto& entry : in_order) {
+        if (entry.first == late_topic) {
+          held.push_back(entry);
+          if (held.size() <= lag) continue;
+          order.push_back(held[held.size() - lag - 1]);
+        } else {
+          order.push_back(entry);
+        }
+      }
+      order.insert(order.end(), held.end() - static_cast<std::ptrdiff_t>(lag), held.end());
+      const auto simulator = twoProbes();
+      JointStatePlayer player(*simulator);
+      EXPECT_TRUE(run(*simulator, player, order) == reference) << "topic " << late_topic << " late by " << lag;
+    }
+  }
+}
+
+TEST(JointStatePlayer, TwoTopicsLoopTogetherWithOneReset) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  auto order = twoPresses();
+  const auto again = order;
+  order.insert(order.end(), again.begin(), again.end());
+  const Trace trace = run(*simulator, player, order);
+  EXPECT_EQ(player.resets(), 1);
+  EXPECT_EQ(player.count(Verdict::kAccepted), 120);
+  const std::size_t half = trace.forces.size() / 2;
+  EXPECT_TRUE(std::equal(trace.forces.begin(), trace.forces.begin() + static_cast<std::ptrdiff_t>(half),
+                         trace.forces.begin() + static_cast<std::ptrdiff_t>(half)));
+}
+
+TEST(JointStatePlayer, LeftoversOfALoopArePlayedBeforeTheNextOne) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  player.push(0, sample(5 * kSecond, 0.0));
+  player.push(1, sample(5 * kSecond, 0.0));
+  EXPECT_EQ(drain(player).size(), 2U);
+  player.push(0, sample(kSecond, 0.0));  // looped
+  EXPECT_TRUE(drain(player).empty());
+  player.push(1, sample(5 * kSecond + 10 * kMillisecond, 0.0));  // leftover
+  const std::vector<PlayedSample> leftover = drain(player);
+  ASSERT_EQ(leftover.size(), 1U);
+  EXPECT_EQ(leftover[0].verdict, Verdict::kAccepted);
+  EXPECT_FALSE(leftover[0].was_reset);
+  player.push(1, sample(kSecond, 0.0));
+  const std::vector<PlayedSample> next = drain(player);
+  ASSERT_EQ(next.size(), 2U);
+  EXPECT_TRUE(next[0].was_reset);
+  EXPECT_FALSE(next[1].was_reset);
+  EXPECT_EQ(player.resets(), 1);
+}
+
+TEST(JointStatePlayer, ATopicFirstHeardInALaterLoopJoinsIt) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  player.push(0, sample(5 * kSecond, 0.0));
+  player.push(0, sample(kSecond, 0.0));
+  drain(player);
+  player.push(1, sample(kSecond + kMillisecond, 0.0));
+  player.push(0, sample(kSecond + 2 * kMillisecond, 0.0));
+  drain(player);
+  EXPECT_EQ(player.count(Verdict::kLate), 0);
+  EXPECT_EQ(player.resets(), 1);
+  EXPECT_EQ(player.count(Verdict::kAccepted), 3);  // the newest of topic 0 waits
+}
+
+TEST(JointStatePlayer, AClockSetBackALittleOnOneTopicKeepsTheOtherOne) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  for (int i = 0; i < 5; ++i) {
+    for (const int topic : {0, 1}) player.push(topic, sample(2 * kSecond + i * 10 * kMillisecond, 0.0));
+  }
+  for (int i = 0; i < 5; ++i) {
+    player.push(0, sample(2 * kSecond + (20 + i * 10) * kMillisecond, 0.0));
+    player.push(1, sample(2 * kSecond + (50 + i * 10) * kMillisecond, 0.0));
+  }
+  player.finish();
+  drain(player);
+  EXPECT_EQ(player.resets(), 1);
+  EXPECT_EQ(player.count(Verdict::kLate), 0);
+  EXPECT_EQ(player.count(Verdict::kAccepted), 20);
+}
+
+}  // namespace
+}  // namespace tissue_contact
