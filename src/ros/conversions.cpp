@@ -92,6 +92,17 @@ JointStateSample toSample(const sensor_msgs::JointState& message) {
   return {static_cast<std::int64_t>(message.header.stamp.toNSec()), message.name, message.position};
 }
 
+std::uint8_t toStop(StopReason stop) {
+  switch (stop) {
+    case StopReason::kTolerance:
+      return Status::STOP_TOLERANCE;
+    case StopReason::kIterations:
+      return Status::STOP_ITERATIONS;
+    default:
+      return Status::STOP_TIME_BUDGET;
+  }
+}
+
 void fillWrench(const Wrench& wrench, std::int64_t stamp_ns, geometry_msgs::WrenchStamped& message) {
   message.header.stamp = toTime(stamp_ns);
   message.wrench.force = toVector(wrench.force);
@@ -122,11 +133,18 @@ void fillContacts(const Simulator& simulator, std::int64_t stamp_ns, ContactArra
   for (std::size_t i = 0; i < message.contacts.size(); ++i) {
     const SolvedContact& solved = simulator.contacts()[i];
     const ContactKey& key = solved.contact.key;
-    const Instrument& instrument = simulator.instruments()[static_cast<std::size_t>(key.instrument)];
     auto& contact = message.contacts[i];
-    contact.instrument = instrument.name();
-    contact.link = instrument.contactLinks()[static_cast<std::size_t>(key.link)].name;
     contact.tissue = simulator.tissues()[static_cast<std::size_t>(key.tissue)].name();
+    if (key.instrument >= 0) {
+      const Instrument& instrument = simulator.instruments()[static_cast<std::size_t>(key.instrument)];
+      contact.instrument = instrument.name();
+      contact.link = instrument.contactLinks()[static_cast<std::size_t>(key.link)].name;
+      contact.other_tissue.clear();
+    } else {
+      contact.instrument.clear();
+      contact.link.clear();
+      contact.other_tissue = simulator.tissues()[static_cast<std::size_t>(key.other_tissue)].name();
+    }
     contact.point = toPoint(solved.contact.p_WC);
     contact.normal = toVector(solved.contact.R_WC.col(0));
     contact.force = toVector(solved.force_on_tissue_n);
@@ -140,7 +158,7 @@ void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std:
   message.header.stamp = toTime(stamp_ns);
   message.step = static_cast<std::uint64_t>(simulator.stepCount());
   message.iterations = static_cast<std::uint32_t>(report.iterations);
-  message.converged = static_cast<std::uint8_t>(report.converged);
+  message.stop = toStop(report.stop);
   message.discarded = static_cast<std::uint8_t>(report.discarded);
   message.jumped = static_cast<std::uint8_t>(report.jumped);
   message.open_contacts = static_cast<std::uint32_t>(report.open_contacts);

@@ -55,7 +55,7 @@ void Health::noteStep(const PlayedSample& played, bool finite) {
                                                             << " s to be swept: it was placed at its new position");
     }
   }
-  if (!report.converged) {
+  if (report.stop != StopReason::kTolerance) {
     ++not_converged_count_;
     std::ostringstream text;
     text << toTime(played.stamp_ns) << " s: momentum " << report.residuals.momentum << ", penetration "

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <set>
@@ -24,6 +25,7 @@
 #include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 #include "tissue_contact/simulation/simulator.h"
+#include "tissue_contact/solver/delassus.h"
 
 namespace tissue_contact {
 namespace {
@@ -74,6 +76,7 @@ class Replay {
         scene_(loadScene(options.scene_file, ros::package::getPath)),
         simulator_(scene_, bagEnvironment(options.bag_file, options.urdf_file, scene_.world_frame)),
         player_(simulator_) {
+    if (options_.dump_step > 0) simulator_.setStepObserver([this] { dumpIfWanted(); });
     for (std::size_t i = 0; i < player_.topics().size(); ++i) {
       topic_index_[globalName(player_.topics()[i])] = static_cast<int>(i);
     }
@@ -92,6 +95,7 @@ class Replay {
     }
     player_.finish();
     playAll(table);
+    requireDumped();
     if (player_.count(Verdict::kAccepted) == 0) {
       throw std::runtime_error("no joint state of bag '" + options_.bag_file +
                                "' was accepted; the first was refused: " + first_refusal_);
@@ -134,6 +138,22 @@ class Replay {
     player_.push(topic_index_.at(globalName(instance.getTopic())), toSample(*message));
   }
 
+  /// Writes the contact problem of the step asked for, the first time it is taken.
+  void dumpIfWanted() {
+    if (dumped_ || simulator_.stepCount() != options_.dump_step) return;
+    std::ofstream stream(options_.dump_file);
+    writeContactProblem(stream, makeDelassusProblem(simulator_.lastProblem()), simulator_.lastSolution().states);
+    stream.flush();
+    if (!stream) throw std::runtime_error("cannot write '" + options_.dump_file + "'");
+    dumped_ = true;
+  }
+
+  void requireDumped() const {
+    if (options_.dump_step == 0 || dumped_) return;
+    throw std::runtime_error("--dump-step " + std::to_string(options_.dump_step) + ": the replay took only " +
+                             std::to_string(simulator_.stepCount()) + " steps; ask for one of those");
+  }
+
   void playAll(ReplayTable& table) {
     while (true) {
       const long steps_before = simulator_.stepCount();
@@ -159,7 +179,7 @@ class Replay {
     const StepReport& report = simulator_.report();
     jumps_ += static_cast<long>(report.jumped);
     discarded_ += static_cast<long>(report.discarded);
-    not_converged_ += static_cast<long>(!report.converged);
+    not_converged_ += static_cast<long>(report.stop != StopReason::kTolerance);
   }
 
   static std::string stampOf(const PlayedSample& played) {
@@ -186,6 +206,7 @@ class Replay {
   JointStatePlayer player_;
   std::map<std::string, int> topic_index_;
   std::string first_refusal_;
+  bool dumped_ = false;
   long jumps_ = 0;
   long discarded_ = 0;
   long not_converged_ = 0;

@@ -9,13 +9,22 @@ namespace tissue_contact {
 namespace {
 
 void requireGiven(const std::string& value, const std::string& key) {
-  if (value.empty()) throw std::invalid_argument("argument " + key + " FILE is missing; see --help");
+  if (value.empty()) throw std::invalid_argument("argument " + key + " is missing or has no value; see --help");
+}
+
+long stepNumber(const std::string& text) {
+  constexpr std::size_t kMostDigits = 15;
+  const bool digits = text.find_first_not_of("0123456789") == std::string::npos && text.size() <= kMostDigits;
+  const long step = digits ? std::stol(text) : 0;
+  if (step < 1) throw std::invalid_argument("--dump-step is '" + text + "'; it must be a step number from 1");
+  return step;
 }
 
 }  // namespace
 
 std::string replayUsage() {
   return "usage: tissue_contact_replay --scene SCENE.yaml --bag IN.bag --csv OUT.csv [--urdf ROBOT.urdf]\n"
+         "         [--dump-step N --dump-file PROBLEM.txt]\n"
          "\n"
          "Plays the joint states of a bag through a scene, with the stepping of tissue_contact_node but without a\n"
          "roscore, and writes one CSV line per accepted joint state and instrument.\n"
@@ -25,6 +34,8 @@ std::string replayUsage() {
          "/tf\n"
          "  --csv FILE    the result; replaced when the replay is complete, untouched when it fails\n"
          "  --urdf FILE   text for the robot_description parameter that the scene takes its URDF from\n"
+         "  --dump-step N   with --dump-file: write the contact problem of implicit step N (from 1), for "
+         "tissue_contact_solve\n"
          "  --help        this text\n"
          "\n"
          "Exit code: 0 when the CSV was written, 1 with a message on stderr otherwise.\n";
@@ -32,10 +43,13 @@ std::string replayUsage() {
 
 ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
   ReplayOptions options;
+  std::string dump_step;
   const std::map<std::string, std::string*> keys = {{"--scene", &options.scene_file},
                                                     {"--bag", &options.bag_file},
                                                     {"--csv", &options.csv_file},
-                                                    {"--urdf", &options.urdf_file}};
+                                                    {"--urdf", &options.urdf_file},
+                                                    {"--dump-step", &dump_step},
+                                                    {"--dump-file", &options.dump_file}};
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (arguments[i] == "--help" || arguments[i] == "-h") {
       options.help = true;
@@ -54,6 +68,11 @@ ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
   requireGiven(options.scene_file, "--scene");
   requireGiven(options.bag_file, "--bag");
   requireGiven(options.csv_file, "--csv");
+  if (!dump_step.empty() || !options.dump_file.empty()) {
+    requireGiven(dump_step, "--dump-step");
+    requireGiven(options.dump_file, "--dump-file");
+    options.dump_step = stepNumber(dump_step);
+  }
   return options;
 }
 

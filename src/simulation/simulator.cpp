@@ -98,6 +98,7 @@ struct Simulator::Implementation {
   StepReport report;
   long step_count = 0;
   double last_dt = 0.0;  ///< of the step before, s
+  std::function<void()> observer;
 };
 
 Simulator::Implementation::Implementation(const Scene& description, const SceneEnvironment& environment)
@@ -155,6 +156,7 @@ void Simulator::Implementation::step(double dt) {
   ++step_count;
   recordContacts(dt);
   last_dt = dt;
+  if (observer) observer();
 }
 
 void Simulator::Implementation::detectContacts(double dt) {
@@ -351,6 +353,7 @@ const StepReport& Simulator::report() const { return implementation_->report; }
 long Simulator::stepCount() const { return implementation_->step_count; }
 const ContactProblem& Simulator::lastProblem() const { return implementation_->problem; }
 const ContactSolution& Simulator::lastSolution() const { return implementation_->solution; }
+void Simulator::setStepObserver(std::function<void()> observer) { implementation_->observer = std::move(observer); }
 ContactSolver::Memory Simulator::solverMemory() const { return implementation_->solver->memory(); }
 
 }  // namespace tissue_contact

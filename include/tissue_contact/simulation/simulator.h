@@ -3,6 +3,7 @@
 /// ROS.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -79,6 +80,9 @@ class Simulator {
   /// The contact problem of the last step and its answer, e.g. for writeContactProblem().
   const ContactProblem& lastProblem() const;
   const ContactSolution& lastSolution() const;
+
+  /// Called after every implicit step (null: nobody), when the accessors tell of that step.
+  void setStepObserver(std::function<void()> observer);
 
   /// Bytes held by the solver.
   ContactSolver::Memory solverMemory() const;
