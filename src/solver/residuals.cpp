@@ -35,10 +35,6 @@ double momentumResidual(const ContactProblem& problem, const ContactSolution& so
   return scale == 0.0 ? 0.0 : std::sqrt(defect / scale);
 }
 
-Vector2 inLawAxes(const CoulombLaw& law, const Vector2& t) {
-  return {law.axis.dot(t), law.axis.x() * t.y() - law.axis.y() * t.x()};
-}
-
 /// How far friction is beyond what the contact's law allows, N; negative inside.
 double coneViolation(const ContactRow& row, ContactState state, const Vector3& force) {
   const bool kinetic = state != ContactState::kStatic || row.was_sliding;
@@ -47,18 +43,13 @@ double coneViolation(const ContactRow& row, ContactState state, const Vector3& f
     return friction.norm() - (kinetic ? row.law.mu_kinetic : row.law.mu_static) * force[0];
   }
   if (friction.isZero(0.0)) return 0.0;
-  const double limit_share =
-      row.law.anisotropic->use(inLawAxes(row.law, friction), kinetic) / (kinetic ? row.law.kinetic_factor : 1.0);
-  return friction.norm() - (limit_share > 0.0 ? friction.norm() / limit_share : 0.0) * force[0];
+  return friction.norm() * (1.0 - force[0] / frictionUse(row.law, friction, kinetic));
 }
 
 /// Angle between the friction force and the one its law asks for at this sliding, rad.
 double kineticAngle(const CoulombLaw& law, const Vector2& friction, const Vector2& sliding) {
-  const Vector2 asked = law.anisotropic == nullptr
-                            ? Vector2(-sliding)
-                            : law.anisotropic->slidingForce(inLawAxes(law, sliding).normalized());
-  const Vector2 found = law.anisotropic == nullptr ? friction : inLawAxes(law, friction);
-  return std::abs(std::atan2(found.x() * asked.y() - found.y() * asked.x(), found.dot(asked)));
+  const Vector2 asked = law.anisotropic == nullptr ? Vector2(-sliding) : kineticFriction(law, sliding.normalized());
+  return std::abs(std::atan2(friction.x() * asked.y() - friction.y() * asked.x(), friction.dot(asked)));
 }
 
 }  // namespace
