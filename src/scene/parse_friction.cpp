@@ -25,6 +25,7 @@ constexpr std::pair<const char*, Law::Kind> kLaws[] = {{"isotropic", Law::Kind::
 template <typename Element>
 std::vector<std::string> namesOf(const std::vector<Element>& list) {
   std::vector<std::string> names;
+  names.reserve(list.size());
   for (const Element& element : list) names.push_back(element.name);
   return names;
 }
@@ -50,6 +51,7 @@ std::pair<std::string, std::string> unordered(const std::string& a, const std::s
 
 std::vector<double> numbers(const std::vector<YamlCursor>& list, const Range& range) {
   std::vector<double> values;
+  values.reserve(list.size());
   for (const YamlCursor& element : list) values.push_back(element.number(range));
   return values;
 }
