@@ -11,19 +11,10 @@ int BlockMatrix::find(int row, int column) const {
   return it != last && *it == column ? static_cast<int>(it - columns.begin()) : -1;
 }
 
-BlockMatrix BlockMatrix::forTetrahedra(const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed) {
-  const int nodes = static_cast<int>(fixed.size());
-  std::vector<std::vector<int>> neighbours(nodes);
-  for (const Tetrahedron& tet : tetrahedra) {
-    for (const int a : tet) {
-      for (const int b : tet) {
-        if (a != b && !fixed[a] && !fixed[b]) neighbours[a].push_back(b);
-      }
-    }
-  }
+BlockMatrix BlockMatrix::fromNeighbours(std::vector<std::vector<int>>& neighbours) {
   BlockMatrix matrix;
-  matrix.diagonal.resize(nodes);
-  matrix.row_start.reserve(nodes + 1);
+  matrix.diagonal.resize(neighbours.size());
+  matrix.row_start.reserve(neighbours.size() + 1);
   matrix.row_start.push_back(0);
   for (std::vector<int>& row : neighbours) {
     std::sort(row.begin(), row.end());
@@ -39,6 +30,11 @@ BlockMatrix BlockMatrix::forTetrahedra(const std::vector<Tetrahedron>& tetrahedr
 void BlockMatrix::setZero() {
   std::fill(diagonal.begin(), diagonal.end(), Matrix3::Zero());
   std::fill(values.begin(), values.end(), Matrix3::Zero());
+}
+
+void BlockMatrix::copyBlocks(const BlockMatrix& from) {
+  std::copy(from.diagonal.begin(), from.diagonal.end(), diagonal.begin());
+  std::copy(from.values.begin(), from.values.end(), values.begin());
 }
 
 }  // namespace tissue_contact

@@ -1,67 +1,19 @@
 #include "element_kernel.h"
 
-#include <cstdint>
-#include <cstring>
-
 #include "tissue_contact/tissue/tet_elasticity.h"
-
-// One build of the kernel for AVX2 and one for any processor, chosen when the library is loaded.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define TISSUE_CONTACT_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define TISSUE_CONTACT_CLONES
-#endif
-#define TISSUE_CONTACT_INLINE inline __attribute__((always_inline))
 
 namespace tissue_contact {
 namespace {
 
-using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
-using Mask = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
-
-/// Column-major, as Eigen: element (r, c) is m[r + 3 c].
-struct LaneMatrix {
-  Lanes m[9];
-};
 struct LaneQuaternion {
   Lanes w, x, y, z;
 };
-
-TISSUE_CONTACT_INLINE void load(const std::array<double, kLanes>& from, Lanes& to) {
-  std::memcpy(&to, from.data(), sizeof(Lanes));
-}
-TISSUE_CONTACT_INLINE void store(const Lanes& from, std::array<double, kLanes>& to) {
-  std::memcpy(to.data(), &from, sizeof(Lanes));
-}
-TISSUE_CONTACT_INLINE bool any(const Mask& mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
 
 TISSUE_CONTACT_INLINE void loadQuaternion(const RotationBatch& from, LaneQuaternion& q) {
   load(from[0], q.w);
   load(from[1], q.x);
   load(from[2], q.y);
   load(from[3], q.z);
-}
-
-/// F = D D_rest^-1.
-TISSUE_CONTACT_INLINE void deformationGradients(const ElementBatch& batch, const double* x, LaneMatrix& F) {
-  std::array<std::array<double, kLanes>, 9> gathered;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const Tetrahedron& nodes = batch.nodes[lane];
-    const double* const x0 = x + 3 * static_cast<std::ptrdiff_t>(nodes[0]);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double* const xc = x + 3 * static_cast<std::ptrdiff_t>(nodes[c + 1]);
-      for (std::size_t r = 0; r < 3; ++r) gathered[r + 3 * c][lane] = xc[r] - x0[r];
-    }
-  }
-  Lanes D[9];
-  for (int i = 0; i < 9; ++i) load(gathered[i], D[i]);
-  for (std::size_t c = 0; c < 3; ++c) {
-    Lanes a, b, d;
-    load(batch.rest_inverse[3 * c], a);
-    load(batch.rest_inverse[3 * c + 1], b);
-    load(batch.rest_inverse[3 * c + 2], d);
-    for (std::size_t r = 0; r < 3; ++r) F.m[r + 3 * c] = D[r] * a + D[r + 3] * b + D[r + 6] * d;
-  }
 }
 
 /// Rotation matrix of a quaternion of any length: exactly orthonormal up to round-off.
@@ -153,14 +105,15 @@ TISSUE_CONTACT_INLINE void updateRotation(const LaneMatrix& F, LaneQuaternion& q
   rotateBack(R, F, S);
 }
 
-/// Forces -V P grad N of stress P = 2 mu e + lambda tr(e) I, turned by R when there is one, added to the nodes.
-TISSUE_CONTACT_INLINE void addForces(const ElementBatch& batch, const KernelMaterial& material, const LaneMatrix* R,
-                                     const LaneMatrix& S, double* forces) {
+/// Adds the forces of stress P = 2 mu e + lambda tr(e) I, turned by R when there is one.
+template <typename Value>
+TISSUE_CONTACT_INLINE void addForces(const ElementBatch& batch, const Value& lambda, const Value& mu,
+                                     const LaneMatrix* R, const LaneMatrix& S, double* forces) {
   LaneMatrix P;
-  const Lanes pressure = material.lame_lambda * (S.m[0] + S.m[4] + S.m[8] - 3.0);
+  const Lanes pressure = lambda * (S.m[0] + S.m[4] + S.m[8] - 3.0);
   for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t r = 0; r < 3; ++r) P.m[r + 3 * c] = material.lame_mu * (S.m[r + 3 * c] + S.m[c + 3 * r]);
-    P.m[4 * c] += pressure - 2.0 * material.lame_mu;
+    for (std::size_t r = 0; r < 3; ++r) P.m[r + 3 * c] = mu * (S.m[r + 3 * c] + S.m[c + 3 * r]);
+    P.m[4 * c] += pressure - 2.0 * mu;
   }
   LaneMatrix turned;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -170,29 +123,7 @@ TISSUE_CONTACT_INLINE void addForces(const ElementBatch& batch, const KernelMate
                                 : R->m[r] * P.m[3 * c] + R->m[r + 3] * P.m[3 * c + 1] + R->m[r + 6] * P.m[3 * c + 2];
     }
   }
-  Lanes volume;
-  load(batch.volume, volume);
-  Lanes H[9];
-  for (std::size_t node = 0; node < 3; ++node) {
-    Lanes g0, g1, g2;  // grad N of node + 1: row of D_rest^-1
-    load(batch.rest_inverse[node], g0);
-    load(batch.rest_inverse[node + 3], g1);
-    load(batch.rest_inverse[node + 6], g2);
-    for (std::size_t r = 0; r < 3; ++r) {
-      H[r + 3 * node] = -volume * (turned.m[r] * g0 + turned.m[r + 3] * g1 + turned.m[r + 6] * g2);
-    }
-  }
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const Tetrahedron& nodes = batch.nodes[lane];
-    double* const f0 = forces + 3 * static_cast<std::ptrdiff_t>(nodes[0]);
-    for (std::size_t node = 0; node < 3; ++node) {
-      double* const f = forces + 3 * static_cast<std::ptrdiff_t>(nodes[node + 1]);
-      for (int r = 0; r < 3; ++r) {
-        f[r] += H[r + 3 * node][lane];
-        f0[r] -= H[r + 3 * node][lane];
-      }
-    }
-  }
+  addStressForces(batch, turned, forces);
 }
 
 /// |vec(q conj(t))| = sin(angle/2) |q| |t|.
@@ -202,26 +133,25 @@ TISSUE_CONTACT_INLINE unsigned char turnedLanes(const LaneQuaternion& q, const L
   const Lanes z = q.z * t.w - q.w * t.z - q.x * t.y + q.y * t.x;
   const Lanes q_squared = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
   const Lanes t_squared = t.w * t.w + t.x * t.x + t.y * t.y + t.z * t.z;
-  const Mask turned = x * x + y * y + z * z > 0.25 * angle * angle * q_squared * t_squared;
-  unsigned char bits = 0;
-  for (int lane = 0; lane < kLanes; ++lane) bits |= static_cast<unsigned char>(turned[lane] != 0 ? 1u << lane : 0u);
-  return bits;
+  return bits(x * x + y * y + z * z > 0.25 * angle * angle * q_squared * t_squared);
 }
 
-}  // namespace
-
-TISSUE_CONTACT_CLONES
-void addCorotationalForces(const std::vector<ElementBatch>& batches, const KernelMaterial& material,
-                           double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
-                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces) {
+template <typename Material>
+TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches, const Material& material,
+                                        double tangent_angle, const double* x,
+                                        const std::vector<RotationBatch>& tangents,
+                                        std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
+                                        double* forces) {
   for (std::size_t b = 0; b < batches.size(); ++b) {
     LaneMatrix F, R, S;
     LaneQuaternion q, t;
+    typename Material::Value lambda, mu;
     deformationGradients(batches[b], x, F);
     loadQuaternion(rotations[b], q);
     loadQuaternion(tangents[b], t);
     updateRotation(F, q, R, S);
-    addForces(batches[b], material, &R, S, forces);
+    material.get(b, lambda, mu);
+    addForces(batches[b], lambda, mu, &R, S, forces);
     store(q.w, rotations[b][0]);
     store(q.x, rotations[b][1]);
     store(q.y, rotations[b][2]);
@@ -230,14 +160,44 @@ void addCorotationalForces(const std::vector<ElementBatch>& batches, const Kerne
   }
 }
 
-TISSUE_CONTACT_CLONES
-void addLinearForces(const std::vector<ElementBatch>& batches, const KernelMaterial& material, const double* x,
-                     double* forces) {
-  for (const ElementBatch& batch : batches) {
+template <typename Material>
+TISSUE_CONTACT_INLINE void linear(const std::vector<ElementBatch>& batches, const Material& material, const double* x,
+                                  double* forces) {
+  for (std::size_t b = 0; b < batches.size(); ++b) {
     LaneMatrix F;
-    deformationGradients(batch, x, F);
-    addForces(batch, material, nullptr, F, forces);
+    typename Material::Value lambda, mu;
+    deformationGradients(batches[b], x, F);
+    material.get(b, lambda, mu);
+    addForces(batches[b], lambda, mu, nullptr, F, forces);
   }
+}
+
+}  // namespace
+
+TISSUE_CONTACT_CLONES
+void addCorotationalForces(const std::vector<ElementBatch>& batches, const LameParameters& material,
+                           double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
+                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces) {
+  corotational(batches, UniformMaterial{material}, tangent_angle, x, tangents, rotations, turned, forces);
+}
+
+TISSUE_CONTACT_CLONES
+void addCorotationalForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
+                           double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
+                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces) {
+  corotational(batches, VaryingMaterial{materials}, tangent_angle, x, tangents, rotations, turned, forces);
+}
+
+TISSUE_CONTACT_CLONES
+void addLinearForces(const std::vector<ElementBatch>& batches, const LameParameters& material, const double* x,
+                     double* forces) {
+  linear(batches, UniformMaterial{material}, x, forces);
+}
+
+TISSUE_CONTACT_CLONES
+void addLinearForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
+                     const double* x, double* forces) {
+  linear(batches, VaryingMaterial{materials}, x, forces);
 }
 
 }  // namespace tissue_contact

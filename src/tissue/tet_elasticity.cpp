@@ -1,11 +1,9 @@
 #include "tissue_contact/tissue/tet_elasticity.h"
 
-#include <Eigen/LU>
 #include <Eigen/SVD>
-#include <cmath>
 
 #include "element_kernel.h"
-#include "tissue_contact/core/check.h"
+#include "tet_elements.h"
 
 namespace tissue_contact {
 namespace {
@@ -15,14 +13,6 @@ Quaternion rotationBySvd(const Matrix3& F) {
   Matrix3 U = svd.matrixU();
   if ((U * svd.matrixV().transpose()).determinant() < 0.0) U.col(2) = -U.col(2);
   return Quaternion(U * svd.matrixV().transpose());
-}
-
-/// Gradients of the four shape functions, columns, 1/m.
-Eigen::Matrix<double, 3, 4> shapeGradients(const Matrix3& rest_inverse) {
-  Eigen::Matrix<double, 3, 4> gradients;
-  gradients.rightCols<3>() = rest_inverse.transpose();
-  gradients.col(0) = -gradients.rightCols<3>().rowwise().sum();
-  return gradients;
 }
 
 }  // namespace
@@ -64,77 +54,36 @@ Quaternion nearestRotation(const Matrix3& F, const Quaternion& guess) {
 }
 
 TetElasticity::TetElasticity(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
-                             const std::vector<bool>& fixed, const MaterialDescription& material)
-    : corotational_(material.model == ElasticModel::kCorotational) {
-  const double E = requirePositive("youngs_modulus_pa", material.youngs_modulus_pa, "Pa");
-  const double nu = requireInside("poissons_ratio", material.poissons_ratio, -1.0, 0.5);
-  lame_lambda_ = E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
-  lame_mu_ = E / (2.0 * (1.0 + nu));
-  pattern_ = BlockMatrix::forTetrahedra(tetrahedra, fixed);
-  elements_.reserve(tetrahedra.size());
-  for (const Tetrahedron& tet : tetrahedra) addElement(rest, tet, fixed);
-  fillBatches();
-}
+                             const std::vector<bool>& fixed, const ElementMaterials& materials)
+    : corotational_(materials.materials.at(0).model == ElasticModel::kCorotational),
+      tets_(std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, lameParameters)) {}
 
 TetElasticity::~TetElasticity() = default;
-
-void TetElasticity::addElement(const NodalVectors& rest, const Tetrahedron& tet, const std::vector<bool>& fixed) {
-  Element element;
-  element.nodes = tet;
-  Matrix3 D;
-  for (int i = 0; i < 3; ++i) D.col(i) = rest.col(tet[i + 1]) - rest.col(tet[0]);
-  element.rest_inverse = D.inverse();
-  element.volume = D.determinant() / 6.0;
-  for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j) {
-      element.at[i][j] = i == j ? (fixed[tet[i]] ? -1 : tet[i]) : pattern_.find(tet[i], tet[j]);
-    }
-  }
-  elements_.push_back(element);
-}
-
-void TetElasticity::fillBatches() {
-  batches_.resize((elements_.size() + kLanes - 1) / kLanes);
-  for (std::size_t slot = 0; slot < batches_.size() * kLanes; ++slot) {
-    const bool used = slot < elements_.size();
-    const Element& element = used ? elements_[slot] : elements_.back();
-    ElementBatch& batch = batches_[slot / kLanes];
-    const std::size_t lane = slot % kLanes;
-    for (std::size_t i = 0; i < 9; ++i) batch.rest_inverse[i][lane] = element.rest_inverse.data()[i];
-    batch.volume[lane] = used ? element.volume : 0.0;
-    batch.nodes[lane] = element.nodes;
-  }
-}
 
 std::unique_ptr<Elasticity::State> TetElasticity::makeState() const {
   RotationBatch identity{};
   identity[0].fill(1.0);
-  auto result = std::make_unique<RotationState>();
-  RotationState& state = *result;
-  state.rotations.assign(batches_.size(), identity);
-  state.tangent_rotations = state.rotations;
-  state.turned.assign(batches_.size(), 0);
-  state.stiffness = pattern_;
-  for (const Element& element : elements_) addStiffness(element, Quaternion::Identity(), 1.0, state.stiffness);
-  return result;
+  auto state = std::make_unique<RotationState>();
+  state->rotations.assign(tets_->batches.size(), identity);
+  state->tangent_rotations = state->rotations;
+  state->turned.assign(tets_->batches.size(), 0);
+  tets_->prepare(*state);
+  for (const TetElement& element : tets_->elements) addStiffness(element, Quaternion::Identity(), 1.0, *state);
+  return state;
 }
 
-void TetElasticity::addStiffness(const Element& element, const Quaternion& rotation, double sign,
-                                 BlockMatrix& K) const {
+void TetElasticity::addStiffness(const TetElement& element, const Quaternion& rotation, double sign, State& state) {
   const Eigen::Matrix<double, 3, 4> c = rotation.toRotationMatrix() * shapeGradients(element.rest_inverse);
-  const double lambda = sign * element.volume * lame_lambda_;
-  const double mu = sign * element.volume * lame_mu_;
-  for (int i = 0; i < 4; ++i) {
-    for (int j = i; j < 4; ++j) {
-      if (element.at[i][j] < 0) continue;
+  const double lambda = sign * element.volume * element.lame.lambda;
+  const double mu = sign * element.volume * element.lame.mu;
+  const bool damps = state.damping.rows() > 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = i; j < 4; ++j) {
+      if (element.slots[i][j] < 0) continue;
       Matrix3 block = (lambda * c.col(i)) * c.col(j).transpose() + (mu * c.col(j)) * c.col(i).transpose();
       block.diagonal().array() += mu * c.col(i).dot(c.col(j));
-      if (i == j) {
-        K.diagonal[element.at[i][i]] += block;
-      } else {
-        K.values[element.at[i][j]] += block;
-        K.values[element.at[j][i]] += block.transpose();
-      }
+      addBlock(element.slots, i, j, block, state.stiffness);
+      if (damps) addBlock(element.slots, i, j, element.damping_s * block, state.damping);
     }
   }
 }
@@ -146,9 +95,9 @@ void TetElasticity::refreshStiffness(std::size_t batch, RotationState& state) co
   };
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::size_t e = batch * kLanes + lane;
-    if ((state.turned[batch] >> lane & 1) == 0 || e >= elements_.size()) continue;
-    addStiffness(elements_[e], rotation(state.tangent_rotations, lane), -1.0, state.stiffness);
-    addStiffness(elements_[e], rotation(state.rotations, lane), 1.0, state.stiffness);
+    if ((state.turned[batch] >> lane & 1) == 0 || e >= tets_->elements.size()) continue;
+    addStiffness(tets_->elements[e], rotation(state.tangent_rotations, lane), -1.0, state);
+    addStiffness(tets_->elements[e], rotation(state.rotations, lane), 1.0, state);
     for (std::size_t i = 0; i < 4; ++i) state.tangent_rotations[batch][i][lane] = state.rotations[batch][i][lane];
   }
 }
@@ -156,31 +105,33 @@ void TetElasticity::refreshStiffness(std::size_t batch, RotationState& state) co
 void TetElasticity::update(const NodalVectors& x, State& any_state, NodalVectors& forces) const {
   auto& state = static_cast<RotationState&>(any_state);  // made by makeState()
   forces.setZero();
-  const KernelMaterial material{lame_lambda_, lame_mu_};
+  const bool uniform = tets_->batch_materials.empty();
   if (!corotational_) {
-    addLinearForces(batches_, material, x.data(), forces.data());
+    uniform ? addLinearForces(tets_->batches, tets_->material, x.data(), forces.data())
+            : addLinearForces(tets_->batches, tets_->batch_materials, x.data(), forces.data());
     return;
   }
-  addCorotationalForces(batches_, material, kTangentAngle, x.data(), state.tangent_rotations, state.rotations,
-                        state.turned, forces.data());
-  for (std::size_t batch = 0; batch < batches_.size(); ++batch) {
+  const auto rotate = [&](const auto& material) {
+    addCorotationalForces(tets_->batches, material, kTangentAngle, x.data(), state.tangent_rotations, state.rotations,
+                          state.turned, forces.data());
+  };
+  uniform ? rotate(tets_->material) : rotate(tets_->batch_materials);
+  for (std::size_t batch = 0; batch < tets_->batches.size(); ++batch) {
     if (state.turned[batch] != 0) refreshStiffness(batch, state);
   }
 }
 
 double TetElasticity::energy(const NodalVectors& x) const {
   double energy = 0.0;
-  for (const Element& element : elements_) {
-    Matrix3 D;
-    for (int i = 0; i < 3; ++i) D.col(i) = x.col(element.nodes[i + 1]) - x.col(element.nodes[0]);
-    const Matrix3 F = D * element.rest_inverse;
+  for (const TetElement& element : tets_->elements) {
+    const Matrix3 F = deformationGradient(element, x);
     const Matrix3 R =
         corotational_ ? nearestRotation(F, Quaternion::Identity()).toRotationMatrix() : Matrix3(Matrix3::Identity());
     const Matrix3 S = R.transpose() * F;
     Matrix3 strain = 0.5 * (S + S.transpose());
     strain.diagonal().array() -= 1.0;
     const double trace = strain.trace();
-    energy += element.volume * (lame_mu_ * strain.squaredNorm() + 0.5 * lame_lambda_ * trace * trace);
+    energy += element.volume * (element.lame.mu * strain.squaredNorm() + 0.5 * element.lame.lambda * trace * trace);
   }
   return energy;
 }

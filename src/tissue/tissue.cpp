@@ -1,60 +1,110 @@
 #include "tissue_contact/tissue/tissue.h"
 
+#include <algorithm>
+#include <stdexcept>
+
+#include "placed_mesh.h"
 #include "tissue_contact/core/check.h"
-#include "tissue_contact/tissue/tet_elasticity.h"
+#include "tissue_contact/tissue/make_elasticity.h"
+#include "tissue_contact/tissue/membrane.h"
+#include "tissue_contact/tissue/sheet_mesh.h"
+#include "tissue_contact/tissue/tet_mesh.h"
 
 namespace tissue_contact {
-
-struct Tissue::PlacedMesh {
-  TetMesh mesh;  // in the world frame
-  std::vector<bool> fixed;
-};
-
 namespace {
 
-VectorX lumpedMasses(const TetMesh& mesh, double density) {
-  VectorX masses = VectorX::Zero(mesh.positions.cols());
-  for (const Tetrahedron& tet : mesh.tetrahedra) {
-    const double quarter = 0.25 * density * signedVolume(mesh.positions, tet);
-    for (const int node : tet) masses[node] += quarter;
+void checkModel(const TissueDescription& description, bool is_volume) {
+  const ElasticModel model = description.material.model;
+  if ((model == ElasticModel::kMembrane) == is_volume) {
+    const std::string fits = is_volume
+                                 ? "'; a block or mesh is a volume and takes linear, corotational, neo_hookean or "
+                                   "mass_spring: change the model, or give a sheet or shell"
+                                 : "'; a sheet or shell takes membrane: change the model, or give a block or mesh";
+    throw std::invalid_argument(tissueLabel(description) + ": model is '" + elasticModelName(model) + fits);
+  }
+  for (const TissueRegion& region : description.regions) {
+    if (region.material.model == model) continue;
+    throw std::invalid_argument(tissueLabel(description) + ", region '" + region.name + "': model is '" +
+                                elasticModelName(region.material.model) + "'; it must be that of the tissue, '" +
+                                elasticModelName(model) + "': give parts of different models as tissues of their own");
+  }
+}
+
+void checkNumbers(const MaterialDescription& material, double damping_stiffness_s, const std::string& owner) {
+  checkMaterial(material, owner);
+  requirePositive(owner + "density_kg_per_m3", material.density_kg_per_m3, "kg/m^3");
+  requireNonNegative(owner + "damping stiffness_s", damping_stiffness_s, "s");
+}
+
+void checkDescription(const TissueDescription& description, bool is_volume) {
+  checkModel(description, is_volume);
+  checkNumbers(description.material, description.damping.stiffness_s, tissueLabel(description) + ": ");
+  requireNonNegative(tissueLabel(description) + ": damping mass_per_s", description.damping.mass_per_s, "1/s");
+  for (const TissueRegion& region : description.regions) {
+    checkNumbers(region.material, region.damping_stiffness_s,
+                 tissueLabel(description) + ", region '" + region.name + "': ");
+  }
+}
+
+/// The tissue's own material first, then its regions'.
+ElementMaterials elementMaterials(const TissueDescription& description, const PlacedMesh& placed) {
+  ElementMaterials materials(description.material);
+  materials.damping_s.push_back(description.damping.stiffness_s);
+  for (const TissueRegion& region : description.regions) {
+    materials.materials.push_back(region.material);
+    materials.damping_s.push_back(region.damping_stiffness_s);
+  }
+  for (const int region : placed.element_regions) materials.of_element.push_back(region + 1);
+  return materials;
+}
+
+/// If all elements damp alike, takes that out of the materials and returns it; else 0.
+double takeUniformDamping(std::size_t elements, ElementMaterials& materials) {
+  const double first = materials.dampingOf(0);
+  for (std::size_t e = 1; e < elements; ++e) {
+    if (materials.dampingOf(e) != first) return 0.0;
+  }
+  materials.damping_s.clear();
+  return first;
+}
+
+VectorX lumpedMasses(const PlacedMesh& placed, const ElementMaterials& materials) {
+  VectorX masses = VectorX::Zero(placed.rest.cols());
+  for (std::size_t e = 0; e < placed.elementCount(); ++e) {
+    const double density = materials.of(e).density_kg_per_m3;
+    if (placed.isVolume()) {
+      const double quarter = 0.25 * density * signedVolume(placed.rest, placed.tetrahedra[e]);
+      for (const int node : placed.tetrahedra[e]) masses[node] += quarter;
+    } else {
+      const double third = density * placed.thickness * triangleArea(placed.rest, placed.surface[e]) / 3.0;
+      for (const int node : placed.surface[e]) masses[node] += third;
+    }
   }
   return masses;
 }
 
 }  // namespace
 
-Tissue::PlacedMesh Tissue::placeMesh(const TissueDescription& description, const Pose& X_WT) {
-  const std::string source = "tissue '" + description.name + "'";
-  PlacedMesh placed;
-  if (const auto* block = std::get_if<BlockDescription>(&description.geometry)) {
-    placed.mesh = makeBlockMesh(*block);
-    checkTetMesh(placed.mesh, source);
-  } else {
-    const auto& file = std::get<MeshDescription>(description.geometry);
-    placed.mesh = loadTetMesh(file);
-    checkTetMesh(placed.mesh, source + ", mesh file '" + file.file + "'");
-  }
-  placed.fixed = fixedNodes(placed.mesh.positions, description.fixed, source);  // regions are in the tissue frame
-  placed.mesh.positions = (X_WT.linear() * placed.mesh.positions).colwise() + X_WT.translation();
-  return placed;
-}
-
 Tissue::Tissue(const TissueDescription& description, const Pose& X_WT)
     : Tissue(description, placeMesh(description, X_WT)) {}
 
-Tissue::Tissue(const TissueDescription& description, const PlacedMesh& placed)
-    : name_(description.name),
-      rest_(placed.mesh.positions),
-      tetrahedra_(placed.mesh.tetrahedra),
-      surface_(boundaryTriangles(placed.mesh.tetrahedra)),
-      fixed_(placed.fixed),
-      masses_(lumpedMasses(placed.mesh, requirePositive("tissue '" + description.name + "': density_kg_per_m3",
-                                                        description.material.density_kg_per_m3, "kg/m^3"))),
-      damping_(description.damping),
-      elasticity_(std::make_unique<TetElasticity>(placed.mesh.positions, placed.mesh.tetrahedra, placed.fixed,
-                                                  description.material)) {
-  requireNonNegative("tissue '" + name_ + "': damping mass_per_s", damping_.mass_per_s, "1/s");
-  requireNonNegative("tissue '" + name_ + "': damping stiffness_s", damping_.stiffness_s, "s");
+Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
+    : name_(description.name), damping_(description.damping), thickness_(placed.thickness) {
+  checkDescription(description, placed.isVolume());
+  ElementMaterials materials = elementMaterials(description, placed);
+  damping_.stiffness_s = takeUniformDamping(placed.elementCount(), materials);
+  masses_ = lumpedMasses(placed, materials);
+  if (placed.isVolume()) {
+    elasticity_ = makeVolumeElasticity(placed.rest, placed.tetrahedra, placed.fixed, materials);
+  } else {
+    elasticity_ = std::make_unique<Membrane>(placed.rest, placed.surface, placed.fixed, placed.thickness, materials);
+  }
+  rest_ = std::move(placed.rest);
+  tetrahedra_ = std::move(placed.tetrahedra);
+  surface_ = std::move(placed.surface);
+  fixed_ = std::move(placed.fixed);
+  surface_regions_ = std::move(placed.surface_regions);
+  surface_fibres_ = std::move(placed.surface_fibres);
 }
 
 }  // namespace tissue_contact

@@ -161,7 +161,7 @@ TEST(Elasticity, RejectsMaterialsOutOfRange) {
   const TetMesh mesh = makeBlockMesh(block);
   const std::vector<bool> free(mesh.positions.cols(), false);
   const auto make = [&](double E, double nu) {
-    return TetElasticity(mesh.positions, mesh.tetrahedra, free, {ElasticModel::kLinear, E, nu, 1000.0});
+    return TetElasticity(mesh.positions, mesh.tetrahedra, free, MaterialDescription{ElasticModel::kLinear, E, nu, 1000.0});
   };
   EXPECT_THROW(make(0.0, 0.3), std::invalid_argument);
   EXPECT_THROW(make(std::nan(""), 0.3), std::invalid_argument);

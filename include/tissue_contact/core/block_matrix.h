@@ -20,10 +20,28 @@ struct BlockMatrix {
   /// Index into `values` of block (row, column), -1 when it is not stored.
   int find(int row, int column) const;
 
-  /// Zero matrix with a block for every pair of free nodes that share a tetrahedron. Fixed nodes get no off-diagonal.
-  static BlockMatrix forTetrahedra(const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed);
+  /// Zero matrix with a block for every pair of free nodes that share an element (a range of node indices). Fixed nodes
+  /// get no off-diagonal.
+  template <typename Elements>
+  static BlockMatrix forElements(const Elements& elements, const std::vector<bool>& fixed) {
+    std::vector<std::vector<int>> neighbours(fixed.size());
+    for (const auto& element : elements) {
+      for (const int a : element) {
+        for (const int b : element) {
+          if (a != b && !fixed[a] && !fixed[b]) neighbours[a].push_back(b);
+        }
+      }
+    }
+    return fromNeighbours(neighbours);
+  }
+  static BlockMatrix forTetrahedra(const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed) {
+    return forElements(tetrahedra, fixed);
+  }
 
   void setZero();
+
+  /// Takes over the blocks of a matrix of the same pattern. No allocation.
+  void copyBlocks(const BlockMatrix& from);
 
   /// Sum over off-diagonal blocks of row `i`: sum_j values * v_j.
   Vector3 offDiagonalProduct(int i, const NodalVectors& v) const {
@@ -38,6 +56,10 @@ struct BlockMatrix {
     }
     return {a, b, c};
   }
+
+ private:
+  /// @param neighbours of each node; may name a node twice. Sorted on the way.
+  static BlockMatrix fromNeighbours(std::vector<std::vector<int>>& neighbours);
 };
 
 }  // namespace tissue_contact

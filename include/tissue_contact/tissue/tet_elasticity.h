@@ -10,16 +10,18 @@
 /// (Etzmuss, Keckeisen, Strasser, PG 2003).
 #pragma once
 
+#include <array>
+#include <memory>
 #include <vector>
 
-#include "tissue_contact/core/block_matrix.h"
 #include "tissue_contact/core/types.h"
-#include "tissue_contact/scene/scene.h"
 #include "tissue_contact/tissue/elasticity.h"
+#include "tissue_contact/tissue/element_materials.h"
 
 namespace tissue_contact {
 
-struct ElementBatch;
+struct TetElement;
+struct TetElements;
 
 /// Model: const after construction. Thread-safe for different states.
 class TetElasticity : public Elasticity {
@@ -33,7 +35,7 @@ class TetElasticity : public Elasticity {
 
   /// @param rest 3 x n, m. @throws std::invalid_argument for a material out of range.
   TetElasticity(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
-                const MaterialDescription& material);
+                const ElementMaterials& materials);
   ~TetElasticity() override;
 
   std::unique_ptr<State> makeState() const override;
@@ -50,25 +52,11 @@ class TetElasticity : public Elasticity {
   static constexpr double kTangentAngle = 0.01;
 
  private:
-  struct Element {
-    Tetrahedron nodes;
-    Matrix3 rest_inverse;  ///< D_rest^-1, 1/m; its rows are grad N_1..N_3
-    double volume;         ///< m^3
-    std::array<std::array<int, 4>, 4>
-        at;  ///< where block (i, j) is in K: index into values, the node if i = j; -1: not stored
-  };
-
-  void addElement(const NodalVectors& rest, const Tetrahedron& tet, const std::vector<bool>& fixed);
-  void fillBatches();
-  void addStiffness(const Element& element, const Quaternion& rotation, double sign, BlockMatrix& K) const;
+  static void addStiffness(const TetElement& element, const Quaternion& rotation, double sign, State& state);
   void refreshStiffness(std::size_t batch, RotationState& state) const;
 
   bool corotational_;
-  double lame_lambda_;  ///< Pa
-  double lame_mu_;      ///< Pa
-  std::vector<Element> elements_;
-  std::vector<ElementBatch> batches_;  ///< the same elements, laid out for the force kernel
-  BlockMatrix pattern_;
+  std::unique_ptr<const TetElements> tets_;
 };
 
 /// Rotation nearest to F (polar factor; where F is inverted, the nearest proper rotation), starting from a guess.

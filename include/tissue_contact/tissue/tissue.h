@@ -1,5 +1,6 @@
 /// @file
-/// Room `tissue`: one tissue of a scene, placed in the world: mesh, surface, fixed nodes, regions, masses, elasticity.
+/// Room `tissue`: one tissue of a scene, placed in the world: mesh, surface, fixed nodes, regions, fibres, masses,
+/// elasticity.
 #pragma once
 
 #include <memory>
@@ -9,14 +10,18 @@
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/scene/scene.h"
 #include "tissue_contact/tissue/elasticity.h"
-#include "tissue_contact/tissue/tet_mesh.h"
 
 namespace tissue_contact {
+
+struct PlacedMesh;
 
 /// Const after construction.
 class Tissue {
  public:
-  /// @param X_WT pose of the tissue frame in the world (tf already looked up). @throws std::invalid_argument.
+  /// @param X_WT pose of the tissue frame in the world (tf already looked up).
+  /// @throws std::invalid_argument naming the tissue (and region) for: a bad mesh, a model that does not suit the
+  /// geometry or differs between regions, a material, damping or fibre direction out of range, a fixed region that holds
+  /// no node, a material region that holds no element.
   Tissue(const TissueDescription& description, const Pose& X_WT);
 
   const std::string& name() const { return name_; }
@@ -28,23 +33,23 @@ class Tissue {
   /// Thickness of a membrane, m: it can be touched from both sides, at half of it from its triangles. 0: a volume.
   double thickness() const { return thickness_; }
 
-  /// Per surface triangle: index into TissueDescription::regions, -1 where none. Empty: the tissue has no regions.
+  /// Per surface triangle: index into TissueDescription::regions (by the triangle's own centroid), -1 where none. Empty:
+  /// the tissue has no regions.
   const std::vector<int>& surfaceRegions() const { return surface_regions_; }
 
   /// Per surface triangle: the fibre direction at rest, projected into it, as coefficients over its edges (x1 - x0,
-  /// x2 - x0); applied to the deformed edges they give the carried direction. Empty: the tissue has no fibres.
+  /// x2 - x0); applied to the deformed edges they give the carried direction, of length 1 at rest. Zero where fibres run
+  /// across the triangle or there are none. Empty: the tissue has no fibres.
   const std::vector<Vector2>& surfaceFibres() const { return surface_fibres_; }
 
   const std::vector<bool>& fixed() const { return fixed_; }
-  const VectorX& nodeMasses() const { return masses_; }  ///< kg, lumped: a quarter of each tetrahedron's mass
+  const VectorX& nodeMasses() const { return masses_; }  ///< kg, lumped: each element's mass in equal parts
   /// Rayleigh damping; stiffness_s is 0 where regions differ in it, the elasticity's state then has a damping matrix.
   const DampingDescription& damping() const { return damping_; }
   const Elasticity& elasticity() const { return *elasticity_; }
 
  private:
-  struct PlacedMesh;
-  static PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT);
-  Tissue(const TissueDescription& description, const PlacedMesh& placed);
+  Tissue(const TissueDescription& description, PlacedMesh&& placed);
 
   std::string name_;
   NodalVectors rest_;

@@ -1,0 +1,130 @@
+/// @file
+/// Room `tissue`, private: four tetrahedra at a time: how they are laid out, and the parts that force kernels share.
+///
+/// Every lane does the same IEEE operations in the same order whatever the processor's vector width, so the bits do not
+/// depend on the machine.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/tissue/element_materials.h"
+
+// One build of the kernel for AVX2 and one for any processor, chosen when the library is loaded.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define TISSUE_CONTACT_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define TISSUE_CONTACT_CLONES
+#endif
+#define TISSUE_CONTACT_INLINE inline __attribute__((always_inline))
+
+namespace tissue_contact {
+
+constexpr int kLanes = 4;
+
+/// Four elements side by side; the last batch of a mesh repeats its last element in the lanes beyond `used`.
+struct ElementBatch {
+  std::array<std::array<double, kLanes>, 9> rest_inverse;  ///< D_rest^-1, column-major, 1/m
+  std::array<double, kLanes> volume;                       ///< m^3; 0 in unused lanes
+  std::array<Tetrahedron, kLanes> nodes;
+};
+
+/// Elastic parameters of four elements, Pa: Lame's, or the model's own in their place.
+struct BatchMaterial {
+  std::array<double, kLanes> lambda;
+  std::array<double, kLanes> mu;
+};
+
+using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
+using Mask = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+
+/// Column-major, as Eigen: element (r, c) is m[r + 3 c].
+struct LaneMatrix {
+  Lanes m[9];
+};
+TISSUE_CONTACT_INLINE void load(const std::array<double, kLanes>& from, Lanes& to) {
+  std::memcpy(&to, from.data(), sizeof(Lanes));
+}
+TISSUE_CONTACT_INLINE void store(const Lanes& from, std::array<double, kLanes>& to) {
+  std::memcpy(to.data(), &from, sizeof(Lanes));
+}
+TISSUE_CONTACT_INLINE bool any(const Mask& mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
+
+/// Bit `lane` set where the mask is.
+TISSUE_CONTACT_INLINE unsigned char bits(const Mask& mask) {
+  unsigned char set = 0;
+  for (int lane = 0; lane < kLanes; ++lane) set |= static_cast<unsigned char>(mask[lane] != 0 ? 1u << lane : 0u);
+  return set;
+}
+
+/// F = D D_rest^-1.
+TISSUE_CONTACT_INLINE void deformationGradients(const ElementBatch& batch, const double* x, LaneMatrix& F) {
+  std::array<std::array<double, kLanes>, 9> gathered;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Tetrahedron& nodes = batch.nodes[lane];
+    const double* const x0 = x + 3 * static_cast<std::ptrdiff_t>(nodes[0]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double* const xc = x + 3 * static_cast<std::ptrdiff_t>(nodes[c + 1]);
+      for (std::size_t r = 0; r < 3; ++r) gathered[r + 3 * c][lane] = xc[r] - x0[r];
+    }
+  }
+  Lanes D[9];
+  for (int i = 0; i < 9; ++i) load(gathered[i], D[i]);
+  for (std::size_t c = 0; c < 3; ++c) {
+    Lanes a, b, d;
+    load(batch.rest_inverse[3 * c], a);
+    load(batch.rest_inverse[3 * c + 1], b);
+    load(batch.rest_inverse[3 * c + 2], d);
+    for (std::size_t r = 0; r < 3; ++r) F.m[r + 3 * c] = D[r] * a + D[r + 3] * b + D[r + 6] * d;
+  }
+}
+
+/// The kernels are written once for both: one material in registers, or one to load per batch.
+struct UniformMaterial {
+  LameParameters material;
+  TISSUE_CONTACT_INLINE void get(std::size_t, double& lambda, double& mu) const {
+    lambda = material.lambda;
+    mu = material.mu;
+  }
+  using Value = double;
+};
+struct VaryingMaterial {
+  const std::vector<BatchMaterial>& materials;
+  TISSUE_CONTACT_INLINE void get(std::size_t batch, Lanes& lambda, Lanes& mu) const {
+    load(materials[batch].lambda, lambda);
+    load(materials[batch].mu, mu);
+  }
+  using Value = Lanes;
+};
+
+/// Forces -V P grad N of first Piola-Kirchhoff stress P, added to the nodes.
+TISSUE_CONTACT_INLINE void addStressForces(const ElementBatch& batch, const LaneMatrix& P, double* forces) {
+  Lanes volume;
+  load(batch.volume, volume);
+  Lanes H[9];
+  for (std::size_t node = 0; node < 3; ++node) {
+    Lanes g0, g1, g2;  // grad N of node + 1: row of D_rest^-1
+    load(batch.rest_inverse[node], g0);
+    load(batch.rest_inverse[node + 3], g1);
+    load(batch.rest_inverse[node + 6], g2);
+    for (std::size_t r = 0; r < 3; ++r) {
+      H[r + 3 * node] = -volume * (P.m[r] * g0 + P.m[r + 3] * g1 + P.m[r + 6] * g2);
+    }
+  }
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const Tetrahedron& nodes = batch.nodes[lane];
+    double* const f0 = forces + 3 * static_cast<std::ptrdiff_t>(nodes[0]);
+    for (std::size_t node = 0; node < 3; ++node) {
+      double* const f = forces + 3 * static_cast<std::ptrdiff_t>(nodes[node + 1]);
+      for (int r = 0; r < 3; ++r) {
+        f[r] += H[r + 3 * node][lane];
+        f0[r] -= H[r + 3 * node][lane];
+      }
+    }
+  }
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,175 @@
+#include "tissue_contact/tissue/neo_hookean.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "neo_hookean_kernel.h"
+#include "tet_elements.h"
+
+namespace tissue_contact {
+namespace {
+
+/// lambda and mu of the model from those of small strain. lambda > 0 for every Poisson's ratio above -1.
+LameParameters modelParameters(const MaterialDescription& material) {
+  const LameParameters lame = lameParameters(material);
+  return {lame.lambda + 5.0 / 6.0 * lame.mu, 4.0 / 3.0 * lame.mu};
+}
+
+// Squared Frobenius norm of F (3 at rest) beyond which an element is so stiff, as |F|^4, that taking its share out of
+// the stiffness again would leave round-off behind that others notice.
+constexpr double kLargeDeformation = 100.0;
+
+/// Second derivative of psi in the frames U, V of F = U diag(sigma) V', without its negative eigenvalues: with
+/// X = U' dF V, dP = U Y V', Y_ii = sum_l stretch_il X_ll and, for i != j, Y_ij = direct_ij X_ij + crossed_ij X_ji.
+struct SpectralTangent {
+  Matrix3 U, V;
+  Matrix3 stretch;
+  Matrix3 direct, crossed;  ///< symmetric, diagonals unused
+};
+
+Matrix3 withoutNegativeEigenvalues(const Matrix3& symmetric) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(symmetric);
+  if (eigen.eigenvalues()[0] >= 0.0) return symmetric;
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+SpectralTangent spectralTangent(const Matrix3& F, const LameParameters& material) {
+  const Eigen::JacobiSVD<Matrix3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  SpectralTangent tangent;
+  tangent.U = svd.matrixU();
+  tangent.V = svd.matrixV();
+  Vector3 sigma = svd.singularValues();
+  // J = product of sigma must carry the sign of det F, so both frames are made rotations.
+  if (tangent.U.determinant() < 0.0) {
+    tangent.U.col(2) = -tangent.U.col(2);
+    sigma[2] = -sigma[2];
+  }
+  if (tangent.V.determinant() < 0.0) {
+    tangent.V.col(2) = -tangent.V.col(2);
+    sigma[2] = -sigma[2];
+  }
+  const double I = sigma.squaredNorm();
+  const double along_F = material.mu - material.mu / (I + 1.0);
+  const double along_C = material.lambda * (sigma.prod() - 1.0) - 0.75 * material.mu;
+  const Vector3 cofactors(sigma[1] * sigma[2], sigma[2] * sigma[0], sigma[0] * sigma[1]);
+  tangent.stretch = 2.0 * material.mu / ((I + 1.0) * (I + 1.0)) * sigma * sigma.transpose() +
+                    material.lambda * cofactors * cofactors.transpose();
+  tangent.stretch.diagonal().array() += along_F;
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3;
+    const int j = (k + 2) % 3;
+    tangent.stretch(i, j) += along_C * sigma[k];
+    tangent.stretch(j, i) += along_C * sigma[k];
+    const double twist = std::max(0.0, along_F + along_C * sigma[k]);
+    const double flip = std::max(0.0, along_F - along_C * sigma[k]);
+    tangent.direct(i, j) = tangent.direct(j, i) = 0.5 * (flip + twist);
+    tangent.crossed(i, j) = tangent.crossed(j, i) = 0.5 * (flip - twist);
+  }
+  tangent.stretch = withoutNegativeEigenvalues(tangent.stretch);
+  return tangent;
+}
+
+void addStiffness(const TetElement& element, const Matrix3& F, double sign, Elasticity::State& state) {
+  const SpectralTangent tangent = spectralTangent(F, element.lame);
+  const Eigen::Matrix<double, 3, 4> b = tangent.V.transpose() * shapeGradients(element.rest_inverse);
+  const double volume = sign * element.volume;
+  const bool damps = state.damping.rows() > 0;
+  for (std::size_t n = 0; n < 4; ++n) {
+    for (std::size_t m = n; m < 4; ++m) {
+      if (element.slots[n][m] < 0) continue;
+      Matrix3 inner;
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        const int k = (i + 2) % 3;
+        inner(i, i) = tangent.stretch(i, i) * b(i, n) * b(i, m) + tangent.direct(i, j) * b(j, n) * b(j, m) +
+                      tangent.direct(i, k) * b(k, n) * b(k, m);
+        inner(i, j) = tangent.stretch(i, j) * b(i, n) * b(j, m) + tangent.crossed(i, j) * b(j, n) * b(i, m);
+        inner(j, i) = tangent.stretch(i, j) * b(j, n) * b(i, m) + tangent.crossed(i, j) * b(i, n) * b(j, m);
+      }
+      const Matrix3 block = volume * tangent.U * inner * tangent.U.transpose();
+      addBlock(element.slots, n, m, block, state.stiffness);
+      if (damps) addBlock(element.slots, n, m, element.damping_s * block, state.damping);
+    }
+  }
+}
+
+Matrix3 matrixInLane(const MatrixBatch& batch, std::size_t lane) {
+  Matrix3 matrix;
+  for (std::size_t i = 0; i < 9; ++i) matrix.data()[i] = batch[i][lane];
+  return matrix;
+}
+
+}  // namespace
+
+NeoHookean::NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
+                       const std::vector<bool>& fixed, const ElementMaterials& materials)
+    : tets_(std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, modelParameters)) {}
+
+NeoHookean::~NeoHookean() = default;
+
+std::unique_ptr<Elasticity::State> NeoHookean::makeState() const {
+  MatrixBatch identity{};
+  for (const std::size_t i : {0, 4, 8}) identity[i].fill(1.0);
+  auto state = std::make_unique<DeformationState>();
+  state->deformations.assign(tets_->batches.size(), identity);
+  state->tangent_deformations = state->deformations;
+  state->changed.assign(tets_->batches.size(), 0);
+  tets_->prepare(*state);
+  rebuildStiffness(*state);
+  return state;
+}
+
+void NeoHookean::rebuildStiffness(DeformationState& state) const {
+  state.stiffness.setZero();
+  state.damping.setZero();
+  for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
+    addStiffness(tets_->elements[e], matrixInLane(state.tangent_deformations[e / kLanes], e % kLanes), 1.0, state);
+  }
+}
+
+bool NeoHookean::refreshStiffness(std::size_t batch, DeformationState& state) const {
+  bool cancels = false;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const std::size_t e = batch * kLanes + lane;
+    if ((state.changed[batch] >> lane & 1) == 0 || e >= tets_->elements.size()) continue;
+    const Matrix3 before = matrixInLane(state.tangent_deformations[batch], lane);
+    cancels = cancels || before.squaredNorm() > kLargeDeformation;
+    addStiffness(tets_->elements[e], before, -1.0, state);
+    addStiffness(tets_->elements[e], matrixInLane(state.deformations[batch], lane), 1.0, state);
+    for (std::size_t i = 0; i < 9; ++i) state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];
+  }
+  return cancels;
+}
+
+void NeoHookean::update(const NodalVectors& x, State& any_state, NodalVectors& forces) const {
+  auto& state = static_cast<DeformationState&>(any_state);  // made by makeState()
+  forces.setZero();
+  const auto add = [&](const auto& material) {
+    addNeoHookeanForces(tets_->batches, material, kTangentChange, x.data(), state.tangent_deformations,
+                        state.deformations, state.changed, forces.data());
+  };
+  tets_->batch_materials.empty() ? add(tets_->material) : add(tets_->batch_materials);
+  bool cancels = false;
+  for (std::size_t batch = 0; batch < tets_->batches.size(); ++batch) {
+    if (state.changed[batch] != 0) cancels = refreshStiffness(batch, state) || cancels;
+  }
+  if (cancels) rebuildStiffness(state);
+}
+
+double NeoHookean::energy(const NodalVectors& x) const {
+  double energy = 0.0;
+  for (const TetElement& element : tets_->elements) {
+    const Matrix3 F = deformationGradient(element, x);
+    const double I = F.squaredNorm();
+    const double J = F.determinant();
+    const LameParameters& material = element.lame;
+    // lambda/2 ((J - alpha)^2 - (1 - alpha)^2) = (J - 1) (lambda/2 (J - 1) - 3/4 mu)
+    energy += element.volume * (0.5 * material.mu * (I - 3.0 - std::log((I + 1.0) / 4.0)) +
+                                (J - 1.0) * (0.5 * material.lambda * (J - 1.0) - 0.75 * material.mu));
+  }
+  return energy;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,66 @@
+#include "neo_hookean_kernel.h"
+
+namespace tissue_contact {
+namespace {
+
+/// C = dJ/dF: its columns are the cross products of F's.
+TISSUE_CONTACT_INLINE void cofactors(const LaneMatrix& F, LaneMatrix& C) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Lanes* const a = F.m + 3 * ((c + 1) % 3);
+    const Lanes* const b = F.m + 3 * ((c + 2) % 3);
+    C.m[3 * c] = a[1] * b[2] - a[2] * b[1];
+    C.m[3 * c + 1] = a[2] * b[0] - a[0] * b[2];
+    C.m[3 * c + 2] = a[0] * b[1] - a[1] * b[0];
+  }
+}
+
+TISSUE_CONTACT_INLINE unsigned char changedLanes(const LaneMatrix& F, const MatrixBatch& tangent, double change) {
+  Lanes squared = {0.0, 0.0, 0.0, 0.0};
+  for (std::size_t i = 0; i < 9; ++i) {
+    Lanes t;
+    load(tangent[i], t);
+    squared += (F.m[i] - t) * (F.m[i] - t);
+  }
+  return bits(squared > change * change);
+}
+
+template <typename Material>
+TISSUE_CONTACT_INLINE void neoHookean(const std::vector<ElementBatch>& batches, const Material& material,
+                                      double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
+                                      std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed,
+                                      double* forces) {
+  for (std::size_t b = 0; b < batches.size(); ++b) {
+    LaneMatrix F, C, P;
+    typename Material::Value lambda, mu;
+    deformationGradients(batches[b], x, F);
+    cofactors(F, C);
+    material.get(b, lambda, mu);
+    const Lanes J = F.m[0] * C.m[0] + F.m[1] * C.m[1] + F.m[2] * C.m[2];
+    Lanes I = F.m[0] * F.m[0];
+    for (std::size_t i = 1; i < 9; ++i) I += F.m[i] * F.m[i];
+    const Lanes along_F = mu - mu / (I + 1.0);
+    const Lanes along_C = lambda * (J - 1.0) - 0.75 * mu;
+    for (std::size_t i = 0; i < 9; ++i) P.m[i] = along_F * F.m[i] + along_C * C.m[i];
+    addStressForces(batches[b], P, forces);
+    for (std::size_t i = 0; i < 9; ++i) store(F.m[i], deformations[b][i]);
+    changed[b] = changedLanes(F, tangents[b], tangent_change);
+  }
+}
+
+}  // namespace
+
+TISSUE_CONTACT_CLONES
+void addNeoHookeanForces(const std::vector<ElementBatch>& batches, const LameParameters& material,
+                         double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
+                         std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed, double* forces) {
+  neoHookean(batches, UniformMaterial{material}, tangent_change, x, tangents, deformations, changed, forces);
+}
+
+TISSUE_CONTACT_CLONES
+void addNeoHookeanForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
+                         double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
+                         std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed, double* forces) {
+  neoHookean(batches, VaryingMaterial{materials}, tangent_change, x, tangents, deformations, changed, forces);
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,26 @@
+/// @file
+/// Room `tissue`, private: neo-Hookean forces of four tetrahedra at a time. Node positions in; deformation gradients,
+/// nodal forces and a mark for elements whose stiffness is out of date out. The formulas are those of neo_hookean.h.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "lanes.h"
+
+namespace tissue_contact {
+
+/// Column-major 3 x 3 matrices of four elements.
+using MatrixBatch = std::array<std::array<double, kLanes>, 9>;
+
+/// Computes `deformations` F at positions x (3 x n) and adds the elastic forces to `forces` (3 x n). `changed[b]` gets
+/// bit `lane` set where F is further than `tangent_change` (Frobenius norm) away from `tangents`.
+/// @param material lambda and mu of the model, which are not Lame's.
+void addNeoHookeanForces(const std::vector<ElementBatch>& batches, const LameParameters& material,
+                         double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
+                         std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed, double* forces);
+void addNeoHookeanForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
+                         double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
+                         std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed, double* forces);
+
+}  // namespace tissue_contact

@@ -1,0 +1,142 @@
+#include "placed_mesh.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "region.h"
+#include "tissue_contact/tissue/element_materials.h"
+#include "tissue_contact/tissue/sheet_mesh.h"
+#include "tissue_contact/tissue/tet_mesh.h"
+
+namespace tissue_contact {
+namespace {
+
+void setVolume(TetMesh mesh, const std::string& source, PlacedMesh& placed) {
+  checkTetMesh(mesh, source);
+  placed.surface = boundaryTriangles(mesh.tetrahedra);
+  placed.rest = std::move(mesh.positions);
+  placed.tetrahedra = std::move(mesh.tetrahedra);
+}
+
+void setSheet(SheetMesh mesh, double thickness, const std::string& source, PlacedMesh& placed) {
+  if (!(thickness > 0.0) || !std::isfinite(thickness)) {
+    throw std::invalid_argument(source + ": thickness_m is " + std::to_string(thickness) +
+                                " m; it must be finite and > 0");
+  }
+  checkSheetMesh(mesh, source);
+  placed.rest = std::move(mesh.positions);
+  placed.surface = std::move(mesh.triangles);
+  placed.thickness = thickness;
+}
+
+void setGeometry(const TissueDescription& description, const std::string& source, PlacedMesh& placed) {
+  const auto inFile = [&](const std::string& file) { return source + ", mesh file '" + file + "'"; };
+  if (const auto* block = std::get_if<BlockDescription>(&description.geometry)) {
+    setVolume(makeBlockMesh(*block), source, placed);
+  } else if (const auto* mesh = std::get_if<MeshDescription>(&description.geometry)) {
+    setVolume(loadTetMesh(*mesh), inFile(mesh->file), placed);
+  } else if (const auto* sheet = std::get_if<SheetDescription>(&description.geometry)) {
+    setSheet(makeSheetMesh(*sheet), sheet->thickness_m, source, placed);
+  } else {
+    const auto& shell = std::get<ShellDescription>(description.geometry);
+    setSheet(loadShellMesh(shell), shell.thickness_m, inFile(shell.file), placed);
+  }
+}
+
+template <std::size_t N>
+NodalVectors centroids(const NodalVectors& x, const std::vector<std::array<int, N>>& elements) {
+  NodalVectors centres = NodalVectors::Zero(3, static_cast<Eigen::Index>(elements.size()));
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    for (const int node : elements[e]) centres.col(static_cast<Eigen::Index>(e)) += x.col(node) / N;
+  }
+  return centres;
+}
+
+bool sameMaterial(const TissueDescription& tissue, const TissueRegion& region) {
+  const MaterialDescription& a = tissue.material;
+  const MaterialDescription& b = region.material;
+  return a.youngs_modulus_pa == b.youngs_modulus_pa && a.poissons_ratio == b.poissons_ratio &&
+         a.density_kg_per_m3 == b.density_kg_per_m3 && a.bending_stiffness_n_m == b.bending_stiffness_n_m &&
+         tissue.damping.stiffness_s == region.damping_stiffness_s;
+}
+
+/// Regions by element and surface triangle, positions being in T. Refuses a region without effect: most likely it is
+/// misplaced.
+void setRegions(const TissueDescription& description, const std::string& source, PlacedMesh& placed) {
+  if (description.regions.empty()) return;
+  const double rounding = roundingDistance(placed.rest);
+  const auto regionsOf = [&](const NodalVectors& points) {
+    return regionsOfPoints(points, description.regions, rounding);
+  };
+  placed.surface_regions = regionsOf(centroids(placed.rest, placed.surface));
+  placed.element_regions =
+      placed.isVolume() ? regionsOf(centroids(placed.rest, placed.tetrahedra)) : placed.surface_regions;
+  for (std::size_t r = 0; r < description.regions.size(); ++r) {
+    const auto anyIn = [r](const std::vector<int>& regions) {
+      return std::find(regions.begin(), regions.end(), static_cast<int>(r)) != regions.end();
+    };
+    const bool has_elements = anyIn(placed.element_regions);
+    if (has_elements || (anyIn(placed.surface_regions) && sameMaterial(description, description.regions[r]))) continue;
+    std::ostringstream message;
+    message << source << ": region '" << description.regions[r].name
+            << "' holds no element's centroid (or later regions hold them all); the mesh lies within ("
+            << placed.rest.rowwise().minCoeff().transpose() << ") to (" << placed.rest.rowwise().maxCoeff().transpose()
+            << ") m of the tissue frame: move or enlarge the region, or refine the mesh";
+    throw std::invalid_argument(message.str());
+  }
+}
+
+/// Coefficients over the edges of a triangle of the unit direction along which the fibre runs in it; zero if it runs
+/// across.
+Vector2 fibreIn(const NodalVectors& x, const Triangle& triangle, const Vector3& fibre) {
+  constexpr double kAcross = 1e-6;  // sine of the angle to the normal below which the direction is rounding
+  Eigen::Matrix<double, 3, 2> edges;
+  for (int i = 0; i < 2; ++i) edges.col(i) = x.col(triangle[i + 1]) - x.col(triangle[0]);
+  const Vector3 normal = edges.col(0).cross(edges.col(1)).normalized();
+  const Vector3 unit = fibre.stableNormalized();
+  const Vector3 along = unit - unit.dot(normal) * normal;
+  if (!(along.norm() > kAcross)) return Vector2::Zero();
+  const Matrix2 gram = edges.transpose() * edges;
+  return gram.inverse() * (edges.transpose() * along.normalized());
+}
+
+void checkFibre(const Vector3& fibre, const std::string& owner) {
+  if (fibre.allFinite()) return;
+  std::ostringstream message;
+  message << owner << "fibre_direction is (" << fibre.transpose() << "); it must be finite";
+  throw std::invalid_argument(message.str());
+}
+
+void setFibres(const TissueDescription& description, const std::string& source, PlacedMesh& placed) {
+  checkFibre(description.fibre_direction, source + ": ");
+  bool any = !description.fibre_direction.isZero(0.0);
+  for (const TissueRegion& region : description.regions) {
+    checkFibre(region.fibre_direction, source + ", region '" + region.name + "': ");
+    any = any || !region.fibre_direction.isZero(0.0);
+  }
+  if (!any) return;
+  for (std::size_t t = 0; t < placed.surface.size(); ++t) {
+    const int region = placed.surface_regions.empty() ? -1 : placed.surface_regions[t];
+    const Vector3& fibre = region < 0 ? description.fibre_direction : description.regions[region].fibre_direction;
+    placed.surface_fibres.push_back(fibreIn(placed.rest, placed.surface[t], fibre));
+  }
+}
+
+}  // namespace
+
+std::string tissueLabel(const TissueDescription& description) { return "tissue '" + description.name + "'"; }
+
+PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT) {
+  const std::string source = tissueLabel(description);
+  PlacedMesh placed;
+  setGeometry(description, source, placed);
+  placed.fixed = fixedNodes(placed.rest, description.fixed, source);
+  setRegions(description, source, placed);
+  setFibres(description, source, placed);
+  placed.rest = (X_WT.linear() * placed.rest).colwise() + X_WT.translation();
+  return placed;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,34 @@
+/// @file
+/// Room `tissue`, private: the mesh of a tissue, of whatever geometry, with what its description says about nodes,
+/// elements and surface triangles.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/scene/scene.h"
+
+namespace tissue_contact {
+
+struct PlacedMesh {
+  NodalVectors rest;                    ///< m, in the world
+  std::vector<Tetrahedron> tetrahedra;  ///< the elements of a volume; none: the surface triangles are the elements
+  std::vector<Triangle> surface;
+  double thickness = 0.0;  ///< m; 0: a volume
+  std::vector<bool> fixed;
+  std::vector<int> element_regions;  ///< per element, -1: none; empty: the description has no regions
+  std::vector<int> surface_regions;  ///< likewise per surface triangle
+  std::vector<Vector2> surface_fibres;
+
+  bool isVolume() const { return !tetrahedra.empty(); }
+  std::size_t elementCount() const { return isVolume() ? tetrahedra.size() : surface.size(); }
+};
+
+/// @throws std::invalid_argument naming the tissue: see Tissue.
+PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT);
+
+/// How messages begin: "tissue '<name>'".
+std::string tissueLabel(const TissueDescription& description);
+
+}  // namespace tissue_contact

@@ -1,0 +1,75 @@
+#include "tet_elements.h"
+
+#include <Eigen/LU>
+
+namespace tissue_contact {
+namespace {
+
+Matrix3 edges(const NodalVectors& x, const Tetrahedron& tet) {
+  Matrix3 D;
+  for (int i = 0; i < 3; ++i) D.col(i) = x.col(tet[i + 1]) - x.col(tet[0]);
+  return D;
+}
+
+std::vector<ElementBatch> makeBatches(const std::vector<TetElement>& elements) {
+  std::vector<ElementBatch> batches((elements.size() + kLanes - 1) / kLanes);
+  for (std::size_t slot = 0; slot < batches.size() * kLanes; ++slot) {
+    const bool used = slot < elements.size();
+    const TetElement& element = used ? elements[slot] : elements.back();
+    ElementBatch& batch = batches[slot / kLanes];
+    const std::size_t lane = slot % kLanes;
+    for (std::size_t i = 0; i < 9; ++i) batch.rest_inverse[i][lane] = element.rest_inverse.data()[i];
+    batch.volume[lane] = used ? element.volume : 0.0;
+    batch.nodes[lane] = element.nodes;
+  }
+  return batches;
+}
+
+std::vector<BatchMaterial> makeBatchMaterials(const std::vector<TetElement>& elements) {
+  std::vector<BatchMaterial> materials((elements.size() + kLanes - 1) / kLanes);
+  for (std::size_t slot = 0; slot < materials.size() * kLanes; ++slot) {
+    const LameParameters& lame = slot < elements.size() ? elements[slot].lame : elements.back().lame;
+    materials[slot / kLanes].lambda[slot % kLanes] = lame.lambda;
+    materials[slot / kLanes].mu[slot % kLanes] = lame.mu;
+  }
+  return materials;
+}
+
+}  // namespace
+
+TetElements::TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
+                         const std::vector<bool>& fixed, const ElementMaterials& materials, Lame lame)
+    : damps(!materials.damping_s.empty()), pattern(BlockMatrix::forTetrahedra(tetrahedra, fixed)) {
+  for (const MaterialDescription& description : materials.materials) checkMaterial(description, "");
+  elements.reserve(tetrahedra.size());
+  bool same = true;
+  for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
+    const Matrix3 D = edges(rest, tetrahedra[e]);
+    elements.push_back({tetrahedra[e], D.inverse(), D.determinant() / 6.0, lame(materials.of(e)),
+                        materials.dampingOf(e), findSlots(pattern, tetrahedra[e], fixed)});
+    const LameParameters& first = elements.front().lame;
+    same = same && elements.back().lame.lambda == first.lambda && elements.back().lame.mu == first.mu;
+  }
+  batches = makeBatches(elements);
+  material =
+      elements.empty() ? LameParameters{} : LameParameters{elements.front().lame.lambda, elements.front().lame.mu};
+  if (!same) batch_materials = makeBatchMaterials(elements);
+}
+
+void TetElements::prepare(Elasticity::State& state) const {
+  state.stiffness = pattern;
+  if (damps) state.damping = pattern;
+}
+
+Eigen::Matrix<double, 3, 4> shapeGradients(const Matrix3& rest_inverse) {
+  Eigen::Matrix<double, 3, 4> gradients;
+  gradients.rightCols<3>() = rest_inverse.transpose();
+  gradients.col(0) = -gradients.rightCols<3>().rowwise().sum();
+  return gradients;
+}
+
+Matrix3 deformationGradient(const TetElement& element, const NodalVectors& x) {
+  return edges(x, element.nodes) * element.rest_inverse;
+}
+
+}  // namespace tissue_contact

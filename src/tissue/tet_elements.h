@@ -1,0 +1,50 @@
+/// @file
+/// Room `tissue`, private: tetrahedra prepared for the models: shape function gradients, volumes, materials, where
+/// their stiffness goes, and the same in batches for the force kernels.
+#pragma once
+
+#include <vector>
+
+#include "block_slots.h"
+#include "lanes.h"
+#include "tissue_contact/core/block_matrix.h"
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/tissue/elasticity.h"
+#include "tissue_contact/tissue/element_materials.h"
+
+namespace tissue_contact {
+
+struct TetElement {
+  Tetrahedron nodes;
+  Matrix3 rest_inverse;  ///< D_rest^-1, 1/m; its rows are grad N_1..N_3
+  double volume;         ///< m^3
+  LameParameters lame;   ///< Pa; for some models their own parameters in the place of Lame's
+  double damping_s;      ///< what of its stiffness goes into State::damping
+  BlockSlots<4> slots;
+};
+
+struct TetElements {
+  using Lame = LameParameters (*)(const MaterialDescription&);
+
+  /// @param lame the model's elastic parameters from a material. @throws std::invalid_argument for a material out of
+  /// range.
+  TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
+              const ElementMaterials& materials, Lame lame);
+
+  /// Zero matrices of the right pattern.
+  void prepare(Elasticity::State& state) const;
+
+  std::vector<TetElement> elements;
+  std::vector<ElementBatch> batches;           ///< the same elements, laid out for the force kernels
+  LameParameters material;                     ///< of all elements, if batch_materials is empty
+  std::vector<BatchMaterial> batch_materials;  ///< where materials differ
+  bool damps = false;                          ///< there is a State::damping
+  BlockMatrix pattern;
+};
+
+/// Gradients of the four shape functions, columns, 1/m.
+Eigen::Matrix<double, 3, 4> shapeGradients(const Matrix3& rest_inverse);
+
+Matrix3 deformationGradient(const TetElement& element, const NodalVectors& x);
+
+}  // namespace tissue_contact
