@@ -178,6 +178,17 @@ void parseTissueSide(const YamlMap& map, const Scene& scene, FrictionDescription
   }
 }
 
+/// A contact of two tissues has the regions and fibres of the one that tissue_pairs names first.
+void checkOrderOfTissues(const YamlCursor& cursor, const Scene& scene, const FrictionDescription& friction) {
+  if (friction.region.empty() && friction.law.axis != Law::Axis::kFibre) return;
+  for (const TissuePair& pair : scene.tissue_pairs) {
+    if (pair.tissue == friction.tissue && pair.other == friction.other_tissue) return;
+  }
+  cursor.fail("is for a region or the fibres of " + inQuotes(friction.tissue) +
+              ", which tissue_pairs must name first; give {tissue: " + friction.tissue +
+              ", other: " + friction.other_tissue + "} there");
+}
+
 FrictionDescription parseFriction(const YamlCursor& cursor, const Scene& scene) {
   const YamlMap map = cursor.map(MapKind::kFriction);
   const bool has_instrument = map.exactlyOne({"instrument", "other_tissue"}) == "instrument";
@@ -197,6 +208,7 @@ FrictionDescription parseFriction(const YamlCursor& cursor, const Scene& scene) 
     fibre = region.fibre_direction;
   }
   friction.law = parseLaw(map, !fibre.isZero(), has_instrument);
+  if (!has_instrument) checkOrderOfTissues(cursor, scene, friction);
   return friction;
 }
 
@@ -223,9 +235,7 @@ std::vector<FrictionDescription> parseFrictionPairs(const YamlCursor& cursor, co
   for (const YamlCursor& element : cursor.list(0)) {
     pairs.push_back(parseFriction(element, scene));
     const FrictionDescription& pair = pairs.back();
-    // Instruments and tissues share no names. Between two tissues the order means something for regions alone.
-    std::pair<std::string, std::string> sides{pair.instrument + pair.other_tissue, pair.tissue};
-    if (pair.instrument.empty() && pair.region.empty()) sides = unordered(sides.first, sides.second);
+    const auto sides = unordered(pair.instrument + pair.other_tissue, pair.tissue);  // one of the two first is empty
     if (!seen.emplace(sides.first, pair.link, sides.second, pair.region).second) {
       element.fail("the pair " + inQuotes(pair.instrument + pair.other_tissue) + " and " + inQuotes(pair.tissue) +
                    (pair.link.empty() ? "" : ", link " + inQuotes(pair.link)) +

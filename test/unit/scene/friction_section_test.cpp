@@ -22,7 +22,7 @@ instruments:
   - {name: grasper, tip_link: tip, contact_links: [upper_jaw, {link: lower_jaw}]}
   - {name: hook, tip_link: tip, contact_links: [blade]}
 tissue_pairs:
-  - {tissue: bowel, other: liver}
+  - {tissue: liver, other: bowel}
   - {tissue: bowel, other: bowel}
 friction:
   - {instrument: grasper, tissue: liver, static: 0.5}
@@ -39,8 +39,8 @@ friction:
 TEST_F(SceneTest, FillsTissuePairs) {
   const std::vector<TissuePair> pairs = parse(kContacts).tissue_pairs;
   ASSERT_EQ(pairs.size(), 2U);
-  EXPECT_EQ(pairs[0].tissue, "bowel");
-  EXPECT_EQ(pairs[0].other, "liver");
+  EXPECT_EQ(pairs[0].tissue, "liver");
+  EXPECT_EQ(pairs[0].other, "bowel");
   EXPECT_EQ(pairs[1].tissue, pairs[1].other);
   EXPECT_TRUE(parse(kSmallestScene).tissue_pairs.empty());
 }
@@ -104,25 +104,25 @@ TEST_F(SceneTest, LeavesTheTensorsLimitsToTheLaw) {
 }
 
 TEST_F(SceneTest, AcceptsWhatIsNotGivenTwice) {
-  // Another link, another region, and a region of the other tissue: three more entries for pairs already there.
+  // Another link, or another region: more entries for pairs already there.
   const Scene scene =
       parse(kContacts + std::string(R"(  - {instrument: grasper, link: upper_jaw, tissue: liver, static: 0.4}
   - {instrument: grasper, link: upper_jaw, tissue: liver, region: scar, static: 0.4}
   - {other_tissue: bowel, tissue: liver, region: scar, static: 0.4}
-  - {other_tissue: liver, tissue: bowel, region: band, static: 0.4}
+  - {other_tissue: bowel, tissue: bowel, region: band, static: 0.4}
 )"));
   EXPECT_EQ(scene.friction.size(), 11U);
 }
 
 const BadScene kBadPairs[] = {
-    {"{tissue: bowel, other: liver}", "{tissue: bowl, other: liver}", "17: tissue_pairs[0].tissue",
+    {"{tissue: liver, other: bowel}", "{tissue: bowl, other: liver}", "17: tissue_pairs[0].tissue",
      "unknown tissue \"bowl\"; did you mean \"bowel\"? the scene has liver, bowel"},
-    {"{tissue: bowel, other: liver}", "{tissue: bowel, other: hook}", "17: tissue_pairs[0].other", "unknown tissue"},
-    {"{tissue: bowel, other: liver}", "{tissue: bowel}", "17: tissue_pairs[0]", "required key \"other\" is missing"},
-    {"{tissue: bowel, other: liver}", "{tissue: bowel, other: [liver]}", "17: tissue_pairs[0].other", "is a list"},
-    {"{tissue: bowel, other: liver}", "{tissue: bowel, others: liver}", "17: tissue_pairs[0].others",
+    {"{tissue: liver, other: bowel}", "{tissue: bowel, other: hook}", "17: tissue_pairs[0].other", "unknown tissue"},
+    {"{tissue: liver, other: bowel}", "{tissue: bowel}", "17: tissue_pairs[0]", "required key \"other\" is missing"},
+    {"{tissue: liver, other: bowel}", "{tissue: bowel, other: [liver]}", "17: tissue_pairs[0].other", "is a list"},
+    {"{tissue: liver, other: bowel}", "{tissue: bowel, others: liver}", "17: tissue_pairs[0].others",
      "did you mean \"other\"?"},
-    {"{tissue: bowel, other: bowel}", "{tissue: liver, other: bowel}", "18: tissue_pairs[1]",
+    {"{tissue: bowel, other: bowel}", "{tissue: bowel, other: liver}", "18: tissue_pairs[1]",
      "is given twice (the order does not matter)"},
     {"instrument: grasper, tissue: liver, static: 0.5", "tissue: liver, static: 0.5", "20: friction[0]",
      "none of instrument, other_tissue is given"},
@@ -133,6 +133,10 @@ const BadScene kBadPairs[] = {
     {"{other_tissue: bowel, tissue: bowel", "{other_tissue: bowls, tissue: bowel", "28: friction[6].other_tissue",
      "did you mean \"bowel\"?"},
     {"{other_tissue: bowel, tissue: bowel", "{other_tissue: liver, tissue: bowel", "28: friction[6]", "given twice"},
+    {"{other_tissue: bowel, tissue: bowel", "{other_tissue: liver, tissue: bowel, region: band", "28: friction[6]",
+     "\"bowel\", which tissue_pairs must name first; give {tissue: bowel, other: liver} there"},
+    {"{tissue: liver, other: bowel}", "{tissue: bowel, other: liver}", "27: friction[5]",
+     "is for a region or the fibres of \"liver\", which tissue_pairs must name first"},
     {"{other_tissue: bowel, tissue: bowel", "{other_tissue: bowel, link: blade, tissue: bowel", "28: friction[6].link",
      "is for pairs with an instrument only"},
     {"link: lower_jaw, tissue", "link: lower_jar, tissue", "21: friction[1].link",
