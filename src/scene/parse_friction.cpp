@@ -178,17 +178,6 @@ void parseTissueSide(const YamlMap& map, const Scene& scene, FrictionDescription
   }
 }
 
-/// A contact of two tissues has the regions and fibres of the one that tissue_pairs names first.
-void checkOrderOfTissues(const YamlCursor& cursor, const Scene& scene, const FrictionDescription& friction) {
-  if (friction.region.empty() && friction.law.axis != Law::Axis::kFibre) return;
-  for (const TissuePair& pair : scene.tissue_pairs) {
-    if (pair.tissue == friction.tissue && pair.other == friction.other_tissue) return;
-  }
-  cursor.fail("is for a region or the fibres of " + inQuotes(friction.tissue) +
-              ", which tissue_pairs must name first; give {tissue: " + friction.tissue +
-              ", other: " + friction.other_tissue + "} there");
-}
-
 FrictionDescription parseFriction(const YamlCursor& cursor, const Scene& scene) {
   const YamlMap map = cursor.map(MapKind::kFriction);
   const bool has_instrument = map.exactlyOne({"instrument", "other_tissue"}) == "instrument";
@@ -208,7 +197,11 @@ FrictionDescription parseFriction(const YamlCursor& cursor, const Scene& scene) 
     fibre = region.fibre_direction;
   }
   friction.law = parseLaw(map, !fibre.isZero(), has_instrument);
-  if (!has_instrument) checkOrderOfTissues(cursor, scene, friction);
+  if (!has_instrument && (friction.law.kind == Law::Kind::kTable || friction.law.kind == Law::Kind::kTensor)) {
+    // Two points of two tissues may meet as a contact of either; only laws that axis 1 mirrors are the same in both.
+    map.get("law").fail(
+        "works for an instrument on a tissue only; between tissues give isotropic, orthotropic or asymmetric");
+  }
   return friction;
 }
 

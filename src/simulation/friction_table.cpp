@@ -96,6 +96,14 @@ void FrictionTable::add(const FrictionDescription& description, const Scene& sce
     throw std::invalid_argument("friction on tissue '" + described.name +
                                 "' follows its fibres, but it has no fibre_direction; give it one");
   }
+  using Kind = FrictionLawDescription::Kind;
+  if (description.instrument.empty() &&
+      (description.law.kind == Kind::kTable || description.law.kind == Kind::kTensor)) {
+    // The same two points may meet as a contact of either tissue; only laws that axis 1 mirrors are the same in both.
+    throw std::invalid_argument(
+        "friction between tissues '" + description.tissue + "' and '" + description.other_tissue +
+        "': a table or tensor works for instruments only; use isotropic, orthotropic or asymmetric");
+  }
   const int index = static_cast<int>(entries_.size());
   Entry& entry = entries_.emplace_back();
   entry.numbers = description.law;
@@ -127,40 +135,48 @@ void FrictionTable::add(const FrictionDescription& description, const Scene& sce
   for (std::vector<ByRegion>& of_link : by_link_[instrument]) put(of_link[tissue]);
 }
 
-const FrictionTable::Entry* FrictionTable::entryOf(const ContactKey& key, int triangle) const {
-  const auto in = [&](const ByRegion& by_region, const Tissue& tissue) {
-    const bool has_regions = triangle >= 0 && !tissue.surfaceRegions().empty();
-    return by_region[has_regions ? 1 + tissue.surfaceRegions()[triangle] : 0];
+/// The entry of a contact with the surface it names (its regions and fibres count), and how its axis 1 is turned.
+FrictionTable::Found FrictionTable::find(const Contact& contact) const {
+  const ContactKey& key = contact.key;
+  const auto in = [&](const ByRegion& by_region, int tissue, const std::array<int, 3>& nodes, double sign) {
+    Found found;
+    found.tissue = tissue;
+    found.triangle = surfaces_[tissue].triangleOf(nodes);
+    found.axis_sign = sign;
+    const std::vector<int>& regions = surfaces_[tissue].tissue->surfaceRegions();
+    const int index = by_region[found.triangle >= 0 && !regions.empty() ? 1 + regions[found.triangle] : 0];
+    if (index >= 0) found.entry = &entries_[index];
+    return found;
   };
-  int index = -1;
   if (key.instrument >= 0) {
-    index = in(by_link_[key.instrument][key.link][key.tissue], *surfaces_[key.tissue].tissue);
-  } else {
-    index = in(between_tissues_[key.tissue][key.other_tissue], *surfaces_[key.tissue].tissue);
-    // An entry holds for the pair, whichever tissue it names first; its fibres and regions are those of `tissue`.
-    if (index < 0) index = between_tissues_[key.other_tissue][key.tissue][0];
+    return in(by_link_[key.instrument][key.link][key.tissue], key.tissue, contact.nodes, 1.0);
   }
-  return index < 0 ? nullptr : &entries_[index];
+  const Found named = in(between_tissues_[key.tissue][key.other_tissue], key.tissue, contact.nodes, 1.0);
+  if (named.entry != nullptr) return named;
+  // The contact has the pair the other way round: the entry's `other_tissue` is what the contact calls `tissue`, so that
+  // what moves forward over what is turned round.
+  return in(between_tissues_[key.other_tissue][key.tissue], key.other_tissue, contact.other_nodes, -1.0);
 }
 
-Vector3 FrictionTable::axisOf(const Entry& entry, const Contact& contact, int triangle,
-                              const std::vector<NodalVectors>& x, const std::vector<std::vector<Pose>>& X_WL) const {
+Vector3 FrictionTable::axisOf(const Found& found, const Contact& contact, const std::vector<NodalVectors>& x,
+                              const std::vector<std::vector<Pose>>& X_WL) const {
   const ContactKey& key = contact.key;
-  if (entry.numbers.axis == FrictionLawDescription::Axis::kLink && key.instrument >= 0) {
-    return X_WL[key.instrument][links_[key.instrument][key.link]].linear() * entry.numbers.link_axis;
+  if (found.entry->numbers.axis == FrictionLawDescription::Axis::kLink) {
+    return X_WL[key.instrument][links_[key.instrument][key.link]].linear() * found.entry->numbers.link_axis;
   }
-  const Tissue& tissue = *surfaces_[key.tissue].tissue;
-  if (triangle < 0 || tissue.surfaceFibres().empty()) return Vector3::Zero();
-  const Triangle& nodes = tissue.surface()[triangle];
-  const Vector2& along = tissue.surfaceFibres()[triangle];
-  const NodalVectors& p = x[key.tissue];
-  return along[0] * (p.col(nodes[1]) - p.col(nodes[0])) + along[1] * (p.col(nodes[2]) - p.col(nodes[0]));
+  const Tissue& tissue = *surfaces_[found.tissue].tissue;
+  if (found.triangle < 0 || tissue.surfaceFibres().empty()) return Vector3::Zero();
+  const Triangle& nodes = tissue.surface()[found.triangle];
+  const Vector2& along = tissue.surfaceFibres()[found.triangle];
+  const NodalVectors& p = x[found.tissue];
+  return found.axis_sign *
+         (along[0] * (p.col(nodes[1]) - p.col(nodes[0])) + along[1] * (p.col(nodes[2]) - p.col(nodes[0])));
 }
 
 CoulombLaw FrictionTable::at(const Contact& contact, const std::vector<NodalVectors>& x,
                              const std::vector<std::vector<Pose>>& X_WL, double sliding_speed) const {
-  const int triangle = surfaces_[contact.key.tissue].triangleOf(contact.nodes);
-  const Entry* entry = entryOf(contact.key, triangle);
+  const Found found = find(contact);
+  const Entry* entry = found.entry;
   if (entry == nullptr) return {};
   CoulombLaw law = entry->law;
   const double factor = entry->numbers.speeds_m_per_s.empty() ? 1.0 : kineticFactor(entry->numbers, sliding_speed);
@@ -170,7 +186,7 @@ CoulombLaw FrictionTable::at(const Contact& contact, const std::vector<NodalVect
   }
   law.kinetic_factor = factor;
   // An axis along the normal has no direction in the contact plane: the frame's own t1 stands in.
-  const Vector2 in_plane = contact.R_WC.rightCols<2>().transpose() * axisOf(*entry, contact, triangle, x, X_WL);
+  const Vector2 in_plane = contact.R_WC.rightCols<2>().transpose() * axisOf(found, contact, x, X_WL);
   const double length = in_plane.norm();
   if (length > 0.0) law.axis = in_plane / length;
   return law;

@@ -31,12 +31,18 @@ class FrictionTable {
  private:
   struct Entry;
   struct Surface;
+  struct Found {
+    const Entry* entry = nullptr;  ///< null: frictionless
+    int tissue = -1;               ///< whose regions and fibres the entry refers to
+    int triangle = -1;             ///< of its surface, -1 where it has neither
+    double axis_sign = 1.0;
+  };
   using ByRegion = std::vector<int>;  ///< index into entries_, -1: frictionless; [0]: no region, [1 + r]: region r
 
   void add(const FrictionDescription& description, const Scene& scene, const std::vector<Instrument>& instruments,
            const std::vector<Tissue>& tissues);
-  const Entry* entryOf(const ContactKey& key, int triangle) const;
-  Vector3 axisOf(const Entry& entry, const Contact& contact, int triangle, const std::vector<NodalVectors>& x,
+  Found find(const Contact& contact) const;
+  Vector3 axisOf(const Found& found, const Contact& contact, const std::vector<NodalVectors>& x,
                  const std::vector<std::vector<Pose>>& X_WL) const;
 
   std::vector<Entry> entries_;
