@@ -86,7 +86,7 @@ ContactDetector::ContactDetector(const std::vector<Instrument>& instruments, std
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const int node_count = static_cast<int>(positions[i].cols());
     // The narrow phase checks the indices that the tree then relies on.
-    NarrowPhase narrow_phase(surfaces[i].triangles, std::move(surfaces[i].fixed), node_count);
+    NarrowPhase narrow_phase(surfaces[i].triangles, std::move(surfaces[i].fixed), node_count, surfaces[i].thickness_m);
     implementation_->surfaces.push_back(
         {TriangleTree(positions[i], std::move(surfaces[i].triangles)), std::move(narrow_phase), node_count});
   }
@@ -121,7 +121,7 @@ void ContactDetector::detect(const std::vector<NodalVectors>& positions, const s
 void ContactDetector::Implementation::detectPair(int tissue, const NodalVectors& positions, const TouchingShape& shape,
                                                  const Pose& X_WS, double margin, std::vector<Contact>& contacts) {
   TouchableSurface& surface = surfaces[tissue];
-  const Eigen::AlignedBox3d box = boxAround(*shape.distance, X_WS, margin);
+  const Eigen::AlignedBox3d box = boxAround(*shape.distance, X_WS, margin + surface.narrow_phase.halfThickness());
   if (!surface.box.intersects(box)) return;
   if (!surface.refitted) surface.tree.refit(positions);
   surface.refitted = true;
@@ -153,10 +153,11 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
     const SignedDistance here = shape.distance->at(X_WS.linear().transpose() * (p_W - X_WS.translation()));
     const Vector3 normal_W = (X_WS.linear() * here.normal).normalized();
     const NarrowPhase& surface = implementation_->surfaces[key.tissue].narrow_phase;
-    if (!(here.distance <= margin_m) || !surface.faces(key.feature, normal_W, x)) return false;
+    const double gap = here.distance - surface.halfThickness();
+    if (!(gap <= margin_m) || !surface.faces(key.feature, normal_W, x)) return false;
     contact.p_WC = p_W;
     contact.R_WC = contactFrame(normal_W);
-    contact.gap_m = here.distance;
+    contact.gap_m = gap;
     return true;
   }
   return false;

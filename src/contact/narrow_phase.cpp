@@ -1,13 +1,12 @@
 #include "contact/narrow_phase.h"
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
 #include <tuple>
 #include <utility>
 
 #include "contact/stationary_gradient.h"
 #include "contact/tolerances.h"
+#include "tissue_contact/core/check.h"
 
 namespace tissue_contact {
 namespace {
@@ -19,14 +18,6 @@ constexpr double kShortestGradient = 0.3;
 /// A gradient whose part along its feature is longer than this share of it is not stationary: the search for the
 /// closest point ended early or met a part of a mesh that is not convex. The plain gradient is used then.
 constexpr double kStationary = 0.1;
-
-Vector3 snapped(const Vector3& weights) {
-  Vector3 result = weights;
-  for (int i = 0; i < 3; ++i) {
-    if (result[i] < kSnapWeight) result[i] = 0.0;
-  }
-  return result / result.sum();
-}
 
 /// Projector onto the directions along a face or edge of a triangle; zero at a vertex.
 Matrix3 tangentOf(const TrianglePoints& points, const Vector3& weights) {
@@ -57,19 +48,18 @@ Direction contactDirection(const ClosestPoint& closest, const Matrix3& tangent) 
 
 }  // namespace
 
-NarrowPhase::NarrowPhase(std::vector<Triangle> triangles, std::vector<bool> fixed, int node_count)
-    : topology_(std::move(triangles), node_count), fixed_(std::move(fixed)) {
-  if (static_cast<int>(fixed_.size()) != node_count) {
-    throw std::invalid_argument("tissue surface: " + std::to_string(fixed_.size()) + " fixed flags for " +
-                                std::to_string(node_count) + " nodes; there must be one per node");
-  }
+NarrowPhase::NarrowPhase(std::vector<Triangle> triangles, std::vector<bool> fixed, int node_count, double thickness_m)
+    : topology_(std::move(triangles), node_count),
+      fixed_(std::move(fixed)),
+      half_thickness_(0.5 * requireNonNegative("tissue surface: thickness", thickness_m, "m")) {
+  requireOneFlagPerNode(fixed_, node_count);
   nodes_.resize(node_count);
   normals_.resize(topology_.triangles().size());
 }
 
 void NarrowPhase::findContacts(const ShapeDistance& shape, const Pose& X_WS, const NodalVectors& positions,
                                const std::vector<int>& candidates, double margin, std::vector<ShapeContact>& contacts) {
-  call_ = {&shape, &positions, X_WS.linear().transpose(), X_WS.translation(), margin, &contacts};
+  call_ = {&shape, &positions, X_WS.linear().transpose(), X_WS.translation(), margin + half_thickness_, &contacts};
   ++call_index_;
   contacts.clear();
   for (const int triangle : candidates) {
@@ -140,7 +130,10 @@ bool NarrowPhase::certainlyFar(int triangle, const TrianglePoints& points) {
 double NarrowPhase::addCorners(int triangle, const TrianglePoints& points) {
   double lowest = std::numeric_limits<double>::infinity();
   if (points.normal.isZero(0.0)) return lowest;
-  const Vector3 forward = -points.normal;
+  // A sheet is met from the side on which the shape's middle is.
+  const bool from_below =
+      half_thickness_ > 0.0 && points.normal.dot(call_.shape->boxCentre() - points.corners[0]) < 0.0;
+  const Vector3 forward = from_below ? points.normal : -points.normal;
   Eigen::AlignedBox3d reach;
   for (const Vector3& p : points.corners) {
     reach.extend(p - call_.margin * forward);
@@ -188,7 +181,7 @@ bool NarrowPhase::add(int triangle, const Vector3& weights, int corner, const Ve
   const auto isFixed = [&](int node) { return node < 0 || fixed_[node]; };
   if (std::all_of(contact.feature.begin(), contact.feature.end(), isFixed)) return false;
   const auto faces = [&](int other) { return normal_S.dot(triangleNormalOf(other)) < -kFacing; };
-  if (!topology_.anyTriangleOf(contact.feature, faces)) return false;
+  if (half_thickness_ == 0.0 && !topology_.anyTriangleOf(contact.feature, faces)) return false;
 
   const Triangle& own = topology_.triangles()[triangle];
   topology_.anyTriangleOf(contact.feature, [&](int first) {
@@ -202,13 +195,13 @@ bool NarrowPhase::add(int triangle, const Vector3& weights, int corner, const Ve
   }
   contact.corner = corner;
   contact.normal_W = (call_.R_SW.transpose() * normal_S).normalized();
-  contact.gap = gap;
+  contact.gap = gap - half_thickness_;
   call_.contacts->push_back(contact);
   return true;
 }
 
 bool NarrowPhase::faces(const SurfaceFeature& feature, const Vector3& normal_W, const NodalVectors& positions) const {
-  return topology_.anyTriangleOf(feature, [&](int triangle) {
+  return half_thickness_ > 0.0 || topology_.anyTriangleOf(feature, [&](int triangle) {
     const Triangle& nodes = topology_.triangles()[triangle];
     const Vector3 own = triangleNormal(positions.col(nodes[0]), positions.col(nodes[1]), positions.col(nodes[2]));
     return normal_W.dot(own) < -kFacing;

@@ -6,12 +6,14 @@
 /// many; there the tissue's vertices and the shape's corners carry the contact instead, which stay the same from step
 /// to step.
 ///
-/// Which contacts are real (tissue surfaces are closed, shapes solid):
-///  - A contact counts when at least one surface triangle at its feature faces the instrument (contact normal times
+/// Which contacts are real (shapes are solid):
+///  - On the boundary of a volume a contact counts when at least one surface triangle at its feature faces the instrument (contact normal times
 ///    triangle normal < -kFacing). A point of the tissue nearest to something outside it always has such a triangle. The lower
 ///    face of a thin sheet pressed from above has none, nor has a surface that the middle of the shape has already
 ///    passed: tissue more than half-way through an instrument is let go, never pulled through its far side; an
 ///    instrument that starts inside touches nothing until it reaches the surface.
+///  - A sheet is touched from both sides, half its thickness before its triangles; which side, the shape's signed
+///    distance tells: it is pushed out on the side it is nearest to.
 ///  - At a face (edge) the normal is perpendicular to that face (edge), see stationaryGradient(); where no gradient of
 ///    the distance comes near that, or the shape pierces the triangle in its middle (|g| < 0.3), there is no contact
 ///    direction.
@@ -34,18 +36,21 @@ struct ShapeContact {
   std::array<int, 3> nodes = {0, 0, 0};  ///< of the first surface triangle that contains the feature
   Vector3 weights = Vector3::Zero();     ///< barycentric in it
   Vector3 normal_W = Vector3::Zero();    ///< unit, from the shape into the tissue
-  double gap = 0.0;                      ///< m
+  double gap = 0.0;                      ///< m, less half the thickness of a sheet
 };
 
 class NarrowPhase {
  public:
-  /// @param fixed per node. @throws std::invalid_argument for bad triangles or a size that differs from the node count.
-  NarrowPhase(std::vector<Triangle> triangles, std::vector<bool> fixed, int node_count);
+  /// @param fixed per node. @param thickness_m > 0: a sheet, 0: the boundary of a volume. @throws std::invalid_argument
+  ///   for bad triangles, a size that differs from the node count or a thickness that is not finite or < 0.
+  NarrowPhase(std::vector<Triangle> triangles, std::vector<bool> fixed, int node_count, double thickness_m = 0.0);
 
   /// @param positions m, world frame. @param candidates surface triangles to look at, ascending. @param margin m.
   /// @param contacts overwritten, sorted by feature and corner. No allocation once the vectors have grown.
   void findContacts(const ShapeDistance& shape, const Pose& X_WS, const NodalVectors& positions,
                     const std::vector<int>& candidates, double margin, std::vector<ShapeContact>& contacts);
+
+  double halfThickness() const { return half_thickness_; }
 
   /// Whether a surface triangle at the feature faces a shape whose contact normal is `normal_W` (unit).
   bool faces(const SurfaceFeature& feature, const Vector3& normal_W, const NodalVectors& positions) const;
@@ -67,7 +72,7 @@ class NarrowPhase {
     const NodalVectors* positions = nullptr;
     Matrix3 R_SW;
     Vector3 p_WS;
-    double margin = 0.0;
+    double margin = 0.0;  ///< from the triangles themselves
     std::vector<ShapeContact>* contacts = nullptr;
   };
 
@@ -84,6 +89,7 @@ class NarrowPhase {
 
   SurfaceTopology topology_;
   std::vector<bool> fixed_;
+  double half_thickness_;
   std::vector<NodeCache> nodes_;
   std::vector<NormalCache> normals_;
   std::vector<ShapeCorner> corners_;

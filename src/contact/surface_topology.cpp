@@ -22,6 +22,12 @@ void checkTriangle(const Triangle& triangle, std::size_t index, int node_count) 
 
 }  // namespace
 
+void requireOneFlagPerNode(const std::vector<bool>& fixed, int node_count) {
+  if (static_cast<int>(fixed.size()) == node_count) return;
+  throw std::invalid_argument("tissue surface: " + std::to_string(fixed.size()) + " fixed flags for " +
+                              std::to_string(node_count) + " nodes; there must be one per node");
+}
+
 SurfaceTopology::SurfaceTopology(std::vector<Triangle> triangles, int node_count) : triangles_(std::move(triangles)) {
   fan_start_.assign(node_count + 1, 0);
   for (std::size_t t = 0; t < triangles_.size(); ++t) {

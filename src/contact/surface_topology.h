@@ -12,6 +12,9 @@ namespace tissue_contact {
 /// A vertex (a, -1, -1), an edge (a, b, -1) or a face (a, b, c): sorted node indices, as in ContactKey.
 using SurfaceFeature = std::array<int, 3>;
 
+/// @throws std::invalid_argument unless there is one flag per node.
+void requireOneFlagPerNode(const std::vector<bool>& fixed, int node_count);
+
 /// Const after construction.
 class SurfaceTopology {
  public:

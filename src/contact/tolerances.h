@@ -29,6 +29,11 @@ constexpr double kFacing = 0.05;
 /// towards the triangle, so all corners of a face that lies nearly flush count.
 constexpr double kCornerSlope = 0.1;
 
+/// Slope (6 degrees) above which the surface beside an edge or a vertex of a tissue counts as leading away from what it
+/// touches; an edge with less on both sides is as good as flat. Between two flat edges, vertices on faces leave a
+/// penetration of less than this slope times a quarter of the edge.
+constexpr double kSharp = 0.1;
+
 /// Twice the area below this, relative to the longest edge squared: a triangle without a usable normal.
 constexpr double kFlatTriangle = 1e-12;
 

@@ -30,6 +30,14 @@ Vector3 triangleNormal(const Vector3& a, const Vector3& b, const Vector3& c) {
   return n / std::sqrt(squared);
 }
 
+Vector3 snapped(const Vector3& weights) {
+  Vector3 result = weights;
+  for (int i = 0; i < 3; ++i) {
+    if (result[i] < kSnapWeight) result[i] = 0.0;
+  }
+  return result / result.sum();
+}
+
 double projectOnSegment(const Vector3& a, const Vector3& b, const Vector3& p) {
   const Vector3 ab = b - a;
   const double along = (p - a).dot(ab);

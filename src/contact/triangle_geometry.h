@@ -28,6 +28,9 @@ Vector3 triangleNormal(const Vector3& a, const Vector3& b, const Vector3& c);
 /// on degenerate triangles: there it is the nearest point of the three edges.
 Vector3 projectOnTriangle(const std::array<Vector3, 3>& corners, const Vector3& p);
 
+/// Weights below kSnapWeight set to 0: the point lies on the opposite edge.
+Vector3 snapped(const Vector3& weights);
+
 /// Parameter in [0, 1] of the point of segment a-b nearest to `p`; 0 when a = b.
 double projectOnSegment(const Vector3& a, const Vector3& b, const Vector3& p);
 

@@ -60,15 +60,23 @@ class NearVisitor {
   Eigen::AlignedBox3d box_;
 };
 
-void collectOverlapping(const Tree& tree, int node_index, const fcl::AABBd& box, std::vector<int>& triangles) {
-  const fcl::BVNode<fcl::AABBd>& node = tree.getBV(node_index);
-  if (!node.bv.overlap(box)) return;
-  if (node.isLeaf()) {
-    triangles.push_back(node.primitiveId());
+/// FCL's own tests are calls into its library, which take most of the time of a descent.
+bool overlap(const fcl::AABBd& a, const Eigen::AlignedBox3d& b) {
+  return a.min_.x() <= b.max().x() && b.min().x() <= a.max_.x() && a.min_.y() <= b.max().y() &&
+         b.min().y() <= a.max_.y() && a.min_.z() <= b.max().z() && b.min().z() <= a.max_.z();
+}
+
+void collectOverlapping(const fcl::BVNode<fcl::AABBd>* nodes, int node_index, const Eigen::AlignedBox3d& box,
+                        std::vector<int>& triangles) {
+  const fcl::BVNode<fcl::AABBd>& node = nodes[node_index];
+  if (!overlap(node.bv, box)) return;
+  const int child = node.first_child;
+  if (child < 0) {
+    triangles.push_back(-child - 1);
     return;
   }
-  collectOverlapping(tree, node.leftChild(), box, triangles);
-  collectOverlapping(tree, node.rightChild(), box, triangles);
+  collectOverlapping(nodes, child, box, triangles);
+  collectOverlapping(nodes, child + 1, box, triangles);
 }
 
 void findNearest(const Tree& tree, int node_index, const Vector3& p, NearestOnTriangles& best) {
@@ -156,7 +164,7 @@ void TriangleTree::refit(const NodalVectors& positions) {
 void TriangleTree::overlapping(const Eigen::AlignedBox3d& box, std::vector<int>& triangles) const {
   triangles.clear();
   if (implementation_->nodes.empty()) return;
-  collectOverlapping(implementation_->tree, 0, fcl::AABBd(box.min(), box.max()), triangles);
+  collectOverlapping(&implementation_->tree.getBV(0), 0, box, triangles);
   std::sort(triangles.begin(), triangles.end());
 }
 

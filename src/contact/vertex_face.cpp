@@ -1,0 +1,213 @@
+#include "contact/vertex_face.h"
+
+#include <cmath>
+#include <tuple>
+
+#include "contact/tolerances.h"
+
+namespace tissue_contact {
+namespace {
+
+/// Of the size: a vertex this near to an edge or a vertex touches it, whatever the direction between them, which may
+/// be mostly a small sideways shift. The surfaces' normals then give the contact normal.
+constexpr double kTouching = 1e-3;
+
+/// Of the size: points nearer to each other are one. Above kSnapWeight, by which each may have been moved.
+constexpr double kSamePoint = 1e-8;
+
+SurfaceFeature vertexFeature(int node) { return {node, -1, -1}; }
+
+SurfacePoint vertexPoint(int node) { return {{node, node, node}, Vector3::UnitX()}; }
+
+/// Whether triangles around the vertex face something whose contact normal is `n`.
+bool faces(PairSurface& surface, int node, const Vector3& n) {
+  if (!surface.isVolume()) return true;
+  return surface.topology().anyTriangleOf(vertexFeature(node),
+                                          [&](int t) { return n.dot(surface.normal(t)) < -kFacing; });
+}
+
+/// Whether the triangles around a feature lead away from the point `p` on it, or at least along, in direction `n`.
+bool leadsAway(const PairSurface& surface, const SurfaceFeature& feature, const Vector3& p, const Vector3& n) {
+  return !surface.topology().anyTriangleOf(feature, [&](int t) {
+    const Triangle& nodes = surface.topology().triangles()[t];
+    return std::any_of(nodes.begin(), nodes.end(), [&](int node) {
+      const Vector3 along = surface.x(node) - p;
+      const double rise = n.dot(along);
+      return rise < 0.0 && rise * rise > kSharp * kSharp * along.squaredNorm();
+    });
+  });
+}
+
+/// The contact normal where a vertex touches an edge or a vertex of another volume: the mean of those triangle normals
+/// from which both surfaces lead away. Swapping the two turns it round. Zero: they do not face each other there.
+Vector3 touchingNormal(PairSurface& own, int node, PairSurface& other, const SurfaceFeature& feature,
+                       const Vector3& foot) {
+  const auto flat = [](PairSurface& surface, const SurfaceFeature& of, const Vector3& n) {
+    return !surface.topology().anyTriangleOf(
+        of, [&](int t) { return n.dot(surface.normal(t)) < 1.0 - 0.5 * kSharp * kSharp; });
+  };
+  const Vector3 between = (other.featureNormal(feature) - own.featureNormal(vertexFeature(node))).normalized();
+  if (flat(other, feature, between) && flat(own, vertexFeature(node), -between)) return between;
+  Vector3 sum = Vector3::Zero();
+  const auto offer = [&](const Vector3& n) {
+    const bool faces_own =
+        other.topology().anyTriangleOf(feature, [&](int t) { return n.dot(other.normal(t)) > kFacing; });
+    if (faces_own && faces(own, node, n) && leadsAway(own, vertexFeature(node), own.x(node), n) &&
+        leadsAway(other, feature, foot, -n)) {
+      sum += n;
+    }
+    return false;
+  };
+  other.topology().anyTriangleOf(feature, [&](int t) { return offer(other.normal(t)); });
+  own.topology().anyTriangleOf(vertexFeature(node), [&](int t) { return offer(-own.normal(t)); });
+  return sum.normalized();
+}
+
+}  // namespace
+
+void VertexFace::find(const SurfacePair& pair, bool swapped, std::vector<Contact>& contacts) {
+  Eigen::AlignedBox3d near = pair.other.box();
+  near.min().array() -= pair.reach();
+  near.max().array() += pair.reach();
+  for (const int node : pair.own.nodes()) {
+    const Vector3 p = pair.own.x(node);
+    if (!near.contains(p) || search(pair, node, pair.reach(), swapped, contacts)) continue;
+    const bool may_be_inside = pair.other.isVolume() && pair.other.box().contains(p);
+    if (may_be_inside && pair.depth() > pair.reach()) search(pair, node, pair.depth(), swapped, contacts);
+  }
+}
+
+/// @returns whether looking farther than `reach` could find nothing else.
+bool VertexFace::search(const SurfacePair& pair, int node, double reach, bool swapped, std::vector<Contact>& contacts) {
+  findFeet(pair, node, reach);
+  findMinima(pair, node);
+  if (feet_.empty() || !feet_.front().minimum) return false;
+  const double round_off = kTouch * pair.size();
+  const Foot& nearest = feet_.front();
+  const bool inside = nearest.distance < -round_off;
+  const bool on_surface = std::abs(nearest.distance) <= kTouching * pair.size() && pair.other.isVolume() &&
+                          !faces(pair.own, node, nearest.normal);
+  if (inside || on_surface) {
+    const Foot* const way_out = wayOut(pair, node, on_surface);
+    if (way_out != nullptr) add(pair, node, *way_out, swapped, contacts);
+    return way_out != nullptr;
+  }
+  for (const Foot& foot : feet_) {
+    const bool near = foot.minimum && foot.distance >= -round_off && foot.distance - pair.apart() <= pair.margin;
+    if (near && faces(pair.own, node, foot.normal) &&
+        leadsAway(pair.own, vertexFeature(node), pair.own.x(node), foot.normal)) {
+      add(pair, node, foot, swapped, contacts);
+    }
+  }
+  return true;
+}
+
+/// The nearest foot that the vertex faces from inside, null if there is none.
+const VertexFace::Foot* VertexFace::wayOut(const SurfacePair& pair, int node, bool on_surface) {
+  const Foot* best = nullptr;
+  for (Foot& foot : feet_) {
+    if (!foot.minimum && !(on_surface && measure(pair, node, foot))) continue;
+    if (foot.distance < 0.0 && foot.distance >= -pair.depth() && faces(pair.own, node, foot.normal) &&
+        (best == nullptr || foot.distance > best->distance)) {
+      best = &foot;
+    }
+  }
+  return best;
+}
+
+/// Fills `feet_`: one per triangle within reach, ascending.
+void VertexFace::findFeet(const SurfacePair& pair, int node, double reach) {
+  const Vector3 p = pair.own.x(node);
+  const SurfaceTopology& topology = pair.other.topology();
+  const Vector3 around = Vector3::Constant(reach);
+  pair.other.tree().overlapping({Vector3(p - around), Vector3(p + around)}, candidates_);
+  feet_.clear();
+  for (const int t : candidates_) {
+    const Triangle& nodes = topology.triangles()[t];
+    if (pair.folds() && (nodes[0] == node || nodes[1] == node || nodes[2] == node)) continue;
+    const Vector3 weights =
+        snapped(projectOnTriangle({pair.other.x(nodes[0]), pair.other.x(nodes[1]), pair.other.x(nodes[2])}, p));
+    const Vector3 q = SurfacePoint{nodes, weights}.in(pair.other.positions());
+    const double distance = (q - p).norm();
+    if (distance <= reach) feet_.push_back({t, topology.featureOf(t, weights), weights, q, distance});
+  }
+}
+
+/// Measures the local minima among `feet_`, each once, and puts them in front, nearest first.
+void VertexFace::findMinima(const SurfacePair& pair, int node) {
+  // Not the features but the points are compared: round-off may put one point on an edge for one triangle, and just
+  // beside it for the next.
+  const double same_squared = std::pow(kSamePoint * pair.size(), 2);
+  const auto coincide = [&](const Foot& a, const Foot& b) { return (a.q - b.q).squaredNorm() <= same_squared; };
+  for (Foot& foot : feet_) {
+    foot.minimum = !pair.other.topology().anyTriangleOf(foot.feature, [&](int t) {
+      const auto near = std::lower_bound(feet_.begin(), feet_.end(), t,
+                                         [](const Foot& one, int triangle) { return one.triangle < triangle; });
+      return near == feet_.end() || near->triangle != t || !coincide(*near, foot);
+    });
+  }
+  std::sort(feet_.begin(), feet_.end(), [](const Foot& a, const Foot& b) {
+    const auto on_inside = [](const Foot& foot) { return foot.feature[2] >= 0 ? 2 : foot.feature[1] >= 0 ? 1 : 0; };
+    return std::make_tuple(!a.minimum, on_inside(a), a.feature, a.triangle) <
+           std::make_tuple(!b.minimum, on_inside(b), b.feature, b.triangle);
+  });
+  for (std::size_t i = 0; i < feet_.size() && feet_[i].minimum; ++i) {
+    const auto end = feet_.begin() + static_cast<std::ptrdiff_t>(i);
+    const bool known = std::any_of(feet_.begin(), end, [&](const Foot& one) { return coincide(one, feet_[i]); });
+    feet_[i].minimum = !known && measure(pair, node, feet_[i]);
+  }
+  std::stable_sort(feet_.begin(), feet_.end(), [](const Foot& a, const Foot& b) {
+    return std::make_pair(!a.minimum, std::abs(a.distance)) < std::make_pair(!b.minimum, std::abs(b.distance));
+  });
+}
+
+/// Sets the contact normal and gives the distance its sign, < 0: behind the surface. False: no contact can be here.
+bool VertexFace::measure(const SurfacePair& pair, int node, Foot& foot) {
+  const SurfacePoint point{pair.other.topology().triangles()[foot.triangle], foot.weights};
+  if (pair.nearAtRest(vertexPoint(node), point)) return false;
+  const Vector3 outward = pair.other.featureNormal(foot.feature);
+  if (outward.isZero(0.0)) return false;
+  const Vector3 offset = pair.own.x(node) - foot.q;
+  const bool on_face = foot.feature[2] >= 0;
+  const bool touching = foot.distance <= kTouching * pair.size();
+  foot.normal = outward;
+  if (!on_face && !touching) {
+    foot.normal = (offset.dot(outward) < 0.0 ? -1.0 : 1.0) / foot.distance * offset;
+  } else if (!on_face && pair.own.isVolume() && pair.other.isVolume()) {
+    const Vector3 normal = touchingNormal(pair.own, node, pair.other, foot.feature, foot.q);
+    if (!normal.isZero(0.0)) foot.normal = normal;
+  }
+  foot.distance = foot.normal.dot(offset);
+  if (pair.other.isVolume()) return true;
+  bool turn = foot.distance < 0.0;
+  if (pair.own.isVolume() && std::abs(foot.distance) <= pair.apart()) {
+    turn = foot.normal.dot(pair.own.featureNormal(vertexFeature(node))) > 0.0;
+  }
+  if (turn) {
+    foot.normal = -foot.normal;
+    foot.distance = -foot.distance;
+  }
+  return true;
+}
+
+void VertexFace::add(const SurfacePair& pair, int node, const Foot& foot, bool swapped,
+                     std::vector<Contact>& contacts) {
+  const bool at_vertex = foot.feature[1] < 0;
+  if (!at_vertex) {
+    const SurfacePoint point{pair.other.topology().triangles()[foot.triangle], foot.weights};
+    pair.add(vertexFeature(node), vertexPoint(node), foot.feature, point, foot.normal, foot.distance, contacts);
+    return;
+  }
+  // Two vertices find each other from both sides; the same words from both make it one contact.
+  const int theirs = foot.feature[0];
+  if (pair.folds() ? node < theirs : !swapped) {
+    pair.add(vertexFeature(node), vertexPoint(node), foot.feature, vertexPoint(theirs), foot.normal, foot.distance,
+             contacts);
+  } else {
+    const SurfacePair mirrored{pair.other, pair.own, pair.margin};
+    mirrored.add(foot.feature, vertexPoint(theirs), vertexFeature(node), vertexPoint(node), -foot.normal, foot.distance,
+                 contacts);
+  }
+}
+
+}  // namespace tissue_contact
