@@ -1,6 +1,6 @@
 /// @file
-/// Room `solver`: the contact problem with the tissues eliminated, u = W r + q with W the Delassus matrix J A^-1 J', and
-/// the solvers that work on it. A step's contact problem, or one read from a file, in; impulses and velocities out.
+/// Room `solver`: the contact problem with the tissues eliminated, u = W r + q with W the Delassus matrix J A^-1 J',
+/// and the solvers that work on it. A step's contact problem, or one read from a file, in; impulses and velocities out.
 #pragma once
 
 #include <iosfwd>
@@ -53,20 +53,41 @@ struct DelassusReport {
   DelassusResiduals residuals;
 };
 
-/// Solves a Delassus problem by the method of the description (all but kImpulse, which needs a step; relaxation does not
-/// matter here, W is exact). `tolerance` is that of the scaled natural map.
+/// Solves a Delassus problem by the method of the description (all but kImpulse, which needs a step; relaxation does
+/// not matter here, W is exact). `tolerance` is that of the scaled natural map.
 /// @throws std::invalid_argument for a method that does not apply, sizes that do not match, values that are not finite.
 DelassusReport solveDelassus(const DelassusProblem& problem, const SolverDescription& description,
                              DelassusSolution& solution);
 
-/// Eliminates the bodies of a step's problem by sparse Cholesky: W = J A^-1 J', q = J A^-1 b - u_tool - required_u_n n.
-/// Contacts on nodes that cannot move get zero rows.
-DelassusProblem makeDelassusProblem(const ContactProblem& problem);
+/// A step's problem with its bodies eliminated by sparse Cholesky: W = J A^-1 J', q = J A^-1 b - u_tool - required_u_n
+/// n. Keeps the factors, so that the velocities can be had back.
+class DelassusSystem {
+ public:
+  /// @param contacts must outlive this object. Contacts on nodes that cannot move get zero rows (q too): r = 0, open.
+  /// @throws std::runtime_error naming the body whose A is not positive definite.
+  explicit DelassusSystem(const ContactProblem& contacts);
+  ~DelassusSystem();
+  DelassusSystem(const DelassusSystem&) = delete;
+  DelassusSystem& operator=(const DelassusSystem&) = delete;
+
+  const DelassusProblem& problem() const;
+
+  /// v = A^-1 (b + J' r) per body, m/s; 0 at fixed nodes. @param r 3n, N s.
+  void recoverVelocities(const VectorX& r, std::vector<NodalVectors>& v) const;
+
+ private:
+  struct Bodies;
+  std::unique_ptr<Bodies> bodies_;
+};
+
+/// The problem of a DelassusSystem alone.
+DelassusProblem makeDelassusProblem(const ContactProblem& contacts);
 
 /// Plain-text contact problem files ("FC3D 1"). Anisotropic laws do not fit the format: `mu` is then the kinetic
 /// coefficient along axis 1; where static and kinetic differ, the coefficient that applies to the contact's last state.
-/// Reading: # comments, W dense or sparse. @throws std::invalid_argument naming the file, the token and what was expected;
-/// memory is bounded by the file's size.
+/// Reading: # comments, W dense or sparse. @throws std::invalid_argument naming the file, the line, the word found and
+/// what was expected. At most 3000 contacts (W is held dense), and no more memory than a file of that size can fill.
+/// Writing: 17 digits, so that reading gives the same numbers back. @param states per contact.
 DelassusProblem readContactProblem(const std::string& file);
 void writeContactProblem(std::ostream& stream, const DelassusProblem& problem, const std::vector<ContactState>& states);
 

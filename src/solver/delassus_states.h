@@ -1,0 +1,27 @@
+/// @file
+/// Room `solver`, private: contact states read off an answer, and hysteresis as a sequence of problems with one
+/// coefficient of friction per contact. For solvers that treat all contacts at once.
+#pragma once
+
+#include <vector>
+
+#include "solver/natural_map.h"
+
+namespace tissue_contact {
+
+/// The state a contact's answer shows: whichever of two complementary quantities is larger decides (normal impulse or
+/// separation; unused friction or sliding). Less than `round_off` of sliding (natural units) counts as none.
+ContactState stateOf(const Vector3& r, const Vector3& u, double mu, const NaturalUnits& units, double round_off);
+
+/// The coefficient each contact starts with: static, unless it was sliding before the step or `states` say it slides.
+/// @param states per contact, or empty.
+VectorX chooseCoefficients(const DelassusProblem& problem, const std::vector<ContactState>& states);
+
+/// Contacts that slide in answer r while their coefficient is the static one get the kinetic one. Only ever in this
+/// direction, so repeating it ends. @return some contact did.
+bool releaseSliding(const DelassusProblem& problem, const VectorX& r, double round_off, VectorX& mu);
+
+/// Answer r with its velocities and states.
+DelassusSolution answerWith(const DelassusProblem& problem, const VectorX& mu, const VectorX& r, double round_off);
+
+}  // namespace tissue_contact

@@ -1,0 +1,36 @@
+/// @file
+/// Room `solver`, private: the natural map of Coulomb friction, whose zeros are the answers of a contact. Impulse and
+/// velocity of one contact in (contact frame n, t1, t2); how far they are from the law out.
+///
+///   F(r, u) = r - P_K(r - u - mu |u_t| n),   K = { |r_t| <= mu r_n }   (De Saxce & Feng 1998)
+#pragma once
+
+#include "tissue_contact/solver/delassus.h"
+
+namespace tissue_contact {
+
+/// The point of the cone |x_t| <= mu x_n nearest to x.
+Vector3 projectOntoCone(const Vector3& x, double mu);
+
+/// A generalised derivative of projectOntoCone at x.
+Matrix3 coneProjectionDerivative(const Vector3& x, double mu);
+
+/// F. Impulse and velocity in units that make them comparable (NaturalUnits).
+Vector3 naturalMap(const Vector3& r, const Vector3& u, double mu);
+
+/// The units of the scaled natural map: r' = r / impulse, u' = u / velocity, so that W' = W impulse / velocity has a
+/// diagonal of 1 on average.
+struct NaturalUnits {
+  double impulse = 1.0;   ///< N s
+  double velocity = 1.0;  ///< m/s
+};
+NaturalUnits naturalUnits(const DelassusProblem& problem);
+
+/// What the scaled natural map of one contact measures, whatever its law: |F| with the isotropic coefficient that fits
+/// best (held by static friction, where the contact may be and does not slide; kinetic otherwise); for an anisotropic
+/// law the change of r' by solving the contact exactly.
+/// @param W_cc 3x3 block of the contact, 1/kg.
+double contactDefect(const Matrix3& W_cc, const Vector3& r, const Vector3& u, const CoulombLaw& law, bool was_sliding,
+                     const NaturalUnits& units);
+
+}  // namespace tissue_contact
