@@ -31,17 +31,12 @@ struct ContactAnswer {
 /// Solves one contact: u = W r + q with 0 <= r_n  _|_  u_n >= 0 and
 ///   static:  u_t = 0 with |r_t| <= mu_stick r_n;   kinetic:  r_t = -mu_kinetic r_n u_t / |u_t|,
 /// where mu_stick is mu_static, or mu_kinetic if the contact `was_sliding` (hysteresis: it re-sticks only if kinetic
-/// friction is enough to stop it).
-/// @param W 3x3 symmetric positive definite local compliance, 1/kg. @param q velocity without this contact's impulse,
-/// m/s,
-///   with the gap's share gap/dt added to its normal component.
+/// friction is enough to stop it). Of a sliding contact the direction is the one unknown, found by Newton's iteration;
+/// where friction is strongly coupled to the normal there can be several, and the one found first counts.
+/// @param W 3x3 symmetric positive definite local compliance, 1/kg.
+/// @param q velocity without this contact's impulse, m/s, with the gap's share gap/dt added to its normal component.
 /// Sign: r_n >= 0 pushes the tissue away from the instrument, along n. Exact up to round-off; no allocation.
 /// Anisotropic laws: see solveAnisotropicContact (friction_law.h), to which this hands over.
 ContactAnswer solveCoulombContact(const Matrix3& W, const Vector3& q, const CoulombLaw& law, bool was_sliding);
-
-/// Point x of the disc |x| <= radius that minimises x'Wx/2 + s'x, W symmetric positive definite: the friction impulse
-/// of maximum dissipation at a given normal impulse. On the rim, x = -(W + sigma I)^-1 s with the sigma > 0 that gives
-/// |x| = radius, so that the sliding velocity W x + s = -sigma x opposes it exactly.
-Vector2 minimizeOnDisc(const Matrix2& W, const Vector2& s, double radius);
 
 }  // namespace tissue_contact

@@ -1,0 +1,328 @@
+/// Friction laws one by one: forces and limits by hand, the Stribeck table, and every bad number refused by name.
+#include "tissue_contact/friction/friction_law.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace tissue_contact {
+namespace {
+
+using Kind = FrictionLawDescription::Kind;
+
+/// Round-off of a handful of operations on numbers of order 1.
+constexpr double kRoundOff = 1e-15;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+FrictionLawDescription describe(Kind kind, const std::vector<double>& fixed, const std::vector<double>& kinetic,
+                                const std::vector<double>& angles_rad = {}) {
+  FrictionLawDescription law;
+  law.kind = kind;
+  law.static_coefficients = fixed;
+  law.kinetic_coefficients = kinetic;
+  law.angles_rad = angles_rad;
+  return law;
+}
+
+std::unique_ptr<const AnisotropicFriction> make(Kind kind, const std::vector<double>& fixed,
+                                                const std::vector<double>& kinetic,
+                                                const std::vector<double>& angles_rad = {}) {
+  return makeAnisotropicFriction(describe(kind, fixed, kinetic, angles_rad));
+}
+
+void expectNear(const Vector2& actual, const Vector2& expected) {
+  EXPECT_LE((actual - expected).norm(), kRoundOff) << actual.transpose() << " instead of " << expected.transpose();
+}
+
+TEST(FrictionLaw, IsotropicLawNeedsNoObject) { EXPECT_EQ(make(Kind::kIsotropic, {0.5}, {0.4}), nullptr); }
+
+// d = (3, 4)/5 with mu = (0.8, 0.3): (mu1^2 d1, mu2^2 d2) / |(mu1 d1, mu2 d2)| = (1.92, 0.36) / (5 * 0.53665631...).
+TEST(FrictionLaw, OrthotropicForceIsNotCollinear) {
+  const auto law = make(Kind::kOrthotropic, {0.8, 0.3}, {0.8, 0.3});
+  const double size = std::sqrt(2.4 * 2.4 + 1.2 * 1.2);
+  expectNear(law->slidingForce({0.6, 0.8}), Vector2(-1.92, -0.36) / size);
+  expectNear(law->slidingForce({1.0, 0.0}), {-0.8, 0.0});
+  expectNear(law->slidingForce({0.0, -1.0}), {0.0, 0.3});
+}
+
+TEST(FrictionLaw, OrthotropicLimitIsAnEllipse) {
+  const auto law = make(Kind::kOrthotropic, {0.8, 0.3}, {0.4, 0.3});
+  EXPECT_NEAR(law->use({0.48, 0.24}, false), 1.0, kRoundOff);  // (0.6, 0.8) of the semiaxes
+  EXPECT_NEAR(law->use({-0.24, 0.24}, true), 1.0, kRoundOff);
+  EXPECT_NEAR(law->use({0.0, -0.6}, false), 2.0, kRoundOff);
+}
+
+// The instrument sliding along +axis 1 feels the forward coefficient, against its motion.
+TEST(FrictionLaw, AsymmetricLawTellsForwardFromBackward) {
+  const auto law = make(Kind::kAsymmetric, {0.2, 0.9, 0.5}, {0.1, 0.8, 0.4});
+  expectNear(law->slidingForce({1.0, 0.0}), {-0.1, 0.0});
+  expectNear(law->slidingForce({-1.0, 0.0}), {0.8, 0.0});
+  expectNear(law->slidingForce({0.0, 1.0}), {0.0, -0.4});
+  // Backward quarter ellipse, d = (-3, 4)/5: (mu1^2 d1, mu2^2 d2) / |(mu1 d1, mu2 d2)|, mu = (0.8, 0.4).
+  expectNear(law->slidingForce({-0.6, 0.8}), Vector2(0.384, -0.128) / std::hypot(0.48, 0.32));
+  EXPECT_NEAR(law->use({-0.2, 0.0}, false), 1.0, kRoundOff);  // what holds it from going forward
+  EXPECT_NEAR(law->use({0.9, 0.0}, false), 1.0, kRoundOff);
+  EXPECT_NEAR(law->use({0.8 * 0.6, 0.4 * 0.8}, true), 1.0, kRoundOff);
+}
+
+TEST(FrictionLaw, LawWithoutFrictionAlongAnAxisHoldsNothingThere) {
+  const auto blade = make(Kind::kOrthotropic, {0.0, 0.5}, {0.0, 0.5});
+  EXPECT_GT(blade->use({1e-6, 0.1}, false), 1e6);
+  EXPECT_NEAR(blade->use({1e-17, 0.25}, false), 0.5, kRoundOff);  // round-off of turning the axes
+  EXPECT_EQ(blade->use({0.0, 0.0}, false), 0.0);
+  expectNear(blade->slidingForce({1.0, 0.0}), Vector2::Zero());
+  expectNear(blade->slidingForce({0.6, 0.8}), {0.0, -0.5});
+}
+
+TEST(FrictionLaw, TableIsLinearInBetweenAndPeriodic) {
+  const auto law = make(Kind::kTable, {0.5, 0.7, 0.9}, {0.2, 0.4, 0.6}, {0.0, M_PI / 2.0, M_PI});
+  const auto mu = [&](double angle) {
+    const Vector2 d(std::cos(angle), std::sin(angle));
+    const Vector2 f = law->slidingForce(d);
+    EXPECT_LE(std::abs(f.x() * d.y() - f.y() * d.x()), kRoundOff);
+    return -f.dot(d);
+  };
+  EXPECT_NEAR(mu(0.0), 0.2, kRoundOff);
+  EXPECT_NEAR(mu(M_PI / 4.0), 0.3, kRoundOff);
+  EXPECT_NEAR(mu(M_PI), 0.6, kRoundOff);
+  EXPECT_NEAR(mu(1.5 * M_PI), 0.4, kRoundOff);  // half way back from 0.6 to 0.2
+  EXPECT_NEAR(mu(-M_PI / 4.0), 0.3, kRoundOff);
+  EXPECT_NEAR(mu(-1e-300), 0.2, kRoundOff);
+  // What holds the instrument from sliding at 90 degrees is a force at -90 degrees.
+  EXPECT_NEAR(law->use({0.0, -0.7}, false), 1.0, kRoundOff);
+  EXPECT_NEAR(law->use({0.0, -0.4}, true), 1.0, kRoundOff);
+}
+
+TEST(FrictionLaw, TableOfOneAngleIsIsotropic) {
+  const auto law = make(Kind::kTable, {0.5}, {0.4}, {0.0});
+  for (int i = 0; i < 60; ++i) {
+    const Vector2 d(std::cos(0.1 * i), std::sin(0.1 * i));
+    expectNear(law->slidingForce(d), -0.4 * d);
+  }
+}
+
+TEST(FrictionLaw, TensorForceAndLimit) {
+  const auto law = make(Kind::kTensor, {0.6, 0.2, -0.2, 0.6}, {0.3, 0.1, -0.1, 0.3});
+  expectNear(law->slidingForce({0.6, 0.8}), {-0.26, -0.18});
+  EXPECT_NEAR(law->use({0.26, 0.18}, true), 1.0, kRoundOff);
+  EXPECT_NEAR(law->use({-0.26, -0.18}, false), 0.5, kRoundOff);
+}
+
+TEST(FrictionLaw, SingularTensorHoldsOnlyAlongItsRange) {
+  const Vector2 along = Vector2(1.0, 2.0) / std::sqrt(5.0);
+  const auto law = make(Kind::kTensor, {0.1, 0.2, 0.2, 0.4}, {0.1, 0.2, 0.2, 0.4});  // 0.5 along, 0 across
+  EXPECT_NEAR(law->use(0.25 * along, false), 0.5, kRoundOff);
+  EXPECT_GT(law->use(Vector2(1e-6, 0.0), false), 1e6);
+  const auto none = make(Kind::kTensor, {0.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0});
+  EXPECT_EQ(none->use(Vector2(0.1, 0.0), true), kInfinity);
+  EXPECT_EQ(none->use(Vector2::Zero(), true), 0.0);
+}
+
+TEST(FrictionLaw, StribeckTableIsLinearAndHeldBeyondItsEnds) {
+  FrictionLawDescription law = describe(Kind::kIsotropic, {0.5}, {0.5});
+  EXPECT_EQ(kineticFactor(law, 3.0), 1.0);
+  law.speeds_m_per_s = {0.0, 0.01, 0.1};
+  law.speed_factors = {1.0, 0.6, 0.8};
+  EXPECT_EQ(kineticFactor(law, 0.0), 1.0);
+  EXPECT_NEAR(kineticFactor(law, 0.0025), 0.9, kRoundOff);
+  EXPECT_NEAR(kineticFactor(law, 0.055), 0.7, kRoundOff);
+  EXPECT_EQ(kineticFactor(law, 0.1), 0.8);
+  EXPECT_EQ(kineticFactor(law, 5.0), 0.8);
+}
+
+TEST(ContactPlaneFriction, IsotropicLawOpposesSliding) {
+  const CoulombLaw law{0.6, 0.3};
+  expectNear(kineticFriction(law, {0.6, 0.8}), {-0.18, -0.24});
+  EXPECT_NEAR(frictionUse(law, {0.3, 0.0}, false), 0.5, kRoundOff);
+  EXPECT_NEAR(frictionUse(law, {0.3, 0.0}, true), 1.0, kRoundOff);
+  EXPECT_EQ(frictionUse({0.0, 0.0}, {0.1, 0.0}, false), kInfinity);
+  EXPECT_EQ(frictionUse({0.0, 0.0}, {0.0, 0.0}, false), 0.0);
+}
+
+// Axis 1 along t2. Tissue sliding along -t2 under the instrument: the instrument goes forward; the friction on the
+// tissue is against the tissue's sliding, hence along +t2.
+TEST(ContactPlaneFriction, ForwardIsTheInstrumentMovingAlongAxis1) {
+  const auto asymmetric = make(Kind::kAsymmetric, {0.2, 0.8, 0.5}, {0.1, 0.6, 0.4});
+  CoulombLaw law;
+  law.anisotropic = asymmetric.get();
+  law.axis = Vector2::UnitY();
+  expectNear(kineticFriction(law, {0.0, -1.0}), {0.0, 0.1});
+  expectNear(kineticFriction(law, {0.0, 1.0}), {0.0, -0.6});
+  expectNear(kineticFriction(law, {1.0, 0.0}), {-0.4, 0.0});
+  EXPECT_NEAR(frictionUse(law, {0.0, 0.2}, false), 1.0, kRoundOff);
+  EXPECT_NEAR(frictionUse(law, {0.0, -0.2}, false), 0.25, kRoundOff);
+  law.kinetic_factor = 0.5;
+  expectNear(kineticFriction(law, {0.0, -1.0}), {0.0, 0.05});
+  EXPECT_NEAR(frictionUse(law, {0.0, 0.2}, false), 1.0, kRoundOff);
+  EXPECT_NEAR(frictionUse(law, {0.0, 0.05}, true), 1.0, kRoundOff);
+  law.kinetic_factor = 0.0;
+  EXPECT_EQ(frictionUse(law, {0.0, 0.05}, true), kInfinity);
+}
+
+struct BadLaw {
+  const char* name;
+  std::function<void(FrictionLawDescription&)> spoil;  ///< starts from the good law of `kind`
+  Kind kind;
+  std::vector<const char*> message;
+};
+
+void PrintTo(const BadLaw& bad, std::ostream* stream) { *stream << bad.name; }
+
+FrictionLawDescription goodLaw(Kind kind) {
+  switch (kind) {
+    case Kind::kIsotropic:
+      return describe(kind, {0.5}, {0.4});
+    case Kind::kOrthotropic:
+      return describe(kind, {0.5, 0.6}, {0.4, 0.5});
+    case Kind::kAsymmetric:
+      return describe(kind, {0.5, 0.6, 0.7}, {0.4, 0.5, 0.6});
+    case Kind::kTable:
+      return describe(kind, {0.5, 0.6, 0.7}, {0.4, 0.5, 0.6}, {0.0, 2.0, 4.0});
+    case Kind::kTensor:
+      break;
+  }
+  return describe(Kind::kTensor, {0.6, 0.1, 0.1, 0.5}, {0.5, 0.1, 0.1, 0.4});
+}
+
+TEST(FrictionLaw, GoodLawsAreAccepted) {
+  for (const Kind kind : {Kind::kIsotropic, Kind::kOrthotropic, Kind::kAsymmetric, Kind::kTable, Kind::kTensor}) {
+    FrictionLawDescription law = goodLaw(kind);
+    law.speeds_m_per_s = {0.0, 0.1};
+    law.speed_factors = {1.0, 0.0};
+    EXPECT_NO_THROW(makeAnisotropicFriction(law)) << static_cast<int>(kind);
+  }
+}
+
+class BadFrictionLaw : public testing::TestWithParam<BadLaw> {};
+
+TEST_P(BadFrictionLaw, IsRefusedByName) {
+  FrictionLawDescription law = goodLaw(GetParam().kind);
+  GetParam().spoil(law);
+  try {
+    makeAnisotropicFriction(law);
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    for (const char* part : GetParam().message) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << part << " not in: " << error.what();
+    }
+  }
+}
+
+using Law = FrictionLawDescription;
+INSTANTIATE_TEST_SUITE_P(
+    All, BadFrictionLaw,
+    testing::Values(
+        BadLaw{"NoCoefficient", [](Law& l) { l.static_coefficients.clear(); }, Kind::kIsotropic, {"static has 0", "1"}},
+        BadLaw{"OneTooMany",
+               [](Law& l) { l.kinetic_coefficients.push_back(0.1); },
+               Kind::kOrthotropic,
+               {"orthotropic", "kinetic has 3 values", "2"}},
+        BadLaw{"OneTooFew",
+               [](Law& l) { l.static_coefficients.pop_back(); },
+               Kind::kAsymmetric,
+               {"asymmetric", "static has 2 values", "3"}},
+        BadLaw{"TensorOfThree",
+               [](Law& l) { l.static_coefficients.pop_back(); },
+               Kind::kTensor,
+               {"tensor", "static has 3 values", "4"}},
+        BadLaw{"TableCount",
+               [](Law& l) { l.kinetic_coefficients.pop_back(); },
+               Kind::kTable,
+               {"table", "kinetic has 2 values", "3", "one per angle"}},
+        BadLaw{"Negative",
+               [](Law& l) { l.kinetic_coefficients[0] = -0.1; },
+               Kind::kIsotropic,
+               {"isotropic", "kinetic[0] is -0.1", "0 to 1000000"}},
+        BadLaw{"NegativeAcross",
+               [](Law& l) { l.kinetic_coefficients[1] = -0.5; },
+               Kind::kOrthotropic,
+               {"kinetic[1] is -0.5", "0 to 1000000"}},
+        BadLaw{"NotANumber", [](Law& l) { l.static_coefficients[2] = kNan; }, Kind::kAsymmetric, {"static[2] is nan"}},
+        BadLaw{
+            "KineticNotANumber", [](Law& l) { l.kinetic_coefficients[1] = kNan; }, Kind::kTable, {"kinetic[1] is nan"}},
+        BadLaw{"Infinite", [](Law& l) { l.static_coefficients[0] = kInfinity; }, Kind::kTable, {"static[0] is inf"}},
+        BadLaw{"Huge", [](Law& l) { l.static_coefficients[0] = 1e7; }, Kind::kIsotropic, {"static[0] is 10000000"}},
+        BadLaw{"StaticBelowKinetic",
+               [](Law& l) { l.static_coefficients[1] = 0.45; },
+               Kind::kOrthotropic,
+               {"static[1] is 0.45", ">= kinetic[1] = 0.5"}},
+        BadLaw{"StaticBelowKineticBackward",
+               [](Law& l) { l.static_coefficients[1] = 0.45; },
+               Kind::kAsymmetric,
+               {"static[1] is 0.45", ">= kinetic[1] = 0.5"}},
+        BadLaw{"StaticBelowKineticInTable",
+               [](Law& l) { l.static_coefficients[2] = 0.0; },
+               Kind::kTable,
+               {"static[2] is 0", ">= kinetic[2]"}},
+        BadLaw{"NoAngles", [](Law& l) { l.angles_rad.clear(); }, Kind::kTable, {"angles_rad is empty"}},
+        BadLaw{"AnglesNotFrom0", [](Law& l) { l.angles_rad[0] = 0.5; }, Kind::kTable, {"angles_rad[0] is 0.5 rad"}},
+        BadLaw{"AnglesDescend", [](Law& l) { l.angles_rad[2] = 2.0; }, Kind::kTable, {"angles_rad[2] is 2 rad", "> 2"}},
+        BadLaw{"AngleNotANumber", [](Law& l) { l.angles_rad[1] = kNan; }, Kind::kTable, {"angles_rad[1] is nan"}},
+        BadLaw{"AngleOfATurn",
+               [](Law& l) { l.angles_rad[2] = 2.0 * M_PI; },
+               Kind::kTable,
+               {"angles_rad[2] is 6.28", "< 2 pi"}},
+        BadLaw{"TensorNotFinite",
+               [](Law& l) { l.kinetic_coefficients[1] = kNan; },
+               Kind::kTensor,
+               {"tensor", "kinetic[1] is nan"}},
+        BadLaw{"TensorDrives",
+               [](Law& l) {
+                 l.kinetic_coefficients = {0.25, 0.5, 0.5, 0.25};
+               },
+               Kind::kTensor,
+               {"symmetric part of 'kinetic'", "-0.25", "drives sliding"}},
+        // Every entry of `static` is the larger one, yet across the diagonal it holds 0.1 and kinetic friction pulls
+        // 0.3.
+        BadLaw{"TensorStaticBelowInOneDirection",
+               [](Law& l) {
+                 l.kinetic_coefficients = {0.4, 0.1, 0.1, 0.4};
+                 l.static_coefficients = {0.5, 0.4, 0.4, 0.5};
+               },
+               Kind::kTensor,
+               {"S S' - K K'", "static friction is below kinetic"}},
+        // Friction acts along axis 1 when sliding, along axis 2 when held: both matrices are singular.
+        BadLaw{"TensorRangesDiffer",
+               [](Law& l) {
+                 l.kinetic_coefficients = {0.4, 0.0, 0.0, 0.0};
+                 l.static_coefficients = {0.0, 0.0, 0.0, 0.9};
+               },
+               Kind::kTensor,
+               {"S S' - K K'"}},
+        BadLaw{"SpeedCount", [](Law& l) { l.speeds_m_per_s = {0.0}; }, Kind::kIsotropic, {"speed_factors has 0", "1"}},
+        BadLaw{"FactorsAlone", [](Law& l) { l.speed_factors = {1.0}; }, Kind::kOrthotropic, {"speed_factors has 1"}},
+        BadLaw{"SpeedsNotFrom0",
+               [](Law& l) {
+                 l.speeds_m_per_s = {0.5};
+                 l.speed_factors = {1.0};
+               },
+               Kind::kIsotropic,
+               {"speeds_m_per_s[0] is 0.5 m/s", "must be 0"}},
+        BadLaw{"SpeedsDescend",
+               [](Law& l) {
+                 l.speeds_m_per_s = {0.0, 0.2, 0.1};
+                 l.speed_factors = {1.0, 1.0, 1.0};
+               },
+               Kind::kTensor,
+               {"speeds_m_per_s[2] is 0.1", "> 0.2"}},
+        BadLaw{"FactorAbove1",
+               [](Law& l) {
+                 l.speeds_m_per_s = {0.0, 0.2};
+                 l.speed_factors = {1.0, 1.1};
+               },
+               Kind::kTable,
+               {"speed_factors[1] is 1.1", "0 to 1"}},
+        BadLaw{"FactorNotANumber",
+               [](Law& l) {
+                 l.speeds_m_per_s = {0.0};
+                 l.speed_factors = {kNan};
+               },
+               Kind::kAsymmetric,
+               {"speed_factors[0] is nan"}}),
+    [](const testing::TestParamInfo<BadLaw>& bad) { return bad.param.name; });
+
+}  // namespace
+}  // namespace tissue_contact
