@@ -157,14 +157,18 @@ struct InstrumentDescription {
 };
 
 /// A dry-friction law as numbers: what friction opposes sliding in each direction of the contact plane. Directions are
-/// angles from the law's axis 1 towards axis 2; axis 2 = n x axis 1, n from the instrument into the tissue.
+/// those in which the INSTRUMENT slides over the tissue (the opposite of the tissue's velocity relative to the
+/// instrument), as angles from the law's axis 1 towards axis 2; axis 2 = n x axis 1, n from the instrument into the
+/// tissue. So "forward" of a jaw with an asymmetric law is the jaw moving along its own +axis 1 over the tissue, and
+/// with axis 1 along the fibre it is the instrument moving along +fibre. The force the instrument feels opposes that
+/// motion. Of two tissues, the one n points away from takes the instrument's part.
 struct FrictionLawDescription {
   enum class Kind {
     kIsotropic,    ///< coefficients: mu
     kOrthotropic,  ///< mu along axis 1, mu along axis 2: elliptic limit, force not collinear with sliding
-    kAsymmetric,   ///< mu sliding along +axis 1, mu along -axis 1, mu along axis 2: quarter ellipses
+    kAsymmetric,   ///< mu sliding along +axis 1, mu along -axis 1, mu along axis 2: quarter ellipses, force as above
     kTable,  ///< mu at each of `angles_rad` of the sliding direction, linear in between, periodic; force collinear
-    kTensor  ///< m11, m12, m21, m22: force = -M d; sym(M) must be positive semidefinite
+    kTensor  ///< m11, m12, m21, m22: force = -M d, d the sliding direction; sym(M) must be positive semidefinite
   };
   enum class Axis {
     kNone,  ///< isotropic laws
