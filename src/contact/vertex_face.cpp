@@ -106,7 +106,7 @@ bool VertexFace::search(const SurfacePair& pair, int node, double reach, bool sw
 const VertexFace::Foot* VertexFace::wayOut(const SurfacePair& pair, int node, bool on_surface) {
   const Foot* best = nullptr;
   for (Foot& foot : feet_) {
-    if (!foot.minimum && !(on_surface && measure(pair, node, foot))) continue;
+    if (!foot.minimum && !(on_surface && measureBehindFace(pair, node, foot))) continue;
     if (foot.distance < 0.0 && foot.distance >= -pair.depth() && faces(pair.own, node, foot.normal) &&
         (best == nullptr || foot.distance > best->distance)) {
       best = &foot;
@@ -159,6 +159,16 @@ void VertexFace::findMinima(const SurfacePair& pair, int node) {
   std::stable_sort(feet_.begin(), feet_.end(), [](const Foot& a, const Foot& b) {
     return std::make_pair(!a.minimum, std::abs(a.distance)) < std::make_pair(!b.minimum, std::abs(b.distance));
   });
+}
+
+/// Measures a foot from the face it was found on. False: the vertex is not straight above or below that face.
+bool VertexFace::measureBehindFace(const SurfacePair& pair, int node, Foot& foot) {
+  const SurfacePoint point{pair.other.topology().triangles()[foot.triangle], foot.weights};
+  if (pair.nearAtRest(vertexPoint(node), point)) return false;
+  const Vector3 offset = pair.own.x(node) - foot.q;
+  foot.normal = pair.other.normal(foot.triangle);
+  foot.distance = foot.normal.dot(offset);
+  return (offset - foot.distance * foot.normal).norm() <= kTouching * pair.size();
 }
 
 /// Sets the contact normal and gives the distance its sign, < 0: behind the surface. False: no contact can be here.

@@ -11,7 +11,7 @@
 ///  - The nearest minimum tells whether the vertex lies inside a volume. Outside, all within the margin count; inside,
 ///    only the nearest one that it faces: one way out is enough.
 ///  - A vertex on the surface of a volume that it does not face there may have come in elsewhere, as where the sides of
-///    two blocks are flush and one has sunk into the other. There any point of the surface will do as the way out.
+///    two blocks are flush and one has sunk into the other: through any face that it is behind but for round-off.
 ///  - A volume's vertex faces what some triangle around it faces (contact normal . triangle normal < -kFacing), which
 ///    rules out the far side of a thin layer. A sheet faces both ways.
 ///  - A sheet holds a vertex on the side it lies on; a volume's vertex, whose normal tells the side, also when it has
@@ -47,6 +47,7 @@ class VertexFace {
   void findFeet(const SurfacePair& pair, int node, double reach);
   void findMinima(const SurfacePair& pair, int node);
   const Foot* wayOut(const SurfacePair& pair, int node, bool on_surface);
+  static bool measureBehindFace(const SurfacePair& pair, int node, Foot& foot);
   static bool measure(const SurfacePair& pair, int node, Foot& foot);
   static void add(const SurfacePair& pair, int node, const Foot& foot, bool swapped, std::vector<Contact>& contacts);
 

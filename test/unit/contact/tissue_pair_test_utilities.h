@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <utility>
 #include <vector>
 
@@ -69,30 +68,25 @@ inline Surface sheetSurface(const Vector2& size, int nx, int ny) {
   return sheet;
 }
 
-/// Bends a flat sheet or plate about lines of constant x: `angle` is the direction of its plane z = 0 over x; what is
-/// above it stays square to it.
-inline NodalVectors bent(const NodalVectors& flat, const std::function<double(double)>& angle) {
+/// Bends a flat sheet or plate upwards about lines of constant x: straight up to `start`, then an arc of the given
+/// radius up to `end`, then straight again. What is above the plane z = 0 stays square to it.
+inline NodalVectors bent(const NodalVectors& flat, double start, double end, double radius) {
   NodalVectors result = flat;
   for (Eigen::Index i = 0; i < flat.cols(); ++i) {
-    constexpr int kSteps = 400;
-    double x = 0.0, z = 0.0;
-    for (int k = 0; k < kSteps; ++k) {
-      const double s = flat(0, i) * (k + 0.5) / kSteps;
-      x += std::cos(angle(s)) * flat(0, i) / kSteps;
-      z += std::sin(angle(s)) * flat(0, i) / kSteps;
-    }
-    const double turned = angle(flat(0, i));
-    result(0, i) = x - flat(2, i) * std::sin(turned);
-    result(2, i) = z + flat(2, i) * std::cos(turned);
+    const double s = flat(0, i);
+    const double angle = (std::min(std::max(s, start), end) - start) / radius;
+    const double straight = s - std::min(std::max(s, start), end);
+    const double along = start + radius * std::sin(angle) + straight * std::cos(angle);
+    result(0, i) = along - flat(2, i) * std::sin(angle);
+    result(2, i) = radius * (1.0 - std::cos(angle)) + straight * std::sin(angle) + flat(2, i) * std::cos(angle);
   }
   return result;
 }
 
-/// A hairpin over x in [0, length]: flat, half a turn upwards of the given radius in the middle, and back above itself.
+/// Half a turn of the given radius in the middle of [0, length], so that one half comes to lie above the other.
 inline NodalVectors hairpin(const NodalVectors& flat, double length, double radius) {
   constexpr double kPi = 3.14159265358979323846;
-  const double start = 0.5 * (length - kPi * radius);
-  return bent(flat, [=](double s) { return std::min(std::max((s - start) / radius, 0.0), kPi); });
+  return bent(flat, 0.5 * (length - kPi * radius), 0.5 * (length + kPi * radius), radius);
 }
 
 inline Surface movedBy(Surface surface, const Vector3& by) {
