@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "support/test_scene.h"
 
@@ -69,9 +70,9 @@ TEST(Indentation, BaseCarriesWhatTheInstrumentFeels) {
   for (int k = 1; k <= 10; ++k) simulator.advance(0.02, {Vector3(1e-4 * k, 5e-5 * k, -0.002)});
   for (int k = 1; k <= 50; ++k) simulator.advance(0.02, {Vector3(1e-3, 5e-4, -0.002)});
   const Tissue& tissue = simulator.tissues()[0];
-  Elasticity::State state = tissue.elasticity().makeState();
+  const std::unique_ptr<Elasticity::State> state = tissue.elasticity().makeState();
   NodalVectors forces(3, tissue.nodeCount());
-  tissue.elasticity().update(simulator.positions(0), state, forces);
+  tissue.elasticity().update(simulator.positions(0), *state, forces);
   Vector3 force = Vector3::Zero();
   Vector3 moment = Vector3::Zero();
   const Vector3 tip = simulator.linkPoses(0).back().translation();
