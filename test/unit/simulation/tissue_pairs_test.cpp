@@ -1,0 +1,93 @@
+/// Tissue against tissue through the whole simulator, and the contact problem of a step written to a file.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+#include "support/test_scene.h"
+#include "tissue_contact/solver/delassus.h"
+
+namespace tissue_contact {
+namespace {
+
+/// A soft block lying on a fixed-base one of another grid, under gravity tilted by `angle` about y.
+Simulator makeStack(double friction, double angle) {
+  const std::string g = std::to_string(-9.81 * std::sin(angle)) + ", 0, " + std::to_string(-9.81 * std::cos(angle));
+  return test::makeSimulator(
+      "gravity_m_per_s2: [" + g +
+          "]\n"
+          "tissues:\n"
+          "  - name: bed\n"
+          "    block: {size_m: [0.08, 0.06, 0.02], cells: [5, 4, 2]}\n"
+          "    material: {youngs_modulus_pa: 20000, poissons_ratio: 0.3, density_kg_per_m3: 1000}\n"
+          "    damping: {stiffness_s: 0.01}\n"
+          "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
+          "  - name: top\n"
+          "    block: {size_m: [0.03, 0.03, 0.015], cells: [3, 3, 2]}\n"
+          "    pose: {position_m: [0.003, 0.002, 0.02]}\n"
+          "    material: {youngs_modulus_pa: 20000, poissons_ratio: 0.3, density_kg_per_m3: 1000}\n"
+          "    damping: {stiffness_s: 0.01}\n"
+          "instruments: []\n"
+          "tissue_pairs: [{tissue: bed, other: top}]\n"
+          "friction: [{tissue: bed, other_tissue: top, static: " +
+          std::to_string(friction) +
+          "}]\n"
+          "step: {max_step_s: 0.002}\n"
+          "solver: {iterations: 200, tolerance: 1.0e-8}\n",
+      {});
+}
+
+/// What `bed` bears, world frame, N.
+Vector3 forceOnBed(const Simulator& simulator) {
+  Vector3 force = Vector3::Zero();
+  for (const SolvedContact& contact : simulator.contacts()) {
+    force += (contact.contact.key.tissue == 0 ? 1.0 : -1.0) * contact.force_on_tissue_n;
+  }
+  return force;
+}
+
+TEST(TissuePairs, ABlockRestsOnAnotherWithItsWeight) {
+  Simulator simulator = makeStack(0.5, 0.0);
+  simulator.advance(1.5, {});
+  const double weight = 9.81 * 1000.0 * 0.03 * 0.03 * 0.015;
+  const Vector3 force = forceOnBed(simulator);
+  EXPECT_NEAR(force.z(), -weight, 1e-3 * weight);  // vibrations have died by exp(-1.5 s / 0.1 s) or faster
+  EXPECT_LE(force.head<2>().norm(), 1e-3 * weight);
+  EXPECT_LE(simulator.report().residuals.penetration_m, 1e-5);
+}
+
+TEST(TissuePairs, FrictionHoldsBelowItsAngleAndNotAbove) {
+  Simulator holds = makeStack(0.5, std::atan(0.4));
+  Simulator slides = makeStack(0.3, std::atan(0.4));
+  holds.advance(0.5, {});
+  slides.advance(0.5, {});
+  const auto slid = [](const Simulator& simulator) {
+    return (simulator.positions(1) - simulator.tissues()[1].restPositions()).row(0).mean();
+  };
+  // g (sin - mu cos) t^2 / 2 = 0.114 m for the one that slides; the other only leans.
+  EXPECT_LE(std::abs(slid(holds)), 2e-3);
+  EXPECT_LE(slid(slides), -0.01);
+  EXPECT_GT(holds.report().static_contacts, 0);
+}
+
+TEST(ContactProblemFile, HoldsTheProblemOfTheLastStep) {
+  Simulator simulator = makeStack(0.5, 0.2);
+  simulator.advance(0.3, {});
+  ASSERT_FALSE(simulator.contacts().empty());
+  const std::string file = ::testing::TempDir() + "tissue_contact_problem.txt";
+  {
+    std::ofstream stream(file);
+    writeContactProblem(stream, makeDelassusProblem(simulator.lastProblem()), simulator.lastSolution().states);
+  }
+  const DelassusProblem problem = readContactProblem(file);
+  std::remove(file.c_str());
+  ASSERT_EQ(problem.contacts(), static_cast<int>(simulator.contacts().size()));
+  VectorX r(3 * problem.contacts());
+  for (int c = 0; c < problem.contacts(); ++c) r.segment<3>(3 * c) = simulator.lastSolution().impulses[c];
+  // The step's own answer solves it as well as the step was solved.
+  EXPECT_LE(computeResiduals(problem, r).scaled_natural_map, 1e-3);
+}
+
+}  // namespace
+}  // namespace tissue_contact
