@@ -46,7 +46,7 @@ Vector3 touchingNormal(PairSurface& own, int node, PairSurface& other, const Sur
     return !surface.topology().anyTriangleOf(
         of, [&](int t) { return n.dot(surface.normal(t)) < 1.0 - 0.5 * kSharp * kSharp; });
   };
-  const Vector3 between = (other.featureNormal(feature) - own.featureNormal(vertexFeature(node))).normalized();
+  Vector3 between = (other.featureNormal(feature) - own.featureNormal(vertexFeature(node))).normalized();
   if (flat(other, feature, between) && flat(own, vertexFeature(node), -between)) return between;
   Vector3 sum = Vector3::Zero();
   const auto offer = [&](const Vector3& n) {

@@ -105,6 +105,29 @@ TEST(TissuePairDetector, RidgesCrossing) {
   }
 }
 
+/// A fine layer on a ridge that reaches beyond it: every edge of its lower face that crosses the ridge is held, so that
+/// it cannot sag between the ridge's far ends; its upper face, though within the margin, is not.
+TEST(TissuePairDetector, LayerOnARidge) {
+  const Surface bar = boxSurface({0.2, 0.02, 0.02}, {1, 1, 1});
+  const Surface ridge = transformed(movedBy(bar, {-0.1, -0.01, -0.01}), turned(kPi / 4.0, Vector3::UnitX()));
+  const double top = 0.01 * std::sqrt(2.0);
+  const Surface layer = boxSurface({0.1, 0.1, 3e-4}, {10, 10, 1});
+  for (const double gap : {1e-5, 0.0, -1e-5}) {
+    const std::vector<TestTissue> tissues = {{movedBy(layer, {-0.0503, -0.0477, top + gap})}, {ridge}};
+    const auto contacts = pairContacts(tissues, kBoth, 1e-3);
+    expectSound(tissues, contacts, 1e-3);
+    int on_top = 0;
+    for (const Contact& c : contacts) {
+      if (std::abs(c.p_WC.y()) > 1e-9) continue;  // beside the ridge, within the margin
+      ++on_top;
+      EXPECT_TRUE(isEdgePair(c));
+      EXPECT_NEAR(c.gap_m, gap, 1e-15);
+      EXPECT_LT((normalOf(c) - Vector3::UnitZ()).norm(), 1e-9);
+    }
+    EXPECT_EQ(on_top, 11 + 10);  // lines of the grid, and one diagonal per cell
+  }
+}
+
 TEST(TissuePairDetector, FlatBarsCrossingTouchAtTheirFourCorners) {
   const Surface x_bar = boxSurface({0.2, 0.02, 0.02}, {1, 1, 1});
   const Surface y_bar = boxSurface({0.02, 0.2, 0.02}, {1, 1, 1});
