@@ -1,12 +1,13 @@
 #include "tissue_contact/tissue/neo_hookean.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "neo_hookean_kernel.h"
 #include "tet_elements.h"
+#include "tissue_contact/tissue/tet_elasticity.h"
 
 namespace tissue_contact {
 namespace {
@@ -19,7 +20,7 @@ LameParameters modelParameters(const MaterialDescription& material) {
 
 // Squared Frobenius norm of F (3 at rest) beyond which an element is so stiff, as |F|^4, that taking its share out of
 // the stiffness again would leave round-off behind that others notice.
-constexpr double kLargeDeformation = 100.0;
+constexpr double kLargeDeformation = 30.0;
 
 /// Second derivative of psi in the frames U, V of F = U diag(sigma) V', without its negative eigenvalues: with
 /// X = U' dF V, dP = U Y V', Y_ii = sum_l stretch_il X_ll and, for i != j, Y_ij = direct_ij X_ij + crossed_ij X_ji.
@@ -30,26 +31,21 @@ struct SpectralTangent {
 };
 
 Matrix3 withoutNegativeEigenvalues(const Matrix3& symmetric) {
+  const double minor = symmetric(0, 0) * symmetric(1, 1) - symmetric(1, 0) * symmetric(1, 0);
+  if (symmetric(0, 0) > 0.0 && minor > 0.0 && symmetric.determinant() > 0.0) return symmetric;
   const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(symmetric);
-  if (eigen.eigenvalues()[0] >= 0.0) return symmetric;
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
 }
 
 SpectralTangent spectralTangent(const Matrix3& F, const LameParameters& material) {
-  const Eigen::JacobiSVD<Matrix3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  // F = R S = (R V) diag(sigma) V', R a proper rotation: J = product of sigma carries the sign of det F.
+  const Matrix3 R = nearestRotation(F, Quaternion::Identity()).toRotationMatrix();
+  const Matrix3 S = R.transpose() * F;
+  const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(0.5 * (S + S.transpose()));
+  const Vector3& sigma = eigen.eigenvalues();
   SpectralTangent tangent;
-  tangent.U = svd.matrixU();
-  tangent.V = svd.matrixV();
-  Vector3 sigma = svd.singularValues();
-  // J = product of sigma must carry the sign of det F, so both frames are made rotations.
-  if (tangent.U.determinant() < 0.0) {
-    tangent.U.col(2) = -tangent.U.col(2);
-    sigma[2] = -sigma[2];
-  }
-  if (tangent.V.determinant() < 0.0) {
-    tangent.V.col(2) = -tangent.V.col(2);
-    sigma[2] = -sigma[2];
-  }
+  tangent.V = eigen.eigenvectors();
+  tangent.U = R * tangent.V;
   const double I = sigma.squaredNorm();
   const double along_F = material.mu - material.mu / (I + 1.0);
   const double along_C = material.lambda * (sigma.prod() - 1.0) - 0.75 * material.mu;
@@ -101,6 +97,17 @@ Matrix3 matrixInLane(const MatrixBatch& batch, std::size_t lane) {
   return matrix;
 }
 
+template <typename Call>
+void forEachChanged(const NeoHookean::DeformationState& state, std::size_t elements, const Call& call) {
+  for (std::size_t batch = 0; batch < state.changed.size(); ++batch) {
+    if (state.changed[batch] == 0) continue;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const bool used = batch * kLanes + lane < elements;
+      if (used && (state.changed[batch] >> lane & 1) != 0) call(batch, lane);
+    }
+  }
+}
+
 }  // namespace
 
 NeoHookean::NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
@@ -129,18 +136,21 @@ void NeoHookean::rebuildStiffness(DeformationState& state) const {
   }
 }
 
-bool NeoHookean::refreshStiffness(std::size_t batch, DeformationState& state) const {
+void NeoHookean::refreshStiffness(DeformationState& state) const {
+  std::size_t changes = 0;
   bool cancels = false;
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    const std::size_t e = batch * kLanes + lane;
-    if ((state.changed[batch] >> lane & 1) == 0 || e >= tets_->elements.size()) continue;
-    const Matrix3 before = matrixInLane(state.tangent_deformations[batch], lane);
-    cancels = cancels || before.squaredNorm() > kLargeDeformation;
-    addStiffness(tets_->elements[e], before, -1.0, state);
-    addStiffness(tets_->elements[e], matrixInLane(state.deformations[batch], lane), 1.0, state);
+  forEachChanged(state, tets_->elements.size(), [&](std::size_t batch, std::size_t lane) {
+    ++changes;
+    cancels = cancels || matrixInLane(state.tangent_deformations[batch], lane).squaredNorm() > kLargeDeformation;
+  });
+  const bool rebuild = cancels || 2 * changes > tets_->elements.size();
+  forEachChanged(state, tets_->elements.size(), [&](std::size_t batch, std::size_t lane) {
+    const TetElement& element = tets_->elements[batch * kLanes + lane];
+    if (!rebuild) addStiffness(element, matrixInLane(state.tangent_deformations[batch], lane), -1.0, state);
     for (std::size_t i = 0; i < 9; ++i) state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];
-  }
-  return cancels;
+    if (!rebuild) addStiffness(element, matrixInLane(state.deformations[batch], lane), 1.0, state);
+  });
+  if (rebuild) rebuildStiffness(state);
 }
 
 void NeoHookean::update(const NodalVectors& x, State& any_state, NodalVectors& forces) const {
@@ -151,11 +161,7 @@ void NeoHookean::update(const NodalVectors& x, State& any_state, NodalVectors& f
                         state.deformations, state.changed, forces.data());
   };
   tets_->batch_materials.empty() ? add(tets_->material) : add(tets_->batch_materials);
-  bool cancels = false;
-  for (std::size_t batch = 0; batch < tets_->batches.size(); ++batch) {
-    if (state.changed[batch] != 0) cancels = refreshStiffness(batch, state) || cancels;
-  }
-  if (cancels) rebuildStiffness(state);
+  refreshStiffness(state);
 }
 
 double NeoHookean::energy(const NodalVectors& x) const {

@@ -2,64 +2,23 @@
 /// refinement.
 #include <gtest/gtest.h>
 
-#include <Eigen/SparseCholesky>
 #include <cmath>
 
+#include "support/elasticity_helpers.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
 #include "tissue_contact/tissue/tet_mesh.h"
 
 namespace tissue_contact {
 namespace {
 
-/// Static answer of K u = f with given displacements at some nodes, by sparse Cholesky.
-class StaticSolver {
- public:
-  StaticSolver(const TetMesh& mesh, const std::vector<bool>& prescribed, const MaterialDescription& material)
-      : prescribed_(prescribed),
-        stiffness_(TetElasticity(mesh.positions, mesh.tetrahedra, std::vector<bool>(prescribed.size(), false), material)
-                       .makeState()
-                       ->stiffness) {}
-
-  /// @param u in: the displacements of prescribed nodes; out: all of them.
-  void solve(const NodalVectors& loads, NodalVectors& u) const {
-    const int nodes = stiffness_.rows();
-    std::vector<int> unknown(nodes, -1);
-    int count = 0;
-    for (int i = 0; i < nodes; ++i) {
-      if (!prescribed_[i]) unknown[i] = count++;
-    }
-    std::vector<Eigen::Triplet<double>> triplets;
-    VectorX rhs = VectorX::Zero(3 * count);
-    const auto add = [&](int i, int j, const Matrix3& block) {
-      if (unknown[j] < 0) {
-        rhs.segment<3>(3 * unknown[i]) -= block * u.col(j);
-        return;
-      }
-      for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) triplets.emplace_back(3 * unknown[i] + r, 3 * unknown[j] + c, block(r, c));
-      }
-    };
-    for (int i = 0; i < nodes; ++i) {
-      if (unknown[i] < 0) continue;
-      rhs.segment<3>(3 * unknown[i]) += loads.col(i);
-      add(i, i, stiffness_.diagonal[i]);
-      for (int k = stiffness_.row_start[i]; k < stiffness_.row_start[i + 1]; ++k) {
-        add(i, stiffness_.columns[k], stiffness_.values[k]);
-      }
-    }
-    Eigen::SparseMatrix<double> A(3 * count, 3 * count);
-    A.setFromTriplets(triplets.begin(), triplets.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> cholesky(A);
-    const VectorX solution = cholesky.solve(rhs);
-    for (int i = 0; i < nodes; ++i) {
-      if (unknown[i] >= 0) u.col(i) = solution.segment<3>(3 * unknown[i]);
-    }
-  }
-
- private:
-  std::vector<bool> prescribed_;
-  BlockMatrix stiffness_;
-};
+/// Static answer with given displacements at some nodes. @param u in: those; out: all.
+void solveLinear(const TetMesh& mesh, const std::vector<bool>& held, const MaterialDescription& material,
+                 const NodalVectors& loads, NodalVectors& u) {
+  std::vector<bool> prescribed;
+  for (const bool node : held) prescribed.insert(prescribed.end(), 3, node);
+  const TetElasticity elasticity(mesh.positions, mesh.tetrahedra, std::vector<bool>(held.size(), false), material);
+  solveStatic(elasticity.makeState()->stiffness, prescribed, loads, u);
+}
 
 TetMesh makeBlock(const Vector3& size, const std::array<int, 3>& cells) {
   BlockDescription block;
@@ -85,7 +44,7 @@ TEST(PatchTest, LinearFieldIsExact) {
   for (Eigen::Index i = 0; i < u.cols(); ++i) {
     if (!boundary[i]) u.col(i).setZero();
   }
-  StaticSolver(mesh, boundary, {ElasticModel::kLinear, 5e3, 0.45, 1000.0}).solve(NodalVectors::Zero(3, u.cols()), u);
+  solveLinear(mesh, boundary, {ElasticModel::kLinear, 5e3, 0.45, 1000.0}, NodalVectors::Zero(3, u.cols()), u);
   EXPECT_LE((u - exact).norm(), 1e-12 * exact.norm());
 }
 
@@ -116,7 +75,7 @@ TEST(Bar, ElongatesByForceTimesLengthOverStiffness) {
     prescribed[i] = true;
     u.col(i) << -nu * strain * mesh.positions(0, i), -nu * strain * mesh.positions(1, i), 0.0;
   }
-  StaticSolver(mesh, prescribed, {ElasticModel::kLinear, E, nu, 1000.0}).solve(loads, u);
+  solveLinear(mesh, prescribed, {ElasticModel::kLinear, E, nu, 1000.0}, loads, u);
   for (Eigen::Index i = 0; i < nodes; ++i) {
     ASSERT_NEAR(u(2, i), strain * mesh.positions(2, i), 1e-10 * strain * L);
   }
@@ -140,7 +99,7 @@ double cantileverRatio(int n, double nu) {
     if (mesh.positions(2, i) > L - 1e-9) loads(0, i) = F / tip_nodes;
   }
   NodalVectors u = NodalVectors::Zero(3, mesh.positions.cols());
-  StaticSolver(mesh, prescribed, {ElasticModel::kLinear, E, nu, 1000.0}).solve(loads, u);
+  solveLinear(mesh, prescribed, {ElasticModel::kLinear, E, nu, 1000.0}, loads, u);
   double deflection = 0.0;
   for (Eigen::Index i = 0; i < mesh.positions.cols(); ++i) {
     if (mesh.positions(2, i) > L - 1e-9) deflection += u(0, i) / tip_nodes;

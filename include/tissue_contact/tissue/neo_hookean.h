@@ -58,8 +58,7 @@ class NeoHookean : public Elasticity {
 
  private:
   void rebuildStiffness(DeformationState& state) const;
-  /// @return whether what was taken out was so large that the stiffness should be rebuilt.
-  bool refreshStiffness(std::size_t batch, DeformationState& state) const;
+  void refreshStiffness(DeformationState& state) const;
 
   std::unique_ptr<const TetElements> tets_;
 };

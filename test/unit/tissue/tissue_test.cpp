@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <initializer_list>
 #include <limits>
 #include <stdexcept>
 
@@ -56,6 +58,160 @@ TEST(Tissue, RefusesBadDensityDampingAndEmptyRegions) {
   description = blockDescription();
   description.fixed = {SphereRegion{Vector3(1.0, 0.0, 0.0), 0.01}};
   EXPECT_THROW(Tissue(description, Pose::Identity()), std::invalid_argument);
+}
+
+TissueDescription sheetDescription() {
+  TissueDescription description;
+  description.name = "flap";
+  description.geometry = SheetDescription{Vector2(0.04, 0.02), {4, 2}, 2e-3};
+  description.material = {ElasticModel::kMembrane, 1e5, 0.3, 1100.0};
+  return description;
+}
+
+/// A region of `blockDescription` above z, by default like the rest of it.
+TissueRegion regionAbove(double z) {
+  TissueRegion region;
+  region.name = "capsule";
+  region.where = {BoxRegion{Vector3(-1.0, -1.0, z), Vector3(1.0, 1.0, 1.0)}};
+  region.material = blockDescription().material;
+  return region;
+}
+
+void expectRefused(const TissueDescription& description, std::initializer_list<const char*> words) {
+  try {
+    Tissue(description, Pose::Identity());
+    ADD_FAILURE() << "accepted; expected: " << *words.begin();
+  } catch (const std::invalid_argument& error) {
+    for (const char* word : words) {
+      EXPECT_NE(std::string(error.what()).find(word), std::string::npos)
+          << "no \"" << word << "\" in: " << error.what();
+    }
+  }
+}
+
+TEST(Tissue, EveryModelComesByName) {
+  TissueDescription description = blockDescription();
+  for (const ElasticModel model :
+       {ElasticModel::kLinear, ElasticModel::kCorotational, ElasticModel::kNeoHookean, ElasticModel::kMassSpring}) {
+    description.material.model = model;
+    const Tissue tissue(description, Pose::Identity());
+    EXPECT_EQ(tissue.thickness(), 0.0);
+    EXPECT_EQ(tissue.elasticity().makeState()->stiffness.rows(), tissue.nodeCount());
+    EXPECT_TRUE(tissue.surfaceRegions().empty());
+    EXPECT_TRUE(tissue.surfaceFibres().empty());
+  }
+}
+
+TEST(Tissue, ASheetIsAMembraneThatTouchesOnBothSides) {
+  const Tissue tissue(sheetDescription(), Pose::Identity());
+  EXPECT_EQ(tissue.thickness(), 2e-3);
+  EXPECT_TRUE(tissue.tetrahedra().empty());
+  EXPECT_EQ(tissue.surface().size(), 16U);
+  EXPECT_NEAR(tissue.nodeMasses().sum(), 1100.0 * 0.04 * 0.02 * 2e-3, 1e-15);
+  EXPECT_GT(tissue.nodeMasses().minCoeff(), 0.0);
+}
+
+TEST(Tissue, RefusesModelsThatDoNotSuitTheGeometry) {
+  TissueDescription description = blockDescription();
+  description.material.model = ElasticModel::kMembrane;
+  expectRefused(description, {"tissue 'block'", "'membrane'", "volume", "corotational"});
+  description = sheetDescription();
+  description.material.model = ElasticModel::kLinear;
+  expectRefused(description, {"tissue 'flap'", "'linear'", "takes membrane"});
+  description = blockDescription();
+  description.regions = {regionAbove(0.01)};
+  description.regions[0].material.model = ElasticModel::kNeoHookean;
+  expectRefused(description, {"tissue 'block', region 'capsule'", "'neo_hookean'", "'corotational'"});
+  description = sheetDescription();
+  std::get<SheetDescription>(description.geometry).thickness_m = 0.0;
+  expectRefused(description, {"tissue 'flap'", "thickness_m", "> 0"});
+}
+
+TEST(Tissue, RegionsHoldElementsAndSurfaceByCentroidLastOneFirst) {
+  TissueDescription description = blockDescription();  // two layers of cells, up to z = 0.02
+  description.regions = {regionAbove(0.01), regionAbove(0.0199)};
+  description.regions[0].material.density_kg_per_m3 = 2100.0;
+  description.regions[1].name = "face";  // holds no element, only the upper face's triangles
+  Pose X_WT = Pose::Identity();
+  X_WT.translation() = Vector3(5.0, 5.0, 5.0);  // regions are in the tissue's frame
+  const Tissue tissue(description, X_WT);
+  EXPECT_NEAR(tissue.nodeMasses().sum(), 0.04 * 0.03 * 0.01 * (1050.0 + 2100.0), 1e-13);
+  ASSERT_EQ(tissue.surfaceRegions().size(), tissue.surface().size());
+  for (std::size_t t = 0; t < tissue.surface().size(); ++t) {
+    double z = -5.0;
+    for (const int node : tissue.surface()[t]) z += tissue.restPositions()(2, node) / 3.0;
+    EXPECT_EQ(tissue.surfaceRegions()[t], z > 0.0199 ? 1 : (z > 0.01 ? 0 : -1)) << z;
+  }
+}
+
+TEST(Tissue, RefusesRegionsWithoutEffectOrWithBadNumbers) {
+  TissueDescription description = blockDescription();
+  description.regions = {regionAbove(0.5)};
+  expectRefused(description, {"tissue 'block'", "region 'capsule'", "holds no element"});
+  description.regions = {regionAbove(0.0199)};  // surface triangles only, which a material cannot be for
+  description.regions[0].material.youngs_modulus_pa = 1e4;
+  expectRefused(description, {"region 'capsule'", "holds no element"});
+  description.regions = {regionAbove(0.01), regionAbove(0.0)};
+  expectRefused(description, {"region 'capsule'", "later regions"});
+  description.regions = {regionAbove(0.01)};
+  description.regions[0].material.poissons_ratio = 0.5;
+  expectRefused(description, {"region 'capsule'", "poissons_ratio"});
+  description.regions = {regionAbove(0.01)};
+  description.regions[0].material.density_kg_per_m3 = 0.0;
+  expectRefused(description, {"region 'capsule'", "density_kg_per_m3"});
+  description.regions = {regionAbove(0.01)};
+  description.regions[0].damping_stiffness_s = -1.0;
+  expectRefused(description, {"region 'capsule'", "stiffness_s"});
+}
+
+TEST(Tissue, DampingIsOneNumberWhereItIsTheSameEverywhere) {
+  TissueDescription description = blockDescription();
+  description.damping = {1.5, 0.01};
+  description.regions = {regionAbove(0.01)};
+  description.regions[0].damping_stiffness_s = 0.01;
+  const Tissue uniform(description, Pose::Identity());
+  EXPECT_EQ(uniform.damping().stiffness_s, 0.01);
+  EXPECT_EQ(uniform.elasticity().makeState()->damping.rows(), 0);
+  description.regions[0].damping_stiffness_s = 0.02;
+  const Tissue layered(description, Pose::Identity());
+  EXPECT_EQ(layered.damping().stiffness_s, 0.0);
+  EXPECT_EQ(layered.damping().mass_per_s, 1.5);
+  EXPECT_EQ(layered.elasticity().makeState()->damping.rows(), layered.nodeCount());
+}
+
+TEST(Tissue, FibresLieInTheSurfaceAndAreCarriedByIt) {
+  TissueDescription description = blockDescription();
+  description.fibre_direction = Vector3(3.0, 0.0, 1.0);
+  description.regions = {regionAbove(0.0199)};
+  description.regions[0].fibre_direction = Vector3(0.0, 0.2, 0.0);
+  Pose X_WT = Pose::Identity();
+  X_WT.linear() = Eigen::AngleAxisd(1.1, Vector3(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+  const Tissue tissue(description, X_WT);
+  ASSERT_EQ(tissue.surfaceFibres().size(), tissue.surface().size());
+  int across = 0;
+  for (std::size_t t = 0; t < tissue.surface().size(); ++t) {
+    const Triangle& nodes = tissue.surface()[t];
+    const Vector3 e1 = tissue.restPositions().col(nodes[1]) - tissue.restPositions().col(nodes[0]);
+    const Vector3 e2 = tissue.restPositions().col(nodes[2]) - tissue.restPositions().col(nodes[0]);
+    const Vector3 carried = tissue.surfaceFibres()[t].x() * e1 + tissue.surfaceFibres()[t].y() * e2;
+    const Vector3 normal = e1.cross(e2).normalized();
+    const Vector3 fibre = tissue.surfaceRegions()[t] < 0 ? Vector3(3.0, 0.0, 1.0) : Vector3(0.0, 1.0, 0.0);
+    const Vector3 projected = X_WT.linear() * fibre - normal.dot(X_WT.linear() * fibre) * normal;
+    if (projected.norm() < 1e-9) {
+      ++across;
+      EXPECT_EQ(tissue.surfaceFibres()[t], Vector2(0.0, 0.0));
+    } else {
+      EXPECT_LE((carried - projected.normalized()).norm(), 1e-12);
+    }
+  }
+  EXPECT_EQ(across, 0);  // (3, 0, 1) lies across no face of the block
+  description.fibre_direction = Vector3(0.0, 0.0, 1.0);
+  description.regions.clear();
+  const Tissue upright(description, Pose::Identity());
+  for (std::size_t t = 0; t < upright.surface().size(); ++t) across += upright.surfaceFibres()[t].isZero(0.0);
+  EXPECT_EQ(across, 2 * 2 * 4 * 3);  // the upper and the lower face
+  description.fibre_direction = Vector3(0.0, std::nan(""), 1.0);
+  expectRefused(description, {"tissue 'block'", "fibre_direction", "finite"});
 }
 
 struct Organ {
