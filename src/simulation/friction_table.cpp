@@ -18,15 +18,29 @@ struct FrictionTable::Surface {
   const Tissue* tissue = nullptr;
   std::vector<std::vector<int>> triangles_of_node;
 
-  /// The first surface triangle that has all nodes of the contact, -1 where not kept.
-  int triangleOf(const std::array<int, 3>& nodes) const {
+  /// The surface triangle of a point: of those that share it (an edge, a vertex), the one that faces most against
+  /// `outward` (unit). -1 where triangles are not kept.
+  int triangleOf(const std::array<int, 3>& nodes, const Vector3& weights, const Vector3& outward,
+                 const NodalVectors& x) const {
     if (triangles_of_node.empty()) return -1;
-    for (const int t : triangles_of_node[nodes[0]]) {
+    int anchor = 0;
+    weights.maxCoeff(&anchor);
+    int best = -1;
+    double most = -2.0;  // below every cosine
+    for (const int t : triangles_of_node[nodes[anchor]]) {
       const Triangle& triangle = tissue->surface()[t];
-      const auto has = [&](int node) { return std::find(triangle.begin(), triangle.end(), node) != triangle.end(); };
-      if (has(nodes[1]) && has(nodes[2])) return t;
+      const auto lacks = [&](int i) {
+        return weights[i] > 0.0 && std::find(triangle.begin(), triangle.end(), nodes[i]) == triangle.end();
+      };
+      if (lacks(0) || lacks(1) || lacks(2)) continue;
+      const Vector3 first = x.col(triangle[1]) - x.col(triangle[0]);
+      const Vector3 second = x.col(triangle[2]) - x.col(triangle[0]);
+      const double facing = first.cross(second).normalized().dot(outward);
+      if (best >= 0 && !(facing > most)) continue;
+      best = t;
+      most = facing;
     }
-    return -1;
+    return best;
   }
 };
 
@@ -136,12 +150,14 @@ void FrictionTable::add(const FrictionDescription& description, const Scene& sce
 }
 
 /// The entry of a contact with the surface it names (its regions and fibres count), and how its axis 1 is turned.
-FrictionTable::Found FrictionTable::find(const Contact& contact) const {
+FrictionTable::Found FrictionTable::find(const Contact& contact, const std::vector<NodalVectors>& x) const {
   const ContactKey& key = contact.key;
-  const auto in = [&](const ByRegion& by_region, int tissue, const std::array<int, 3>& nodes, double sign) {
+  const Vector3 n = contact.R_WC.col(0);
+  const auto in = [&](const ByRegion& by_region, int tissue, const std::array<int, 3>& nodes, const Vector3& weights,
+                      double sign) {
     Found found;
     found.tissue = tissue;
-    found.triangle = surfaces_[tissue].triangleOf(nodes);
+    found.triangle = surfaces_[tissue].triangleOf(nodes, weights, -sign * n, x[tissue]);
     found.axis_sign = sign;
     const std::vector<int>& regions = surfaces_[tissue].tissue->surfaceRegions();
     const int index = by_region[found.triangle >= 0 && !regions.empty() ? 1 + regions[found.triangle] : 0];
@@ -149,13 +165,15 @@ FrictionTable::Found FrictionTable::find(const Contact& contact) const {
     return found;
   };
   if (key.instrument >= 0) {
-    return in(by_link_[key.instrument][key.link][key.tissue], key.tissue, contact.nodes, 1.0);
+    return in(by_link_[key.instrument][key.link][key.tissue], key.tissue, contact.nodes, contact.weights, 1.0);
   }
-  const Found named = in(between_tissues_[key.tissue][key.other_tissue], key.tissue, contact.nodes, 1.0);
+  const Found named =
+      in(between_tissues_[key.tissue][key.other_tissue], key.tissue, contact.nodes, contact.weights, 1.0);
   if (named.entry != nullptr) return named;
   // The contact has the pair the other way round: the entry's `other_tissue` is what the contact calls `tissue`, so that
   // what moves forward over what is turned round.
-  return in(between_tissues_[key.other_tissue][key.tissue], key.other_tissue, contact.other_nodes, -1.0);
+  return in(between_tissues_[key.other_tissue][key.tissue], key.other_tissue, contact.other_nodes,
+            contact.other_weights, -1.0);
 }
 
 Vector3 FrictionTable::axisOf(const Found& found, const Contact& contact, const std::vector<NodalVectors>& x,
@@ -175,7 +193,7 @@ Vector3 FrictionTable::axisOf(const Found& found, const Contact& contact, const 
 
 CoulombLaw FrictionTable::at(const Contact& contact, const std::vector<NodalVectors>& x,
                              const std::vector<std::vector<Pose>>& X_WL, double sliding_speed) const {
-  const Found found = find(contact);
+  const Found found = find(contact, x);
   const Entry* entry = found.entry;
   if (entry == nullptr) return {};
   CoulombLaw law = entry->law;

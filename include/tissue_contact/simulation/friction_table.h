@@ -41,7 +41,7 @@ class FrictionTable {
 
   void add(const FrictionDescription& description, const Scene& scene, const std::vector<Instrument>& instruments,
            const std::vector<Tissue>& tissues);
-  Found find(const Contact& contact) const;
+  Found find(const Contact& contact, const std::vector<NodalVectors>& x) const;
   Vector3 axisOf(const Found& found, const Contact& contact, const std::vector<NodalVectors>& x,
                  const std::vector<std::vector<Pose>>& X_WL) const;
 

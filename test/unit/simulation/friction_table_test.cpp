@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -131,6 +133,22 @@ TEST(FrictionTable, FibresAreCarriedByTheDeformation) {
   EXPECT_LE((with.table.at(contact, with.x, with.X_WL, 0.0).axis - Vector2(0.6, -0.8)).norm(), 1e-12);
 }
 
+/// A corner of the block is shared by three faces: the one the contact normal points into counts.
+TEST(FrictionTable, VertexContactTakesTheFaceThatIsTouched) {
+  const Table with("  - {instrument: probe, tissue: pad, law: orthotropic, static: [0.6, 0.2], axis: fibre}\n");
+  const NodalVectors& x = with.tissues[0].restPositions();
+  Eigen::Index corner = 0;
+  (x.row(0) + x.row(1) + x.row(2)).maxCoeff(&corner);
+  for (const Triangle& t : with.tissues[0].surface()) {
+    const auto at = std::find(t.begin(), t.end(), static_cast<int>(corner));
+    if (at == t.end()) continue;
+    Contact contact = with.contactOn(1, 1);  // n = -z, whichever of the corner's triangles it is reported with
+    contact.nodes = t;
+    contact.weights = Vector3::Unit(at - t.begin());
+    EXPECT_LE((with.table.at(contact, with.x, with.X_WL, 0.0).axis - Vector2(0, -1)).norm(), 1e-12);
+  }
+}
+
 TEST(FrictionTable, StribeckFactorScalesKineticFrictionOnly) {
   const Table with(
       "  - {instrument: probe, tissue: pad, static: 0.5, kinetic: 0.4, speeds_m_per_s: [0, 0.1], speed_factors: [1, "
@@ -149,6 +167,8 @@ TEST(FrictionTable, TissuesFindTheirEntryFromBothSides) {
   Contact turned = named;
   std::swap(turned.key.tissue, turned.key.other_tissue);
   std::swap(turned.nodes, turned.other_nodes);
+  std::swap(turned.weights, turned.other_weights);
+  turned.R_WC.leftCols<2>() *= -1.0;
   EXPECT_EQ(with.table.at(turned, with.x, with.X_WL, 0.0).mu_static, 0.7);
   Contact outside = with.contactOn(-1, 0);
   outside.key = named.key;
