@@ -177,9 +177,9 @@ void writeContactProblem(std::ostream& stream, const DelassusProblem& problem,
   stream << "FC3D 1\nn " << problem.contacts() << '\n';
   writeMatrix(stream, problem.W);
   stream << "q\n";
-  for (int c = 0; c < problem.contacts(); ++c) stream << problem.q.segment<3>(3 * c).transpose() << '\n';
+  for (Eigen::Index c = 0; c < problem.contacts(); ++c) stream << problem.q.segment<3>(3 * c).transpose() << '\n';
   stream << "mu\n";
-  for (int c = 0; c < problem.contacts(); ++c) {
+  for (Eigen::Index c = 0; c < problem.contacts(); ++c) {
     stream << fileCoefficient(problem.laws[c], problem.was_sliding[c], states[c]) << '\n';
   }
   stream.precision(precision);

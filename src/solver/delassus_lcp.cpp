@@ -20,7 +20,7 @@ class CondensedLcp {
       const double angle = 2.0 * M_PI * k / sides;
       G_.col(k + 1) = Vector3(0.0, std::cos(angle), std::sin(angle));
     }
-    const Eigen::Index size = static_cast<Eigen::Index>(contacts_) * per_contact_;
+    const Eigen::Index size = contacts_ * per_contact_;
     tableau_.resize(size, size + 2);
     labels_.resize(2 * size + 1);
     z_.resize(size);
@@ -32,24 +32,24 @@ class CondensedLcp {
   int solve(const DelassusProblem& problem, const VectorX& mu, int max_pivots, VectorX& r) {
     fill(problem, mu);
     const LcpAnswer answer = solveLcp(tableau_, labels_, z_, max_pivots);
-    r.setZero(3 * static_cast<Eigen::Index>(contacts_));
+    r.setZero(3 * contacts_);
     if (answer.status != LcpStatus::kSolved) return answer.pivots;
-    for (int c = 0; c < contacts_; ++c) {
+    for (Eigen::Index c = 0; c < contacts_; ++c) {
       r.segment<3>(3 * c) = units_.impulse * (G_ * z_.segment(first(c), G_.cols()));
     }
     return answer.pivots;
   }
 
  private:
-  Eigen::Index first(int contact) const { return static_cast<Eigen::Index>(contact) * per_contact_; }
+  Eigen::Index first(Eigen::Index contact) const { return contact * per_contact_; }
 
   void fill(const DelassusProblem& problem, const VectorX& mu) {
     const Eigen::Index sides = per_contact_ - 2;
     const double scale = units_.impulse / units_.velocity;
     tableau_.setZero();
-    for (int c = 0; c < contacts_; ++c) {
+    for (Eigen::Index c = 0; c < contacts_; ++c) {
       const Eigen::Index row = first(c);
-      for (int d = 0; d < contacts_; ++d) {
+      for (Eigen::Index d = 0; d < contacts_; ++d) {
         tableau_.block(row, first(d), sides + 1, sides + 1).noalias() =
             G_.transpose() * (scale * problem.W.block<3, 3>(3 * c, 3 * d)) * G_;
       }
@@ -61,8 +61,8 @@ class CondensedLcp {
     }
   }
 
-  int contacts_;
-  int per_contact_;
+  Eigen::Index contacts_;
+  Eigen::Index per_contact_;
   NaturalUnits units_;
   Eigen::Matrix<double, 3, Eigen::Dynamic> G_;
   Eigen::MatrixXd tableau_;

@@ -60,7 +60,7 @@ DelassusResiduals computeResiduals(const DelassusProblem& problem, const VectorX
   const VectorX u = problem.W * r + problem.q;
   const NaturalUnits units = naturalUnits(problem);
   double map = 0.0;
-  for (int c = 0; c < problem.contacts(); ++c) {
+  for (Eigen::Index c = 0; c < problem.contacts(); ++c) {
     const Vector3 r_c = r.segment<3>(3 * c);
     const Vector3 u_c = u.segment<3>(3 * c);
     const Matrix3 W_cc = problem.W.block<3, 3>(3 * c, 3 * c);

@@ -14,7 +14,7 @@ ContactState stateOf(const Vector3& r, const Vector3& u, double mu, const Natura
 
 VectorX chooseCoefficients(const DelassusProblem& problem, const std::vector<ContactState>& states) {
   VectorX mu(problem.contacts());
-  for (int c = 0; c < problem.contacts(); ++c) {
+  for (Eigen::Index c = 0; c < problem.contacts(); ++c) {
     const bool sliding = problem.was_sliding[c] || (!states.empty() && states[c] == ContactState::kKinetic);
     mu[c] = sliding ? problem.laws[c].mu_kinetic : problem.laws[c].mu_static;
   }
@@ -25,7 +25,7 @@ bool releaseSliding(const DelassusProblem& problem, const VectorX& r, double rou
   const NaturalUnits units = naturalUnits(problem);
   const VectorX u = problem.W * r + problem.q;
   bool released = false;
-  for (int c = 0; c < problem.contacts(); ++c) {
+  for (Eigen::Index c = 0; c < problem.contacts(); ++c) {
     const double kinetic = problem.laws[c].mu_kinetic;
     if (mu[c] == kinetic) continue;
     if (stateOf(r.segment<3>(3 * c), u.segment<3>(3 * c), mu[c], units, round_off) != ContactState::kKinetic) continue;
@@ -41,7 +41,7 @@ DelassusSolution answerWith(const DelassusProblem& problem, const VectorX& mu, c
   solution.r = r;
   solution.u = problem.W * r + problem.q;
   solution.states.resize(problem.contacts());
-  for (int c = 0; c < problem.contacts(); ++c) {
+  for (Eigen::Index c = 0; c < problem.contacts(); ++c) {
     solution.states[c] = stateOf(r.segment<3>(3 * c), solution.u.segment<3>(3 * c), mu[c], units, round_off);
   }
   return solution;

@@ -27,7 +27,7 @@ ContactSweeps::ContactSweeps(const DelassusProblem& problem, const SolverDescrip
   const bool moving = solution.u.size() == problem.q.size();
   if (solution.states.size() == states_.size()) states_ = solution.states;
   restart(warm ? solution.r : VectorX(VectorX::Zero(problem.q.size())));
-  for (int c = 0; c < problem.contacts(); ++c) {
+  for (Eigen::Index c = 0; c < problem.contacts(); ++c) {
     previous_sliding_[c] = (moving ? solution.u : problem.q).segment<2>(3 * c + 1);
   }
 }
@@ -45,7 +45,7 @@ void ContactSweeps::sweep(int passes) {
   }
 }
 
-void ContactSweeps::correct(int contact) {
+void ContactSweeps::correct(Eigen::Index contact) {
   const Matrix3 W = problem_.W.block<3, 3>(3 * contact, 3 * contact);
   if (!(W(0, 0) > 0.0)) {  // nothing of it can move: no impulse would do anything
     r_.segment<3>(3 * contact).setZero();
@@ -71,7 +71,7 @@ void ContactSweeps::correct(int contact) {
 
 double ContactSweeps::naturalMapNorm() const {
   double sum = 0.0;
-  for (int c = 0; c < problem_.contacts(); ++c) {
+  for (Eigen::Index c = 0; c < problem_.contacts(); ++c) {
     const double defect = contactDefect(problem_.W.block<3, 3>(3 * c, 3 * c), r_.segment<3>(3 * c),
                                         u_.segment<3>(3 * c), problem_.laws[c], problem_.was_sliding[c], units_);
     sum += defect * defect;

@@ -32,7 +32,7 @@ class ContactSweeps {
   double naturalMapNorm() const;
 
  private:
-  void correct(int contact);
+  void correct(Eigen::Index contact);
 
   const DelassusProblem& problem_;
   SolverMethod method_;

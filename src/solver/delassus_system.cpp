@@ -24,10 +24,10 @@ struct DelassusSystem::Bodies {
 
   explicit Bodies(const ContactProblem& all) : contacts(all) {
     for (std::size_t k = 0; k < contacts.bodies.size(); ++k) addBody(k);
-    const int n = static_cast<int>(contacts.contacts.size());
+    const Eigen::Index n = static_cast<Eigen::Index>(contacts.contacts.size());
     problem.W.setZero(3 * n, 3 * n);
     problem.q.setZero(3 * n);
-    for (int c = 0; c < n; ++c) addContact(c);
+    for (Eigen::Index c = 0; c < n; ++c) addContact(c);
     problem.W = (0.5 * (problem.W + problem.W.transpose())).eval();  // symmetric but for round-off
   }
 
@@ -76,7 +76,7 @@ struct DelassusSystem::Bodies {
     return touched;
   }
 
-  void addContact(int c) {
+  void addContact(Eigen::Index c) {
     const ContactRow& row = contacts.contacts[c];
     problem.laws.push_back(row.law);
     problem.was_sliding.push_back(row.was_sliding);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "solver/delassus_lcp.h"
 #include "solver/delassus_states.h"
 #include "solver/delassus_sweeps.h"
 #include "solver/reference_newton.h"
@@ -34,6 +35,17 @@ DelassusSolution answerOf(const DelassusProblem& problem, const ContactSweeps& s
   return {sweeps.impulses(), problem.W * sweeps.impulses() + problem.q, sweeps.states()};
 }
 
+/// Another start for Newton where sweeps keep circling: the answer under ever finer polyhedral cones, which a pivoting
+/// method finds wherever one is. @return false: too large for that.
+bool startFromCones(const DelassusProblem& problem, int turn, DelassusSolution& start) {
+  constexpr int kMostUnknowns = 1000;
+  SolverDescription description;
+  description.cone_sides = turn == 1 ? 16 : 64;
+  if (turn > 2 || problem.contacts() * (description.cone_sides + 2) > kMostUnknowns) return false;
+  solveCondensedLcp(problem, description, start);
+  return true;
+}
+
 }  // namespace
 
 int solveReference(const DelassusProblem& problem, const SolverDescription& description, double tolerance,
@@ -48,16 +60,21 @@ int solveReference(const DelassusProblem& problem, const SolverDescription& desc
     best = std::min(best, map);
   };
   int iterations = 0;
+  const auto polishAndOffer = [&](const DelassusSolution& start) {
+    VectorX mu = chooseCoefficients(problem, start.states);
+    VectorX r = start.r;
+    iterations += polish(problem, aim, mu, r);
+    offer(answerWith(problem, mu, r, tolerance));
+  };
   int length = kFirstSweeps;
   for (int turn = 0; turn < description.iterations && !(best <= tolerance); ++turn) {
     iterations += iterate(sweeps, description, aim, 0.0, length).iterations;
     offer(answerOf(problem, sweeps));
     length = std::min(2 * length, kMostSweeps);
     if (best <= tolerance || !with_newton) continue;
-    VectorX mu = chooseCoefficients(problem, sweeps.states());
-    VectorX r = sweeps.impulses();
-    iterations += polish(problem, aim, mu, r);
-    offer(answerWith(problem, mu, r, tolerance));
+    polishAndOffer(answerOf(problem, sweeps));
+    DelassusSolution start;
+    if (best > tolerance && turn > 0 && startFromCones(problem, turn, start)) polishAndOffer(start);
   }
   return iterations;
 }
