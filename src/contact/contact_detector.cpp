@@ -1,5 +1,6 @@
 #include "tissue_contact/contact/contact_detector.h"
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -99,7 +100,8 @@ ContactDetector& ContactDetector::operator=(ContactDetector&&) noexcept = defaul
 void ContactDetector::detect(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL,
                              double margin_m, std::vector<Contact>& contacts) {
   Implementation& self = *implementation_;
-  requireNonNegative("contact detection: margin", margin_m, "m");
+  if (!(margin_m >= 0.0 && std::isfinite(margin_m)))
+    requireNonNegative("contact detection: margin", margin_m, "m");  // no string else
   requireSameSize("positions of tissues", -1, positions.size(), self.surfaces.size());
   requireSameSize("link poses of instruments", -1, X_WL.size(), self.link_counts.size());
   for (std::size_t i = 0; i < X_WL.size(); ++i) {

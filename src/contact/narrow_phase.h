@@ -7,11 +7,11 @@
 /// to step.
 ///
 /// Which contacts are real (shapes are solid):
-///  - On the boundary of a volume a contact counts when at least one surface triangle at its feature faces the instrument (contact normal times
-///    triangle normal < -kFacing). A point of the tissue nearest to something outside it always has such a triangle. The lower
-///    face of a thin sheet pressed from above has none, nor has a surface that the middle of the shape has already
-///    passed: tissue more than half-way through an instrument is let go, never pulled through its far side; an
-///    instrument that starts inside touches nothing until it reaches the surface.
+///  - On the boundary of a volume a contact counts when at least one surface triangle at its feature faces the
+///    instrument (contact normal times triangle normal < -kFacing). A point of the tissue nearest to something outside
+///    it always has such a triangle. The lower face of a thin layer pressed from above has none, nor has a surface that
+///    the middle of the shape has already passed: tissue more than half-way through an instrument is let go, never
+///    pulled through its far side; an instrument that starts inside touches nothing until it reaches the surface.
 ///  - A sheet is touched from both sides, half its thickness before its triangles; which side, the shape's signed
 ///    distance tells: it is pushed out on the side it is nearest to.
 ///  - At a face (edge) the normal is perpendicular to that face (edge), see stationaryGradient(); where no gradient of

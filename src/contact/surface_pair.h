@@ -25,9 +25,9 @@ struct SurfacePair {
   /// How far middle surfaces can be from each other in a contact that does not penetrate, m.
   double reach() const { return margin + apart(); }
 
-  /// A volume's surface holds back what lies at most so deep below it, m: half an edge, and not past the middle of either
-  /// body. For folds it is half as much: between the two sides of a part that is compressed no geometry tells whether
-  /// they have passed each other.
+  /// A volume's surface holds back what lies at most so deep below it, m: half an edge, and not past the middle of
+  /// either body. For folds it is half as much: between the two sides of a part that is compressed no geometry tells
+  /// whether they have passed each other.
   double depth() const {
     const double half = 0.5 * std::min({size(), own.smallestExtent(), other.smallestExtent()});
     return std::max(folds() ? 0.5 * half : half, apart());

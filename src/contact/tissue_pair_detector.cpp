@@ -1,6 +1,7 @@
 #include "tissue_contact/contact/tissue_pair_detector.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -72,7 +73,8 @@ TissuePairDetector& TissuePairDetector::operator=(TissuePairDetector&&) noexcept
 void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, double margin_m,
                                 std::vector<Contact>& contacts) {
   Implementation& self = *implementation_;
-  requireNonNegative("tissue pairs: margin", margin_m, "m");
+  if (!(margin_m >= 0.0 && std::isfinite(margin_m)))
+    requireNonNegative("tissue pairs: margin", margin_m, "m");  // no string else
   requireSameSize("positions of tissues", positions.size(), self.surfaces.size());
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(contacts.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {

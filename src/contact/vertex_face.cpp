@@ -81,9 +81,9 @@ void VertexFace::find(const SurfacePair& pair, bool swapped, std::vector<Contact
 bool VertexFace::search(const SurfacePair& pair, int node, double reach, bool swapped, std::vector<Contact>& contacts) {
   findFeet(pair, node, reach);
   findMinima(pair, node);
-  if (feet_.empty() || !feet_.front().minimum) return false;
+  if (minima_.empty()) return false;
   const double round_off = kTouch * pair.size();
-  const Foot& nearest = feet_.front();
+  const Foot& nearest = minima_.front();
   const bool inside = nearest.distance < -round_off;
   const bool on_surface = std::abs(nearest.distance) <= kTouching * pair.size() && pair.other.isVolume() &&
                           !faces(pair.own, node, nearest.normal);
@@ -92,8 +92,8 @@ bool VertexFace::search(const SurfacePair& pair, int node, double reach, bool sw
     if (way_out != nullptr) add(pair, node, *way_out, swapped, contacts);
     return way_out != nullptr;
   }
-  for (const Foot& foot : feet_) {
-    const bool near = foot.minimum && foot.distance >= -round_off && foot.distance - pair.apart() <= pair.margin;
+  for (const Foot& foot : minima_) {
+    const bool near = foot.distance >= -round_off && foot.distance - pair.apart() <= pair.margin;
     if (near && faces(pair.own, node, foot.normal) &&
         leadsAway(pair.own, vertexFeature(node), pair.own.x(node), foot.normal)) {
       add(pair, node, foot, swapped, contacts);
@@ -104,9 +104,13 @@ bool VertexFace::search(const SurfacePair& pair, int node, double reach, bool sw
 
 /// The nearest foot that the vertex faces from inside, null if there is none.
 const VertexFace::Foot* VertexFace::wayOut(const SurfacePair& pair, int node, bool on_surface) {
+  if (on_surface) {
+    for (Foot& foot : feet_) {
+      if (measureBehindFace(pair, node, foot)) minima_.push_back(foot);
+    }
+  }
   const Foot* best = nullptr;
-  for (Foot& foot : feet_) {
-    if (!foot.minimum && !(on_surface && measureBehindFace(pair, node, foot))) continue;
+  for (const Foot& foot : minima_) {
     if (foot.distance < 0.0 && foot.distance >= -pair.depth() && faces(pair.own, node, foot.normal) &&
         (best == nullptr || foot.distance > best->distance)) {
       best = &foot;
@@ -115,7 +119,6 @@ const VertexFace::Foot* VertexFace::wayOut(const SurfacePair& pair, int node, bo
   return best;
 }
 
-/// Fills `feet_`: one per triangle within reach, ascending.
 void VertexFace::findFeet(const SurfacePair& pair, int node, double reach) {
   const Vector3 p = pair.own.x(node);
   const SurfaceTopology& topology = pair.other.topology();
@@ -133,32 +136,43 @@ void VertexFace::findFeet(const SurfacePair& pair, int node, double reach) {
   }
 }
 
-/// Measures the local minima among `feet_`, each once, and puts them in front, nearest first.
 void VertexFace::findMinima(const SurfacePair& pair, int node) {
-  // Not the features but the points are compared: round-off may put one point on an edge for one triangle, and just
-  // beside it for the next.
-  const double same_squared = std::pow(kSamePoint * pair.size(), 2);
-  const auto coincide = [&](const Foot& a, const Foot& b) { return (a.q - b.q).squaredNorm() <= same_squared; };
-  for (Foot& foot : feet_) {
-    foot.minimum = !pair.other.topology().anyTriangleOf(foot.feature, [&](int t) {
-      const auto near = std::lower_bound(feet_.begin(), feet_.end(), t,
-                                         [](const Foot& one, int triangle) { return one.triangle < triangle; });
-      return near == feet_.end() || near->triangle != t || !coincide(*near, foot);
-    });
+  const auto order = [](const Foot& foot) {
+    return std::make_tuple(foot.feature[2] >= 0, foot.feature[1] >= 0, foot.feature, foot.triangle);
+  };
+  minima_.clear();
+  for (const Foot& foot : feet_) {
+    const auto same =
+        std::find_if(minima_.begin(), minima_.end(), [&](const Foot& one) { return coincide(pair, one, foot); });
+    if (same != minima_.end() && order(*same) < order(foot)) continue;
+    if (!isMinimum(pair, foot)) continue;
+    if (same == minima_.end()) {
+      minima_.push_back(foot);
+    } else {
+      *same = foot;
+    }
   }
-  std::sort(feet_.begin(), feet_.end(), [](const Foot& a, const Foot& b) {
-    const auto on_inside = [](const Foot& foot) { return foot.feature[2] >= 0 ? 2 : foot.feature[1] >= 0 ? 1 : 0; };
-    return std::make_tuple(!a.minimum, on_inside(a), a.feature, a.triangle) <
-           std::make_tuple(!b.minimum, on_inside(b), b.feature, b.triangle);
+  const auto measured = [&](Foot& foot) { return measure(pair, node, foot); };
+  minima_.erase(std::partition(minima_.begin(), minima_.end(), measured), minima_.end());
+  std::sort(minima_.begin(), minima_.end(), [](const Foot& a, const Foot& b) {
+    return std::make_tuple(std::abs(a.distance), a.feature) < std::make_tuple(std::abs(b.distance), b.feature);
   });
-  for (std::size_t i = 0; i < feet_.size() && feet_[i].minimum; ++i) {
-    const auto end = feet_.begin() + static_cast<std::ptrdiff_t>(i);
-    const bool known = std::any_of(feet_.begin(), end, [&](const Foot& one) { return coincide(one, feet_[i]); });
-    feet_[i].minimum = !known && measure(pair, node, feet_[i]);
-  }
-  std::stable_sort(feet_.begin(), feet_.end(), [](const Foot& a, const Foot& b) {
-    return std::make_pair(!a.minimum, std::abs(a.distance)) < std::make_pair(!b.minimum, std::abs(b.distance));
+}
+
+/// Whether the foot is the nearest point of every triangle around its feature.
+bool VertexFace::isMinimum(const SurfacePair& pair, const Foot& foot) const {
+  return !pair.other.topology().anyTriangleOf(foot.feature, [&](int t) {
+    const auto near = std::lower_bound(feet_.begin(), feet_.end(), t,
+                                       [](const Foot& one, int triangle) { return one.triangle < triangle; });
+    return near == feet_.end() || near->triangle != t || !coincide(pair, *near, foot);
   });
+}
+
+/// Not features but points are compared: round-off may put one point on an edge for one triangle, and just beside it
+/// for the next.
+bool VertexFace::coincide(const SurfacePair& pair, const Foot& a, const Foot& b) {
+  const double reach = kSamePoint * pair.size();
+  return (a.q - b.q).squaredNorm() <= reach * reach;
 }
 
 /// Measures a foot from the face it was found on. False: the vertex is not straight above or below that face.

@@ -28,7 +28,7 @@ namespace tissue_contact {
 class VertexFace {
  public:
   /// Appends contacts of pair.own's vertices with pair.other's faces, unsorted. @param swapped the pair is the mirror
-  /// image of the one asked for: a vertex at a vertex is turned round then, so that it has the same key from both sides.
+  ///   image of the one asked for: a vertex at a vertex is turned round then, to have the same key from both sides.
   void find(const SurfacePair& pair, bool swapped, std::vector<Contact>& contacts);
 
  private:
@@ -39,20 +39,22 @@ class VertexFace {
     Vector3 weights;
     Vector3 q;                         ///< m, world frame
     double distance;                   ///< m, >= 0, until measure() gives it a sign
-    bool minimum = false;              ///< of the distance to the surface, and measured
     Vector3 normal = Vector3::Zero();  ///< from the other surface to the vertex's, unit
   };
 
   bool search(const SurfacePair& pair, int node, double reach, bool swapped, std::vector<Contact>& contacts);
   void findFeet(const SurfacePair& pair, int node, double reach);
   void findMinima(const SurfacePair& pair, int node);
+  static bool coincide(const SurfacePair& pair, const Foot& a, const Foot& b);
+  bool isMinimum(const SurfacePair& pair, const Foot& foot) const;
   const Foot* wayOut(const SurfacePair& pair, int node, bool on_surface);
   static bool measureBehindFace(const SurfacePair& pair, int node, Foot& foot);
   static bool measure(const SurfacePair& pair, int node, Foot& foot);
   static void add(const SurfacePair& pair, int node, const Foot& foot, bool swapped, std::vector<Contact>& contacts);
 
   std::vector<int> candidates_;
-  std::vector<Foot> feet_;
+  std::vector<Foot> feet_;    ///< one per triangle within reach, ascending
+  std::vector<Foot> minima_;  ///< those where the distance to the surface has a local minimum, measured, nearest first
 };
 
 }  // namespace tissue_contact

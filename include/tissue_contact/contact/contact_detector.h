@@ -16,7 +16,7 @@ namespace tissue_contact {
 struct TissueSurface {
   std::vector<Triangle> triangles;
   std::vector<bool> fixed;  ///< per node; contacts whose weighted nodes are all fixed are dropped: nothing can move
-  /// > 0: an open sheet, touched from both sides, at half the thickness from its triangles. 0: the boundary of a volume.
+  /// > 0: an open sheet, touched from both sides, half the thickness before its triangles. 0: the boundary of a volume.
   double thickness_m = 0.0;
 };
 
@@ -24,8 +24,8 @@ class ContactDetector {
  public:
   /// @param instruments must outlive the detector. @param surfaces one per tissue; @param positions one per tissue,
   ///   m, world frame.
-  /// @throws std::invalid_argument when the sizes differ, a triangle refers to a missing node or twice to the same, or
-  ///   a mesh shape has no mesh.
+  /// @throws std::invalid_argument when the sizes differ, a triangle refers to a missing node or twice to the same, a
+  ///   thickness is not finite or < 0, or a mesh shape has no mesh.
   ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
                   const std::vector<NodalVectors>& positions);
   ~ContactDetector();
@@ -42,8 +42,8 @@ class ContactDetector {
               std::vector<Contact>& contacts);
 
   /// Brings a contact found earlier up to date: the same material point (key, nodes, weights) against the same shape.
-  /// Sets its p_WC, R_WC and gap_m. @return false when it is no contact any more: farther than `margin_m`, or its surface
-  /// does not face the shape.
+  /// Sets its p_WC, R_WC and gap_m. @return false when it is no contact any more: farther than `margin_m`, or its
+  /// surface does not face the shape; and for a contact between tissues, which this detector does not know.
   bool measure(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL, double margin_m,
                Contact& contact) const;
 

@@ -21,7 +21,8 @@ struct TouchingTissues {
 class TissuePairDetector {
  public:
   /// @param surfaces of all tissues of the scene. @param rest their positions at rest, m: parts of one surface that are
-  /// near each other at rest are no folds. @throws std::invalid_argument for an unknown index or sizes that differ.
+  /// near each other at rest are no folds. @throws std::invalid_argument for an unknown index, a pair listed twice (in
+  ///   either order), sizes that differ, bad triangles or a bad thickness.
   TissuePairDetector(std::vector<TouchingTissues> pairs, std::vector<TissueSurface> surfaces,
                      const std::vector<NodalVectors>& rest);
   ~TissuePairDetector();
@@ -30,7 +31,10 @@ class TissuePairDetector {
 
   /// Appends every vertex-face and edge-edge pair nearer than `margin_m`: `tissue` and `nodes` hold one point, the
   /// `other_*` members the point in the instrument's place, n from it into `tissue`. At most 4 nodes have a weight.
-  /// Per call sorted by key. Deterministic: depends on the arguments alone. Not thread-safe.
+  /// What is appended is sorted by key. Deterministic: depends on the arguments alone. No allocation once vectors have
+  /// grown. Not thread-safe. Non-finite positions give no contact. Which pairs count: src/contact/vertex_face.h and
+  /// edge_edge.h. @throws std::invalid_argument for sizes that differ from the construction's and a margin that is not
+  /// finite or < 0.
   void detect(const std::vector<NodalVectors>& positions, double margin_m, std::vector<Contact>& contacts);
 
  private:
