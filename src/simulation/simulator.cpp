@@ -54,6 +54,18 @@ std::vector<TouchingTissues> touchingTissues(const Scene& scene) {
   return pairs;
 }
 
+/// The linearised cones and impulses know one coefficient for all directions.
+void requireMethodForLaws(const Scene& scene) {
+  const SolverMethod method = scene.solver.method;
+  if (method == SolverMethod::kPredictorCorrector || method == SolverMethod::kReference) return;
+  for (const FrictionDescription& pair : scene.friction) {
+    if (pair.law.kind == FrictionLawDescription::Kind::kIsotropic) continue;
+    throw std::invalid_argument("solver.method " + std::string(solverMethodName(method)) +
+                                " handles isotropic friction only, but friction on tissue '" + pair.tissue +
+                                "' depends on direction; use predictor_corrector or reference");
+  }
+}
+
 std::vector<NodalVectors> restPositionsOf(const std::vector<Tissue>& tissues) {
   std::vector<NodalVectors> positions;
   positions.reserve(tissues.size());
@@ -110,6 +122,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       motion(instruments),
       detector(instruments, surfacesOf(tissues), restPositionsOf(tissues)),
       solver(makeContactSolver(scene.solver, environment.clock)) {
+  requireMethodForLaws(scene);
   requirePositive("step.max_step_s", scene.step.max_step_s, "s");
   if (!scene.tissue_pairs.empty()) {
     pair_detector.emplace(touchingTissues(scene), surfacesOf(tissues), restPositionsOf(tissues));

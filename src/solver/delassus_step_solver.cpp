@@ -1,8 +1,21 @@
 #include "solver/delassus_step_solver.h"
 
+#include <exception>
+#include <limits>
+
 namespace tissue_contact {
 
 SolverReport DelassusStepSolver::solve(const ContactProblem& problem, ContactSolution& solution) {
+  try {
+    return solveExactly(problem, solution);
+  } catch (const std::exception&) {
+    // A that is not positive definite, or values that are not finite: a step without an answer, not an end of the run.
+    for (NodalVectors& v : solution.v) v.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return {};
+  }
+}
+
+SolverReport DelassusStepSolver::solveExactly(const ContactProblem& problem, ContactSolution& solution) {
   const DelassusSystem system(problem);
   const std::size_t count = problem.contacts.size();
   DelassusSolution answer;

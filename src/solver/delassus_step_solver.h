@@ -1,6 +1,6 @@
 /// @file
-/// Room `solver`, private: solvers that work on the Delassus matrix (reference, static condensation), applied to a step.
-/// Exact and slow: every step factors A and fills W. They measure the error of the others.
+/// Room `solver`, private: solvers that work on the Delassus matrix (reference, static condensation), applied to a
+/// step. Exact and slow: every step factors A and fills W. They measure the error of the others.
 #pragma once
 
 #include "tissue_contact/solver/contact_solver.h"
@@ -16,6 +16,8 @@ class DelassusStepSolver : public ContactSolver {
   Memory memory() const override { return memory_; }
 
  private:
+  SolverReport solveExactly(const ContactProblem& problem, ContactSolution& solution);
+
   SolverDescription description_;
   Memory memory_;
   std::vector<NodalVectors> scratch_;

@@ -1,6 +1,7 @@
 #include "solver/factored_body.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace tissue_contact {
 namespace {
@@ -42,7 +43,11 @@ void FactoredBody::forget() {
 }
 
 void FactoredBody::relax(const NodalVectors& defect, NodalVectors& v) {
-  if (!valid_ || system_.size() == 0) return;
+  if (system_.size() == 0) return;
+  if (!valid_) {  // A was not positive definite: no answer, which the caller must see
+    v.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
   system_.gather(defect, right_);
   left_ = factor_.solve(right_);
   system_.scatterAdd(left_, v);
