@@ -5,8 +5,8 @@
 /// bending stiffness (N m), kappa from plate_stencil.h, in one of two forms:
 /// - flat at rest: kappa is taken of the positions themselves, each coordinate like a deflection. The energy is then
 ///   quadratic, does not change with rigid motion, and its stiffness is constant: nothing to assemble in a step. Exact
-///   for bending without stretching. Source of the idea: Bergou, Wardetzky, Harmon, Zorin, Grinspun, "A quadratic bending
-///   model for inextensible surfaces", SGP 2006, on our stencil.
+///   for bending without stretching. Source of the idea: Bergou, Wardetzky, Harmon, Zorin, Grinspun, "A quadratic
+///   bending model for inextensible surfaces", SGP 2006, on our stencil.
 /// - curved at rest: kappa is taken of the angles between neighbouring triangles, and the stiffness leaves out the
 ///   second derivatives of the angles (Gauss-Newton): positive semidefinite, and exact where kappa = kappa_rest.
 #pragma once

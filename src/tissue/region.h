@@ -9,8 +9,8 @@
 
 namespace tissue_contact {
 
-/// A distance (m) within which a point counts as on the boundary of a region: the rounding of coordinates such as 0.1 * 3
-/// in a mesh with nodes at x.
+/// A distance (m) within which a point counts as on the boundary of a region: the rounding of coordinates such as 0.1 *
+/// 3 in a mesh with nodes at x.
 double roundingDistance(const NodalVectors& x);
 
 /// For each point (3 x n, m, in T) the last region that holds it, -1 if none does. Boundaries count as inside.

@@ -68,22 +68,23 @@ std::unique_ptr<Elasticity::State> TetElasticity::makeState() const {
   state->tangent_rotations = state->rotations;
   state->turned.assign(tets_->batches.size(), 0);
   tets_->prepare(*state);
-  for (const TetElement& element : tets_->elements) addStiffness(element, Quaternion::Identity(), 1.0, *state);
+  const auto add = tets_->damps ? addStiffness<true> : addStiffness<false>;
+  for (const TetElement& element : tets_->elements) add(element, Quaternion::Identity(), 1.0, *state);
   return state;
 }
 
+template <bool kDamps>
 void TetElasticity::addStiffness(const TetElement& element, const Quaternion& rotation, double sign, State& state) {
   const Eigen::Matrix<double, 3, 4> c = rotation.toRotationMatrix() * shapeGradients(element.rest_inverse);
   const double lambda = sign * element.volume * element.lame.lambda;
   const double mu = sign * element.volume * element.lame.mu;
-  const bool damps = state.damping.rows() > 0;
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = i; j < 4; ++j) {
       if (element.slots[i][j] < 0) continue;
       Matrix3 block = (lambda * c.col(i)) * c.col(j).transpose() + (mu * c.col(j)) * c.col(i).transpose();
       block.diagonal().array() += mu * c.col(i).dot(c.col(j));
       addBlock(element.slots, i, j, block, state.stiffness);
-      if (damps) addBlock(element.slots, i, j, element.damping_s * block, state.damping);
+      if (kDamps) addBlock(element.slots, i, j, element.damping_s * block, state.damping);
     }
   }
 }
@@ -93,11 +94,12 @@ void TetElasticity::refreshStiffness(std::size_t batch, RotationState& state) co
     const RotationBatch& q = rotations[batch];
     return Quaternion(q[0][lane], q[1][lane], q[2][lane], q[3][lane]).normalized();
   };
+  const auto add = tets_->damps ? addStiffness<true> : addStiffness<false>;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::size_t e = batch * kLanes + lane;
     if ((state.turned[batch] >> lane & 1) == 0 || e >= tets_->elements.size()) continue;
-    addStiffness(tets_->elements[e], rotation(state.tangent_rotations, lane), -1.0, state);
-    addStiffness(tets_->elements[e], rotation(state.rotations, lane), 1.0, state);
+    add(tets_->elements[e], rotation(state.tangent_rotations, lane), -1.0, state);
+    add(tets_->elements[e], rotation(state.rotations, lane), 1.0, state);
     for (std::size_t i = 0; i < 4; ++i) state.tangent_rotations[batch][i][lane] = state.rotations[batch][i][lane];
   }
 }

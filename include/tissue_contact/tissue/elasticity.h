@@ -1,6 +1,6 @@
 /// @file
-/// Room `tissue`: what every tissue model gives a time step, whatever its elements. Positions in; elastic forces and the
-/// stiffness (and damping) matrix of the step's linearisation out.
+/// Room `tissue`: what every tissue model gives a time step, whatever its elements. Positions in; elastic forces and
+/// the stiffness (and damping) matrix of the step's linearisation out.
 #pragma once
 
 #include <memory>

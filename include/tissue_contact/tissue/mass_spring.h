@@ -13,8 +13,8 @@
 /// case. Compare Lloyd, Szekely, Harders, "Identification of spring parameters for deformable object simulation",
 /// TVCG 2007, who fit regular meshes.
 ///
-/// @warning Poisson's ratio is that of central forces, 1/4, whatever the material says. Springs do not mind being turned
-/// inside out: an element that inverts may stay so. Use a finite-element model where either matters.
+/// @warning Poisson's ratio is that of central forces, 1/4, whatever the material says. Springs do not mind being
+/// turned inside out: an element that inverts may stay so. Use a finite-element model where either matters.
 #pragma once
 
 #include <memory>

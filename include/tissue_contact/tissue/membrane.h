@@ -2,12 +2,13 @@
 /// Room `tissue`: membranes, cloth and strips: constant-strain triangles in plane stress, with bending. Positions in;
 /// elastic forces and a positive semidefinite stiffness out.
 ///
-/// In-plane, per triangle of area A and thickness h, F = [x1-x0, x2-x0] D_rest^-1 (3 x 2) = R U with R'R = I, U symmetric:
+/// In-plane, per triangle of area A and thickness h, with F = [x1-x0, x2-x0] D_rest^-1 (3 x 2) = R U, R'R = I, U
+/// symmetric:
 ///   strain e = U - I,  stress P = R (2 mu e + lambda tr(e) I) = R T,  energy A h (mu e:e + lambda/2 tr(e)^2),
 /// mu and lambda of plane stress: a strip with nu = 0 pulled to any length l carries E h b (l/L - 1). U and R are in
 /// closed form (2 x 2 polar decomposition), and remain defined for a triangle folded or collapsed flat.
-/// The stiffness is the exact second derivative, the part that stress adds included where it is in tension (what makes a
-/// taut membrane resist a push across it), without its negative part in compression.
+/// The stiffness is the exact second derivative, the part that stress adds included where it is in tension (what makes
+/// a taut membrane resist a push across it), without its negative part in compression.
 /// Bending: src/tissue/plate_bending.h, with stiffness B per width from the material: that of a plate,
 /// E h^3 / (12 (1 - nu^2)), unless it gives its own; 0: none, and then no cost.
 ///

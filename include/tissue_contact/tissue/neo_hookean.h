@@ -13,7 +13,7 @@
 ///
 /// Stiffness: the exact second derivative with its negative eigenvalues set to zero, element by element, in closed form
 /// from the singular values of F (one 3 x 3 eigenproblem is left).
-/// Source: Smith, de Goes, Kim, "Stable Neo-Hookean Flesh Simulation", ACM TOG 37(2), 2018, eq. 14, sec. 3.4 and 4.
+/// Source: Smith, de Goes, Kim, "Stable Neo-Hookean Flesh Simulation", ACM TOG 37(2), 2018, eq. 14 and what follows.
 #pragma once
 
 #include <array>

@@ -52,6 +52,7 @@ class TetElasticity : public Elasticity {
   static constexpr double kTangentAngle = 0.01;
 
  private:
+  template <bool kDamps>
   static void addStiffness(const TetElement& element, const Quaternion& rotation, double sign, State& state);
   void refreshStiffness(std::size_t batch, RotationState& state) const;
 

@@ -20,8 +20,8 @@ class Tissue {
  public:
   /// @param X_WT pose of the tissue frame in the world (tf already looked up).
   /// @throws std::invalid_argument naming the tissue (and region) for: a bad mesh, a model that does not suit the
-  /// geometry or differs between regions, a material, damping or fibre direction out of range, a fixed region that holds
-  /// no node, a material region that holds no element.
+  /// geometry or differs between regions, a material, damping or fibre direction out of range, a fixed region that
+  /// holds no node, a material region that holds no element.
   Tissue(const TissueDescription& description, const Pose& X_WT);
 
   const std::string& name() const { return name_; }
@@ -33,13 +33,13 @@ class Tissue {
   /// Thickness of a membrane, m: it can be touched from both sides, at half of it from its triangles. 0: a volume.
   double thickness() const { return thickness_; }
 
-  /// Per surface triangle: index into TissueDescription::regions (by the triangle's own centroid), -1 where none. Empty:
-  /// the tissue has no regions.
+  /// Per surface triangle: index into TissueDescription::regions (by the triangle's own centroid), -1 where none.
+  /// Empty: the tissue has no regions.
   const std::vector<int>& surfaceRegions() const { return surface_regions_; }
 
   /// Per surface triangle: the fibre direction at rest, projected into it, as coefficients over its edges (x1 - x0,
-  /// x2 - x0); applied to the deformed edges they give the carried direction, of length 1 at rest. Zero where fibres run
-  /// across the triangle or there are none. Empty: the tissue has no fibres.
+  /// x2 - x0); applied to the deformed edges they give the carried direction, of length 1 at rest. Zero where fibres
+  /// run across the triangle or there are none. Empty: the tissue has no fibres.
   const std::vector<Vector2>& surfaceFibres() const { return surface_fibres_; }
 
   const std::vector<bool>& fixed() const { return fixed_; }
