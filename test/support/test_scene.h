@@ -47,4 +47,12 @@ inline std::string tableUrdf() {
          "<box size='2 2 0.1'/></geometry></collision></link></robot>";
 }
 
+/// The same on a prismatic joint along x; link 1.
+inline std::string movingTableUrdf() {
+  return "<robot name='tray'><link name='base'/><joint name='x' type='prismatic'><parent link='base'/>"
+         "<child link='table'/><axis xyz='1 0 0'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>"
+         "<link name='table'><collision><origin xyz='0 0 -0.05'/><geometry><box size='2 2 0.1'/></geometry>"
+         "</collision></link></robot>";
+}
+
 }  // namespace tissue_contact::test
