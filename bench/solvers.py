@@ -33,7 +33,7 @@ PANELS = [
 def program():
     build = subprocess.run([ROOT / "scripts/build", "--where"], check=True, capture_output=True, text=True).stdout.strip()
     subprocess.run([ROOT / "scripts/build"], check=True, stdout=sys.stderr)
-    target = "tissue_contact_random_problems"
+    target = "random_problems"
     subprocess.run(["cmake", "--build", build, "--target", target], check=True, stdout=sys.stderr)
     return pathlib.Path(build) / "bench" / "random_problems"
 

@@ -45,4 +45,27 @@ std::vector<Tissue> buildTissues(const Scene& scene, const SceneEnvironment& env
   return tissues;
 }
 
+std::vector<TouchingTissues> buildTissuePairs(const Scene& scene) {
+  const auto index = [&](const std::string& name) {
+    for (std::size_t t = 0; t < scene.tissues.size(); ++t) {
+      if (scene.tissues[t].name == name) return static_cast<int>(t);
+    }
+    throw std::invalid_argument("tissue_pairs names the unknown tissue '" + name + "'");
+  };
+  std::vector<TouchingTissues> pairs;
+  for (const TissuePair& pair : scene.tissue_pairs) pairs.push_back({index(pair.tissue), index(pair.other)});
+  return pairs;
+}
+
+void requireMethodForLaws(const Scene& scene) {
+  const SolverMethod method = scene.solver.method;
+  if (method == SolverMethod::kPredictorCorrector || method == SolverMethod::kReference) return;
+  for (const FrictionDescription& pair : scene.friction) {
+    if (pair.law.kind == FrictionLawDescription::Kind::kIsotropic) continue;
+    throw std::invalid_argument("solver.method " + std::string(solverMethodName(method)) +
+                                " handles isotropic friction only, but friction on tissue '" + pair.tissue +
+                                "' depends on direction; use predictor_corrector or reference");
+  }
+}
+
 }  // namespace tissue_contact

@@ -111,6 +111,10 @@ void FrictionTable::add(const FrictionDescription& description, const Scene& sce
                                 "' follows its fibres, but it has no fibre_direction; give it one");
   }
   using Kind = FrictionLawDescription::Kind;
+  if (description.instrument.empty() && description.law.axis == FrictionLawDescription::Axis::kLink) {
+    throw std::invalid_argument("friction between tissues '" + description.tissue + "' and '" +
+                                description.other_tissue + "' has the axis of a link; only fibres have one here");
+  }
   if (description.instrument.empty() &&
       (description.law.kind == Kind::kTable || description.law.kind == Kind::kTensor)) {
     // The same two points may meet as a contact of either tissue; only laws that axis 1 mirrors are the same in both.

@@ -23,6 +23,12 @@ constexpr double kRecoveryPerStep = 0.1;
 constexpr double kMarginFactor = 1.5;
 constexpr double kMarginPerEdge = 0.01;
 
+/// Tissues are looked for this many edges from each other at most: pairs of features grow with the square of it.
+constexpr double kMostPairEdges = 2.0;
+
+/// More of a static contact's slip than this share of an edge is no error of the solver any more and is let go.
+constexpr double kMostSlipPerEdge = 0.01;
+
 double meanSurfaceEdge(const std::vector<Tissue>& tissues) {
   double sum = 0.0;
   double count = 0.0;
@@ -39,31 +45,6 @@ std::vector<TissueSurface> surfacesOf(const std::vector<Tissue>& tissues) {
   surfaces.reserve(tissues.size());
   for (const Tissue& tissue : tissues) surfaces.push_back({tissue.surface(), tissue.fixed(), tissue.thickness()});
   return surfaces;
-}
-
-/// The scene's tissue pairs by index; names are checked when the scene is loaded.
-std::vector<TouchingTissues> touchingTissues(const Scene& scene) {
-  const auto index = [&](const std::string& name) {
-    for (std::size_t t = 0; t < scene.tissues.size(); ++t) {
-      if (scene.tissues[t].name == name) return static_cast<int>(t);
-    }
-    throw std::invalid_argument("tissue_pairs names the unknown tissue '" + name + "'");
-  };
-  std::vector<TouchingTissues> pairs;
-  for (const TissuePair& pair : scene.tissue_pairs) pairs.push_back({index(pair.tissue), index(pair.other)});
-  return pairs;
-}
-
-/// The linearised cones and impulses know one coefficient for all directions.
-void requireMethodForLaws(const Scene& scene) {
-  const SolverMethod method = scene.solver.method;
-  if (method == SolverMethod::kPredictorCorrector || method == SolverMethod::kReference) return;
-  for (const FrictionDescription& pair : scene.friction) {
-    if (pair.law.kind == FrictionLawDescription::Kind::kIsotropic) continue;
-    throw std::invalid_argument("solver.method " + std::string(solverMethodName(method)) +
-                                " handles isotropic friction only, but friction on tissue '" + pair.tissue +
-                                "' depends on direction; use predictor_corrector or reference");
-  }
 }
 
 std::vector<NodalVectors> restPositionsOf(const std::vector<Tissue>& tissues) {
@@ -85,6 +66,8 @@ struct Simulator::Implementation {
   void placeRow(const Contact& contact, double dt, ContactRow& row) const;
   void moveTissues(double dt);
   void recordContacts(double dt);
+  Vector3 slipOf(std::size_t contact, double dt) const;
+  void makeElasticStates();
   void sumWrenches();
 
   const Scene scene;
@@ -102,6 +85,7 @@ struct Simulator::Implementation {
   std::vector<Contact> contacts;
   ContactMemory memory;
   std::vector<ContactMemory::Inherited> answers;  ///< per contact: inherited before the solve, found after it
+  std::vector<Vector2> taken_back;  ///< per contact: part of the tool's velocity that undoes a slip, contact plane, m/s
   ContactProblem problem;
   ContactSolution solution;  ///< v is the tissues' velocity
   std::unique_ptr<ContactSolver> solver;
@@ -125,7 +109,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
   requireMethodForLaws(scene);
   requirePositive("step.max_step_s", scene.step.max_step_s, "s");
   if (!scene.tissue_pairs.empty()) {
-    pair_detector.emplace(touchingTissues(scene), surfacesOf(tissues), restPositionsOf(tissues));
+    pair_detector.emplace(buildTissuePairs(scene), surfacesOf(tissues), restPositionsOf(tissues));
   }
   elastic_states.resize(tissues.size());
   forces = restPositionsOf(tissues);  // for their sizes
@@ -139,13 +123,8 @@ void Simulator::Implementation::reset() {
   solution.v.resize(tissues.size());
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     solution.v[t].setZero(3, tissues[t].nodeCount());
-    elastic_states[t] = tissues[t].elasticity().makeState();
-    Elasticity::State& state = *elastic_states[t];
-    problem.bodies[t].K = &state.stiffness;
-    problem.bodies[t].D = state.damping.rows() > 0 ? &state.damping : nullptr;
-    problem.bodies[t].fixed = &tissues[t].fixed();
   }
-  solver->reset();
+  makeElasticStates();
   memory.clear();
   contacts.clear();
   solved.clear();
@@ -153,6 +132,18 @@ void Simulator::Implementation::reset() {
   report = StepReport();
   step_count = 0;
   last_dt = 0.0;
+}
+
+/// Fresh states, and a solver without anything left from the old ones.
+void Simulator::Implementation::makeElasticStates() {
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    elastic_states[t] = tissues[t].elasticity().makeState();
+    const Elasticity::State& state = *elastic_states[t];
+    problem.bodies[t].K = &state.stiffness;
+    problem.bodies[t].D = state.damping.rows() > 0 ? &state.damping : nullptr;
+    problem.bodies[t].fixed = &tissues[t].fixed();
+  }
+  solver->reset();
 }
 
 /// One implicit step: the rooms in order.
@@ -183,7 +174,7 @@ void Simulator::Implementation::detectContacts(double dt) {
   margin = std::min(margin, kMostEdges * mean_edge);
   detector.detect(x, motion.startPoses(), margin, contacts);
   if (pair_detector) {
-    pair_detector->detect(x, margin + kMarginFactor * tissue_travel, contacts);
+    pair_detector->detect(x, std::min(margin + kMarginFactor * tissue_travel, kMostPairEdges * mean_edge), contacts);
     std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) { return a.key < b.key; });
   }
   memory.addKeptPoints(detector, x, motion.startPoses(), margin, contacts);
@@ -212,6 +203,7 @@ void Simulator::Implementation::assembleContacts(double dt) {
   problem.contacts.resize(contacts.size());
   solution.impulses.resize(contacts.size());
   solution.states.resize(contacts.size());
+  taken_back.resize(contacts.size());
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];
     const ContactMemory::Inherited& before = answers[c];
@@ -220,8 +212,11 @@ void Simulator::Implementation::assembleContacts(double dt) {
     row.was_sliding = before.state == ContactState::kKinetic;
     const double speed = row.was_sliding && last_dt > 0.0 ? before.slip_W.norm() / last_dt : 0.0;
     row.law = friction.at(contact, x, motion.startPoses(), speed);
+    taken_back[c].setZero();
     if (before.state == ContactState::kStatic) {
-      row.u_tool.tail<2>() -= contact.R_WC.rightCols<2>().transpose() * before.slip_W / dt;
+      // Not faster than it came: a short step after a long one could not hold it.
+      taken_back[c] = contact.R_WC.rightCols<2>().transpose() * before.slip_W / std::max(dt, last_dt);
+      row.u_tool.tail<2>() -= taken_back[c];
     }
     solution.impulses[c] = dt * (contact.R_WC.transpose() * before.force_W);
     solution.states[c] = before.state;
@@ -265,6 +260,7 @@ void Simulator::Implementation::moveTissues(double dt) {
   report.discarded = true;
   report.stop = StopReason::kIterations;
   report.residuals = Residuals();
+  makeElasticStates();  // what is not finite may have got into tangents and factors
   for (NodalVectors& v : solution.v) v.setZero();
   for (Vector3& impulse : solution.impulses) impulse.setZero();
   std::fill(solution.states.begin(), solution.states.end(), ContactState::kOpen);
@@ -280,14 +276,24 @@ void Simulator::Implementation::recordContacts(double dt) {
                    contact.weights[2] * nodes.col(contact.nodes[2]);
     answers[c].state = solution.states[c];
     answers[c].force_W = contact.R_WC * solution.impulses[c] / dt;
-    const Vector2 slip = dt * relativeVelocity(problem.contacts[c], solution.v).tail<2>();
-    answers[c].slip_W = contact.R_WC.rightCols<2>() * slip;
+    answers[c].slip_W = slipOf(c, dt);
     solved[c] = {contact, answers[c].state, answers[c].force_W};
     report.open_contacts += answers[c].state == ContactState::kOpen;
     report.static_contacts += answers[c].state == ContactState::kStatic;
     report.kinetic_contacts += answers[c].state == ContactState::kKinetic;
   }
   memory.remember(contacts, answers);
+}
+
+/// Tangential way of a contact in this step, m, world frame; of a static one with what earlier steps have left.
+Vector3 Simulator::Implementation::slipOf(std::size_t c, double dt) const {
+  const Contact& contact = contacts[c];
+  const Vector2 true_velocity = relativeVelocity(problem.contacts[c], solution.v).tail<2>() - taken_back[c];
+  Vector3 slip = dt * (contact.R_WC.rightCols<2>() * true_velocity);
+  if (solution.states[c] != ContactState::kStatic) return slip;
+  slip += contact.R_WC.rightCols<2>() * taken_back[c] * std::max(dt, last_dt);
+  const double most = kMostSlipPerEdge * mean_edge;
+  return slip.norm() > most ? Vector3(slip * (most / slip.norm())) : slip;
 }
 
 void Simulator::Implementation::sumWrenches() {

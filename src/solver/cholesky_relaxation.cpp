@@ -17,6 +17,12 @@ constexpr double kUselessContraction = 0.9;
 /// Round-off leaves a defect of its own (relative to the loads), which says nothing about the factor.
 constexpr double kRoundOff = 1e-12;
 
+double normOf(const std::vector<NodalVectors>& defects) {
+  double sum = 0.0;
+  for (const NodalVectors& defect : defects) sum += defect.squaredNorm();
+  return std::sqrt(sum);
+}
+
 class CholeskyRelaxation : public Relaxation {
  public:
   void prepare(const ContactProblem& problem, ContactSolution& solution) override;
@@ -37,17 +43,20 @@ class CholeskyRelaxation : public Relaxation {
 
   double computeDefect(const ContactProblem& problem, const ContactSolution& solution);
   double relaxOnce(const ContactProblem& problem, ContactSolution& solution, double before);
+  double relaxSafely(const ContactProblem& problem, ContactSolution& solution);
   void prepareContact(const ContactProblem& problem, std::size_t contact, ContactSolution& solution);
   double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution);
   Vector3 trackedVelocity(const ContactRow& row, const Local& local) const;
   void addImpulse(const ContactRow& row, const Local& local, const Vector3& impulse_W);
 
-  std::deque<FactoredBody> bodies_;  ///< a factor cannot be moved
+  std::deque<FactoredBody> bodies_;     ///< a factor cannot be moved
   std::vector<NodalVectors> impulses_;  ///< J'lambda per body
   std::vector<NodalVectors> defect_;    ///< b + J'lambda - A v per body, kept up to date
   std::vector<VectorX> tracked_;        ///< per body: velocities of its touched nodes during the passes
   std::vector<Local> contacts_;
-  double loads_ = 0.0;  ///< |b|, N s
+  std::vector<NodalVectors> saved_;  ///< velocities before a relaxation
+  double loads_ = 0.0;               ///< |b|, N s
+  long renewals_ = 0;                ///< factors renewed in mid-step
 };
 
 void CholeskyRelaxation::prepare(const ContactProblem& problem, ContactSolution& solution) {
@@ -73,13 +82,24 @@ void CholeskyRelaxation::prepare(const ContactProblem& problem, ContactSolution&
     }
   }
   // The first relaxation comes before the compliances, which would be lost with a factor that proves useless.
-  const double before = computeDefect(problem, solution);
-  if (relaxOnce(problem, solution, before) > kUselessContraction * before && before > kRoundOff * loads_) {
-    for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].renew(problem.bodies[k]);
-    relaxOnce(problem, solution, computeDefect(problem, solution));
-  }
-  for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].beginTouching(4 * problem.contacts.size());
+  computeDefect(problem, solution);
+  relaxSafely(problem, solution);
+  for (FactoredBody& body : bodies_) body.beginTouching();
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) prepareContact(problem, c, solution);
+}
+
+/// Relaxes; where the factor makes things worse or hardly better, it is renewed at once and the relaxation done again with
+/// A itself. A part of the answer that the factor drives apart may be small at first, so every relaxation is watched.
+/// @return the defect left, N s.
+double CholeskyRelaxation::relaxSafely(const ContactProblem& problem, ContactSolution& solution) {
+  const double before = normOf(defect_);
+  saved_ = solution.v;
+  const double after = relaxOnce(problem, solution, before);
+  if (after <= kUselessContraction * before || after <= kRoundOff * loads_) return after;
+  solution.v = saved_;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].renew(problem.bodies[k]);
+  ++renewals_;
+  return relaxOnce(problem, solution, computeDefect(problem, solution));
 }
 
 void CholeskyRelaxation::prepareContact(const ContactProblem& problem, std::size_t contact, ContactSolution& solution) {
@@ -113,7 +133,7 @@ double CholeskyRelaxation::computeDefect(const ContactProblem& problem, const Co
 double CholeskyRelaxation::relaxOnce(const ContactProblem& problem, ContactSolution& solution, double before) {
   for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].relax(defect_[k], solution.v[k]);
   const double after = computeDefect(problem, solution);
-  if (after > kStaleContraction * before && after > kRoundOff * loads_) {
+  if (!(after <= kStaleContraction * before) && !(after <= kRoundOff * loads_)) {
     for (FactoredBody& body : bodies_) body.markStale();
   }
   return after;
@@ -121,17 +141,21 @@ double CholeskyRelaxation::relaxOnce(const ContactProblem& problem, ContactSolut
 
 double CholeskyRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& /*corrector*/,
                                  ContactSolution& solution) {
-  double sum = 0.0;
-  for (const NodalVectors& defect : defect_) sum += defect.squaredNorm();
-  if (iteration == 0) return std::sqrt(sum);  // prepare() has relaxed already
-  return relaxOnce(problem, solution, std::sqrt(sum));
+  if (iteration == 0) return normOf(defect_);  // prepare() has relaxed already
+  const long renewals = renewals_;
+  const double left = relaxSafely(problem, solution);
+  if (renewals != renewals_) {  // the compliances went with the old factor
+    for (std::size_t c = 0; c < problem.contacts.size(); ++c) prepareContact(problem, c, solution);
+  }
+  return left;
 }
 
 Vector3 CholeskyRelaxation::trackedVelocity(const ContactRow& row, const Local& local) const {
   Vector3 tissue = Vector3::Zero();
   for (int a = 0; a < row.node_count; ++a) {
     if (local.index[a] < 0) continue;
-    tissue += row.nodes[a].weight * tracked_[row.nodes[a].body].segment<3>(3 * local.index[a]);
+    tissue +=
+        row.nodes[a].weight * tracked_[row.nodes[a].body].segment<3>(3 * static_cast<Eigen::Index>(local.index[a]));
   }
   return row.R_WC.transpose() * tissue - row.u_tool;
 }
@@ -172,8 +196,7 @@ double CholeskyRelaxation::correctContacts(const ContactProblem& problem, int pa
 }
 
 void CholeskyRelaxation::finish(const ContactProblem& problem, ContactSolution& solution) {
-  (void)problem;
-  for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].relax(defect_[k], solution.v[k]);
+  relaxSafely(problem, solution);
 }
 
 ContactSolver::Memory CholeskyRelaxation::memory() const {

@@ -26,7 +26,7 @@ Vector3 ContactCorrector::correct(const ContactProblem& problem, std::size_t con
   const bool both_touch = answer.state != ContactState::kOpen && state != ContactState::kOpen;
   if (both_touch && answer.state != state && flips_[contact] <= kMaxFlips) ++flips_[contact];
   state = answer.state;
-  const Vector3 change = answer.impulse - impulse;
+  Vector3 change = answer.impulse - impulse;
   impulse = answer.impulse;
   return change;
 }

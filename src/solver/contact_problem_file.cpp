@@ -180,6 +180,7 @@ void writeContactProblem(std::ostream& stream, const DelassusProblem& problem,
   for (Eigen::Index c = 0; c < problem.contacts(); ++c) stream << problem.q.segment<3>(3 * c).transpose() << '\n';
   stream << "mu\n";
   for (Eigen::Index c = 0; c < problem.contacts(); ++c) {
+    if (problem.laws[c].anisotropic != nullptr) stream << "# directional law: its forward coefficient alone\n";
     stream << fileCoefficient(problem.laws[c], problem.was_sliding[c], states[c]) << '\n';
   }
   stream.precision(precision);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "solver/delassus_states.h"
 #include "solver/lemke.h"
@@ -21,6 +23,13 @@ class CondensedLcp {
       G_.col(k + 1) = Vector3(0.0, std::cos(angle), std::sin(angle));
     }
     const Eigen::Index size = contacts_ * per_contact_;
+    constexpr Eigen::Index kMostUnknowns = 8000;  // a tableau of half a gigabyte, minutes of pivoting
+    if (size > kMostUnknowns) {
+      throw std::invalid_argument("condensed_lcp: " + std::to_string(size) +
+                                  " unknowns (contacts times cone sides + 2); at "
+                                  "most " +
+                                  std::to_string(kMostUnknowns) + "; take fewer sides, or another method");
+    }
     tableau_.resize(size, size + 2);
     labels_.resize(2 * size + 1);
     z_.resize(size);

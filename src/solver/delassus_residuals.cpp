@@ -13,22 +13,12 @@ void worsen(double& worst, double value) {
   if (!(value <= worst)) worst = value;
 }
 
-/// Kinetic friction impulse per unit normal impulse while sliding along the unit vector d, contact plane.
-Vector2 slidingForce(const CoulombLaw& law, const Vector2& d) {
-  if (law.anisotropic == nullptr) return -law.mu_kinetic * d;
-  Matrix2 axes;  // columns: the law's axes in (t1, t2)
-  axes << law.axis.x(), -law.axis.y(), law.axis.y(), law.axis.x();
-  return law.kinetic_factor * (axes * law.anisotropic->slidingForce(axes.transpose() * d));
-}
-
 /// How far r_t is outside its limit, N s; negative inside.
 double excess(const CoulombLaw& law, const Vector3& r, bool kinetic) {
   const Vector2 friction = r.tail<2>();
   if (law.anisotropic == nullptr) return friction.norm() - (kinetic ? law.mu_kinetic : law.mu_static) * r[0];
   if (!(r[0] > 0.0) || friction.isZero(0.0)) return friction.norm() - (r[0] > 0.0 ? r[0] : 0.0);
-  const Vector2 across(-law.axis.y(), law.axis.x());
-  const double use = law.anisotropic->use(Vector2(law.axis.dot(friction), across.dot(friction)) / r[0], kinetic);
-  return friction.norm() * (1.0 - 1.0 / use);
+  return friction.norm() * (1.0 - r[0] / frictionUse(law, friction, kinetic));
 }
 
 /// Adds the friction measures of one contact that has a normal impulse. A contact slides for them when its tangential
@@ -43,7 +33,7 @@ void addFriction(const CoulombLaw& law, bool was_sliding, const Vector3& r, cons
   worsen(sum.cone_violation_n_s, outside);
   sum.friction_power_j += friction.dot(sliding);
   if (!(speed > 0.0)) return;
-  const Vector2 expected = std::max(r[0], 0.0) * slidingForce(law, sliding / speed);
+  const Vector2 expected = std::max(r[0], 0.0) * kineticFriction(law, sliding / speed);
   // A held contact has no sliding force to compare with beyond its (larger) limit; what slip it has counts in full.
   sum.dissipation_defect_j += std::abs(friction.dot(sliding) - expected.dot(sliding));
   if (outside < -1e-9 * friction.norm()) worsen(sum.static_slip_m_per_s, speed);

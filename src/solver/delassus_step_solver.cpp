@@ -1,18 +1,19 @@
 #include "solver/delassus_step_solver.h"
 
-#include <exception>
 #include <limits>
+#include <stdexcept>
 
 namespace tissue_contact {
 
 SolverReport DelassusStepSolver::solve(const ContactProblem& problem, ContactSolution& solution) {
   try {
     return solveExactly(problem, solution);
-  } catch (const std::exception&) {
-    // A that is not positive definite, or values that are not finite: a step without an answer, not an end of the run.
-    for (NodalVectors& v : solution.v) v.setConstant(std::numeric_limits<double>::quiet_NaN());
-    return {};
+  } catch (const std::runtime_error&) {     // A is not positive definite
+  } catch (const std::invalid_argument&) {  // values that are not finite, or too many contacts for the method
   }
+  // A step without an answer, not the end of the run.
+  for (NodalVectors& v : solution.v) v.setConstant(std::numeric_limits<double>::quiet_NaN());
+  return {};
 }
 
 SolverReport DelassusStepSolver::solveExactly(const ContactProblem& problem, ContactSolution& solution) {

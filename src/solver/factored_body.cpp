@@ -10,7 +10,8 @@ namespace {
 /// the relaxation converges.
 constexpr double kScaleRatio = 1.25;
 
-/// Touched nodes remembered beyond those of the present step: 72 MB.
+/// Touched nodes (72 bytes times their square) kept from step to step. More are kept while their number has not doubled
+/// since they were last thrown away, so that a large contact does not compute its compliances anew in every step.
 constexpr std::size_t kMostNodes = 1000;
 
 bool isNear(double now, double then) { return now <= kScaleRatio * then && then <= kScaleRatio * now; }
@@ -28,7 +29,8 @@ void FactoredBody::renew(const BodySystem& body) {
   if (!analysed_) factor_.analyzePattern(system_.matrix());
   analysed_ = true;
   factor_.factorize(system_.matrix());
-  valid_ = factor_.info() == Eigen::Success;
+  const Eigen::Map<const VectorX> values(system_.matrix().valuePtr(), system_.matrix().nonZeros());
+  valid_ = factor_.info() == Eigen::Success && values.allFinite();
   stale_ = false;
   stiffness_scale_ = body.stiffness_scale;
   damping_scale_ = body.damping_scale;
@@ -53,31 +55,32 @@ void FactoredBody::relax(const NodalVectors& defect, NodalVectors& v) {
   system_.scatterAdd(left_, v);
 }
 
-void FactoredBody::beginTouching(std::size_t expected) {
-  if (touched_.size() + expected > std::max(kMostNodes, expected)) forget();
+void FactoredBody::beginTouching() {
+  if (touched_.size() > kMostNodes && touched_.size() > 2 * touched_before_) forget();
+  touched_before_ = touched_.size();
 }
 
 int FactoredBody::touch(int node) {
   const int row = system_.firstRow(node);
   if (!valid_ || row < 0) return -1;
   if (index_of_[node] >= 0) return index_of_[node];
-  const int added = static_cast<int>(touched_.size());
-  index_of_[node] = added;
+  const auto added = static_cast<Eigen::Index>(touched_.size());
+  index_of_[node] = static_cast<int>(added);
   touched_.push_back(node);
-  const int needed = 3 * (added + 1);
-  if (C_.rows() < needed) C_.conservativeResize(2 * needed, 2 * needed);
+  const Eigen::Index needed = 3 * (added + 1);
+  if (C_.rows() < needed) C_.conservativeResize(needed + needed / 2, needed + needed / 2);
   right_.resize(system_.size());
   for (int axis = 0; axis < 3; ++axis) {
     right_.setZero();
     right_[row + axis] = 1.0;
     left_ = factor_.solve(right_);
-    for (int b = 0; b <= added; ++b) {
+    for (Eigen::Index b = 0; b <= added; ++b) {
       const Vector3 column = left_.segment<3>(system_.firstRow(touched_[b]));
       C_.block<3, 1>(3 * b, 3 * added + axis) = column;
       C_.block<1, 3>(3 * added + axis, 3 * b) = column.transpose();
     }
   }
-  return added;
+  return index_of_[node];
 }
 
 void FactoredBody::gatherTouched(const NodalVectors& v, VectorX& velocities) const {
@@ -89,7 +92,8 @@ void FactoredBody::gatherTouched(const NodalVectors& v, VectorX& velocities) con
 
 void FactoredBody::addResponse(int touched, const Vector3& impulse_W, VectorX& velocities) const {
   const Eigen::Index rows = velocities.size();
-  for (int axis = 0; axis < 3; ++axis) velocities += impulse_W[axis] * C_.col(3 * touched + axis).head(rows);
+  for (int axis = 0; axis < 3; ++axis)
+    velocities += impulse_W[axis] * C_.col(3 * static_cast<Eigen::Index>(touched) + axis).head(rows);
 }
 
 std::size_t FactoredBody::factorBytes() const {

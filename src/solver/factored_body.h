@@ -21,12 +21,12 @@ class FactoredBody {
   /// v += P^-1 defect.
   void relax(const NodalVectors& defect, NodalVectors& v);
 
-  /// Makes room for at most `expected` nodes: forgets older ones where they are many.
-  void beginTouching(std::size_t expected);
+  /// Begins the contacts of a step: forgets touched nodes where they have become too many.
+  void beginTouching();
   /// Index of a node in S, added if it is new (three back-substitutions); -1 for a fixed node.
   int touch(int node);
   /// Block between two nodes of S, 1/kg.
-  Matrix3 compliance(int a, int b) const { return C_.block<3, 3>(3 * a, 3 * b); }
+  Matrix3 compliance(int a, int b) const { return C_.block<3, 3>(3 * Eigen::Index{a}, 3 * Eigen::Index{b}); }
 
   /// Velocities of S, m/s; and what an impulse (N s, world axes) at one of them adds.
   void gatherTouched(const NodalVectors& v, VectorX& velocities) const;
@@ -50,7 +50,8 @@ class FactoredBody {
   VectorX left_;
   std::vector<int> index_of_;  ///< per node: index into touched_, else -1
   std::vector<int> touched_;   ///< S
-  Eigen::MatrixXd C_;          ///< the first 3 |S| rows and columns mean something
+  std::size_t touched_before_ = 0;
+  Eigen::MatrixXd C_;  ///< the first 3 |S| rows and columns mean something
 };
 
 }  // namespace tissue_contact

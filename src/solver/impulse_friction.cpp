@@ -36,8 +36,8 @@ void applyFriction(const ContactProblem& problem, const ContactRow& row, Vector3
 
 }  // namespace
 
-ImpulseFriction::ImpulseFriction(SolverDescription description, Clock clock)
-    : normal_(asPredictorCorrector(std::move(description)), std::move(clock)) {}
+ImpulseFriction::ImpulseFriction(const SolverDescription& description, Clock clock)
+    : normal_(asPredictorCorrector(description), std::move(clock)) {}
 
 SolverReport ImpulseFriction::solve(const ContactProblem& problem, ContactSolution& solution) {
   frictionless_ = problem;

@@ -66,8 +66,17 @@ int solveReference(const DelassusProblem& problem, const SolverDescription& desc
     iterations += polish(problem, aim, mu, r);
     offer(answerWith(problem, mu, r, tolerance));
   };
+  constexpr int kPatience = 8;  // turns without halving the residual: there is no answer to be had, or none for us
+  double halved = best;
+  int idle = 0;
   int length = kFirstSweeps;
-  for (int turn = 0; turn < description.iterations && !(best <= tolerance); ++turn) {
+  for (int turn = 0; turn < description.iterations && !(best <= tolerance) && idle < kPatience; ++turn) {
+    if (best < 0.5 * halved) {
+      halved = best;
+      idle = 0;
+    } else if (turn > 0) {
+      ++idle;
+    }
     iterations += iterate(sweeps, description, aim, 0.0, length).iterations;
     offer(answerOf(problem, sweeps));
     length = std::min(2 * length, kMostSweeps);

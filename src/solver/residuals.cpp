@@ -27,11 +27,14 @@ double momentumResidual(const ContactProblem& problem, const ContactSolution& so
   }
   double defect = 0.0;
   double scale = 0.0;
+  double load = 0.0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     scale += contact_impulses[k].squaredNorm();
+    load += problem.bodies[k].b.squaredNorm();
     defect += bodyDefect(problem.bodies[k], solution.v[k], contact_impulses[k], contact_impulses[k]);
   }
   if (std::isnan(defect)) return defect;
+  if (scale == 0.0) scale = load;
   return scale == 0.0 ? 0.0 : std::sqrt(defect / scale);
 }
 

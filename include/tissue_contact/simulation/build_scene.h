@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tissue_contact/contact/tissue_pair_detector.h"
 #include "tissue_contact/instrument/instrument.h"
 #include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/scene/scene.h"
@@ -25,5 +26,12 @@ struct SceneEnvironment {
 /// @throws std::invalid_argument naming what is wrong in the scene or its files.
 std::vector<Instrument> buildInstruments(const Scene& scene, const SceneEnvironment& environment);
 std::vector<Tissue> buildTissues(const Scene& scene, const SceneEnvironment& environment);
+
+/// The scene's tissue pairs by index. @throws std::invalid_argument naming a tissue that is not there.
+std::vector<TouchingTissues> buildTissuePairs(const Scene& scene);
+
+/// The linearised cones and impulses know one coefficient for all directions.
+/// @throws std::invalid_argument when solver.method is one of them and some friction depends on direction.
+void requireMethodForLaws(const Scene& scene);
 
 }  // namespace tissue_contact

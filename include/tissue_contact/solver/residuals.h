@@ -8,7 +8,7 @@ namespace tissue_contact {
 
 /// Worst values over all contacts of one step.
 struct Residuals {
-  double momentum = 0.0;             ///< |A v - b - J'lambda| / |J'lambda|, dimensionless; 0 without contact
+  double momentum = 0.0;             ///< |A v - b - J'lambda| / |J'lambda|, dimensionless; over |b| without contact
   double penetration_m = 0.0;        ///< how deep the linearised gap at the end of the step is below 0, m
   double adhesion_n = 0.0;           ///< pulling normal force, N
   double complementarity_w = 0.0;    ///< normal force times separation speed, W

@@ -213,10 +213,19 @@ TEST(SolveDelassus, HysteresisIsConsistent) {
   EXPECT_GT(released, 20);
 }
 
-TEST(SolveDelassus, AnisotropicLaw) {
+class DirectionalLaws : public ::testing::TestWithParam<FrictionLawDescription::Kind> {};
+
+INSTANTIATE_TEST_SUITE_P(SolveDelassus, DirectionalLaws,
+                         ::testing::Values(FrictionLawDescription::Kind::kOrthotropic,
+                                           FrictionLawDescription::Kind::kAsymmetric));
+
+TEST_P(DirectionalLaws, AreSolvedAndJudgedAlike) {
   FrictionLawDescription description;
-  description.kind = FrictionLawDescription::Kind::kOrthotropic;
+  description.kind = GetParam();
   description.static_coefficients = description.kinetic_coefficients = {0.6, 0.2};
+  if (GetParam() == FrictionLawDescription::Kind::kAsymmetric) {
+    description.static_coefficients = description.kinetic_coefficients = {0.2, 0.6, 0.4};
+  }
   const auto law = makeAnisotropicFriction(description);
   DelassusProblem problem = randomContactProblem(6, 0.0, 7);
   for (CoulombLaw& contact : problem.laws) {
