@@ -44,12 +44,9 @@ std::string replayUsage() {
 ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
   ReplayOptions options;
   std::string dump_step;
-  const std::map<std::string, std::string*> keys = {{"--scene", &options.scene_file},
-                                                    {"--bag", &options.bag_file},
-                                                    {"--csv", &options.csv_file},
-                                                    {"--urdf", &options.urdf_file},
-                                                    {"--dump-step", &dump_step},
-                                                    {"--dump-file", &options.dump_file}};
+  const std::map<std::string, std::string*> keys = {
+      {"--scene", &options.scene_file}, {"--bag", &options.bag_file}, {"--csv", &options.csv_file},
+      {"--urdf", &options.urdf_file},   {"--dump-step", &dump_step},  {"--dump-file", &options.dump_file}};
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (arguments[i] == "--help" || arguments[i] == "-h") {
       options.help = true;

@@ -9,7 +9,7 @@
 
 namespace tissue_contact {
 
-void requireSolverOptions(const SolverDescription& description, const Clock& clock) {
+void requireSolverOptions(const SolverDescription& description, const SecondsClock& clock) {
   requirePositive("solver.iterations", description.iterations);
   requirePositive("solver.contact_passes", description.contact_passes);
   requirePositive("solver.tolerance", description.tolerance);
@@ -23,7 +23,7 @@ void requireSolverOptions(const SolverDescription& description, const Clock& clo
   }
 }
 
-std::unique_ptr<ContactSolver> makeContactSolver(const SolverDescription& description, const Clock& clock) {
+std::unique_ptr<ContactSolver> makeContactSolver(const SolverDescription& description, const SecondsClock& clock) {
   requireSolverOptions(description, clock);
   switch (description.method) {
     case SolverMethod::kReference:

@@ -36,7 +36,7 @@ void applyFriction(const ContactProblem& problem, const ContactRow& row, Vector3
 
 }  // namespace
 
-ImpulseFriction::ImpulseFriction(const SolverDescription& description, Clock clock)
+ImpulseFriction::ImpulseFriction(const SolverDescription& description, SecondsClock clock)
     : normal_(asPredictorCorrector(description), std::move(clock)) {}
 
 SolverReport ImpulseFriction::solve(const ContactProblem& problem, ContactSolution& solution) {

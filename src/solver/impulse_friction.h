@@ -11,7 +11,7 @@ namespace tissue_contact {
 
 class ImpulseFriction : public ContactSolver {
  public:
-  ImpulseFriction(const SolverDescription& description, Clock clock);
+  ImpulseFriction(const SolverDescription& description, SecondsClock clock);
 
   SolverReport solve(const ContactProblem& problem, ContactSolution& solution) override;
   void reset() override { normal_.reset(); }

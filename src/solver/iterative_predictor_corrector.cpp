@@ -20,7 +20,7 @@ double norm(const std::vector<Vector3>& impulses) {
 
 }  // namespace
 
-IterativePredictorCorrector::IterativePredictorCorrector(const SolverDescription& description, Clock clock)
+IterativePredictorCorrector::IterativePredictorCorrector(const SolverDescription& description, SecondsClock clock)
     : description_(description),
       clock_(std::move(clock)),
       relaxation_(makeRelaxation(description.relaxation)),

@@ -62,7 +62,9 @@ class HeldPoints {
     Contact contact;
     Vector3 start;  ///< in the instrument's frame
   };
-  Vector3 in(const Simulator& simulator, const Vector3& p_W) const { return simulator.linkPoses(0)[link_].inverse() * p_W; }
+  Vector3 in(const Simulator& simulator, const Vector3& p_W) const {
+    return simulator.linkPoses(0)[link_].inverse() * p_W;
+  }
 
   int link_;
   std::vector<Point> points_;
@@ -170,9 +172,8 @@ HeldPoints moveHolding(Simulator& simulator, int seconds, const Target& target) 
 TEST(HeldContact, TissueGoesBackAndForthWithAnInstrument) {
   Simulator simulator = test::makeSimulator(probeOnPad(1.0), {{"probe", test::probeUrdf(0.005)}});
   pressAndPull(simulator, 0.0005);
-  const HeldPoints held = moveHolding(simulator, 20, [](double t) {
-    return Vector3(0.00045 + 5e-5 * std::cos(2.0 * M_PI * t), 0.0, -0.0021);
-  });
+  const HeldPoints held = moveHolding(
+      simulator, 20, [](double t) { return Vector3(0.00045 + 5e-5 * std::cos(2.0 * M_PI * t), 0.0, -0.0021); });
   ASSERT_GE(held.count(), 5);
   EXPECT_LE(held.slip(simulator), kCreep);
   std::cout << held.count() << " points held throughout, slip " << held.slip(simulator) << " m after 20 times\n";

@@ -15,12 +15,12 @@ constexpr double kLength = 0.3;
 constexpr double kWidth = 0.02;
 constexpr double kThickness = 0.002;
 constexpr double kMu = 0.5;
-constexpr double kYoung = 1e5;                                      // Pa
-constexpr double kEA = kYoung * kWidth * kThickness;                // 4 N
+constexpr double kYoung = 1e5;                                       // Pa
+constexpr double kEA = kYoung * kWidth * kThickness;                 // 4 N
 constexpr double kLoad = kMu * 1000.0 * 9.81 * kWidth * kThickness;  // mu w, 0.196 N/m
 constexpr double kSlipLength = 0.2;
-constexpr double kForce = kLoad * kSlipLength;                          // 0.039 N
-constexpr double kEnd = kForce * kForce / (2.0 * kEA * kLoad);          // 0.98 mm
+constexpr double kForce = kLoad * kSlipLength;                                  // 0.039 N
+constexpr double kEnd = kForce * kForce / (2.0 * kEA * kLoad);                  // 0.98 mm
 constexpr double kLoss = 2.0 * kForce * kForce * kForce / (3.0 * kEA * kLoad);  // per cycle, J
 
 /// The strip's right end is fixed; the floor below it moves along x.

@@ -16,10 +16,10 @@ constexpr double kMass = 1.0;         // kg
 constexpr double kStiffness = 100.0;  // N/m
 constexpr double kMu = 0.3;
 constexpr double kGravity = 9.81;
-constexpr double kStart = 0.1;                                      // m
+constexpr double kStart = 0.1;                                                   // m
 constexpr double kLossPerHalfSwing = 2.0 * kMu * kMass * kGravity / kStiffness;  // 0.05886 m
-constexpr double kFirstTurn = kLossPerHalfSwing - kStart;           // -0.04114 m
-constexpr double kRest = kStart - 2.0 * kLossPerHalfSwing;          // -0.01772 m, where 1.77 N of spring meet 2.94 N
+constexpr double kFirstTurn = kLossPerHalfSwing - kStart;                        // -0.04114 m
+constexpr double kRest = kStart - 2.0 * kLossPerHalfSwing;  // -0.01772 m, where 1.77 N of spring meet 2.94 N
 const double kTimeToRest = 2.0 * M_PI / std::sqrt(kStiffness / kMass);
 
 struct Motion {
@@ -50,16 +50,17 @@ TEST(SpringBlock, StopsWhereItMustWithTheMidpointRule) {
 /// component of 10 m/s^2 along the strip, which moves the place where the spring is free by 0.1 m.
 Motion swingScene(double dt) {
   std::ostringstream yaml;
-  yaml << "gravity_m_per_s2: [" << -kStart * kStiffness / kMass << ", 0, " << -kGravity << "]\n"
-       << "tissues:\n  - name: strip\n    sheet: {size_m: [1.1, 0.1], cells: [11, 1], thickness_m: 0.01}\n"
-       << "    material: {youngs_modulus_pa: 1.0e5, poissons_ratio: 0, density_kg_per_m3: 1, bending_stiffness_n_m: 0}\n"
-       << "    regions: [{name: block, where: [{box: {min_m: [-0.55, -1, -1], max_m: [-0.45, 1, 1]}}],"
-       << " material: {youngs_modulus_pa: 1.0e7, density_kg_per_m3: 1.0e4}}]\n"
-       << "    fixed: [{plane: {point_m: [0.55, 0, 0], normal: [-1, 0, 0]}}]\n"
-       << "instruments:\n  - {name: table, robot_description: table, tip_link: table, contact_links: [table],"
-       << " base_pose: {position_m: [0, 0, -0.005]}}\n"
-       << "friction:\n  - {instrument: table, tissue: strip, static: " << kMu << "}\n"
-       << "step: {max_step_s: 0.001}\nsolver: {iterations: 2000, tolerance: 1.0e-8}\n";
+  yaml
+      << "gravity_m_per_s2: [" << -kStart * kStiffness / kMass << ", 0, " << -kGravity << "]\n"
+      << "tissues:\n  - name: strip\n    sheet: {size_m: [1.1, 0.1], cells: [11, 1], thickness_m: 0.01}\n"
+      << "    material: {youngs_modulus_pa: 1.0e5, poissons_ratio: 0, density_kg_per_m3: 1, bending_stiffness_n_m: 0}\n"
+      << "    regions: [{name: block, where: [{box: {min_m: [-0.55, -1, -1], max_m: [-0.45, 1, 1]}}],"
+      << " material: {youngs_modulus_pa: 1.0e7, density_kg_per_m3: 1.0e4}}]\n"
+      << "    fixed: [{plane: {point_m: [0.55, 0, 0], normal: [-1, 0, 0]}}]\n"
+      << "instruments:\n  - {name: table, robot_description: table, tip_link: table, contact_links: [table],"
+      << " base_pose: {position_m: [0, 0, -0.005]}}\n"
+      << "friction:\n  - {instrument: table, tissue: strip, static: " << kMu << "}\n"
+      << "step: {max_step_s: 0.001}\nsolver: {iterations: 2000, tolerance: 1.0e-8}\n";
   Simulator simulator = test::makeSimulator(yaml.str(), {{"table", test::tableUrdf()}});
   const NodalVectors& rest = simulator.tissues()[0].restPositions();
   const VectorX& masses = simulator.tissues()[0].nodeMasses();

@@ -14,7 +14,7 @@ struct ReplayOptions {
   std::string urdf_file;  ///< empty: no scene parameter holds a URDF
   long dump_step = 0;     ///< implicit step whose contact problem is written to `dump_file`, from 1; 0: none
   std::string dump_file;
-  bool help = false;      ///< show the usage and do nothing
+  bool help = false;  ///< show the usage and do nothing
 };
 
 /// What --help prints.

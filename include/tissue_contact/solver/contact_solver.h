@@ -24,7 +24,7 @@ struct SolverReport {
 };
 
 /// Seconds on a clock that never goes back. The core has none of its own: a time budget needs one from outside.
-using Clock = std::function<double()>;
+using SecondsClock = std::function<double()>;
 
 /// Holds its workspace: one object per thread. Deterministic unless a time budget is set.
 class ContactSolver {
@@ -46,10 +46,11 @@ class ContactSolver {
 };
 
 /// @throws std::invalid_argument naming the option that is out of range, or a time budget without a clock.
-void requireSolverOptions(const SolverDescription& description, const Clock& clock);
+void requireSolverOptions(const SolverDescription& description, const SecondsClock& clock);
 
 /// The solver a scene asks for. @param clock needed only for a time budget.
 /// @throws std::invalid_argument as requireSolverOptions.
-std::unique_ptr<ContactSolver> makeContactSolver(const SolverDescription& description, const Clock& clock = nullptr);
+std::unique_ptr<ContactSolver> makeContactSolver(const SolverDescription& description,
+                                                 const SecondsClock& clock = nullptr);
 
 }  // namespace tissue_contact

@@ -35,7 +35,7 @@ class ContactCorrector;
 class IterativePredictorCorrector : public ContactSolver {
  public:
   /// @throws std::invalid_argument as makeContactSolver.
-  explicit IterativePredictorCorrector(const SolverDescription& description, Clock clock = nullptr);
+  explicit IterativePredictorCorrector(const SolverDescription& description, SecondsClock clock = nullptr);
   ~IterativePredictorCorrector() override;
 
   /// Allocates only when a problem is larger than before or a factor is renewed.
@@ -47,7 +47,7 @@ class IterativePredictorCorrector : public ContactSolver {
   bool converged(double momentum_change, double impulse_change, const ContactSolution& solution) const;
 
   SolverDescription description_;
-  Clock clock_;
+  SecondsClock clock_;
   std::unique_ptr<Relaxation> relaxation_;
   std::unique_ptr<ContactCorrector> corrector_;
   std::vector<NodalVectors> scratch_;

@@ -88,7 +88,7 @@ TEST(SolversByName, AStepWithoutAnAnswerIsDiscardedByAll) {
     EXPECT_TRUE(simulator.report().discarded) << solver;
     EXPECT_EQ(simulator.positions(0), simulator.tissues()[0].restPositions()) << solver;
     if (std::string(solver) == "method: condensed_lcp") continue;  // pivoting does not take such short steps
-    simulator.advance(1e-154, {Vector3::Zero()});  // so short that this gravity overflows nothing
+    simulator.advance(1e-154, {Vector3::Zero()});                  // so short that this gravity overflows nothing
     EXPECT_FALSE(simulator.report().discarded) << solver << ": nothing of the step before may be left";
   }
 }
