@@ -60,7 +60,7 @@ Motion swingScene(double dt) {
       << "instruments:\n  - {name: table, robot_description: table, tip_link: table, contact_links: [table],"
       << " base_pose: {position_m: [0, 0, -0.005]}}\n"
       << "friction:\n  - {instrument: table, tissue: strip, static: " << kMu << "}\n"
-      << "step: {max_step_s: 0.001}\nsolver: {iterations: 2000, tolerance: 1.0e-8}\n";
+      << "step: {max_step_s: 0.001}\nsolver: {relaxation: cholesky, iterations: 200, tolerance: 1.0e-9}\n";
   Simulator simulator = test::makeSimulator(yaml.str(), {{"table", test::tableUrdf()}});
   const NodalVectors& rest = simulator.tissues()[0].restPositions();
   const VectorX& masses = simulator.tissues()[0].nodeMasses();
