@@ -49,7 +49,7 @@ double pressForce(double refinement, double nu) {
 
 // Both errors of the mesh make it stiffer and go with the square of its cells: facets that may not cut the sphere (their
 // corners lie deeper by a quarter of cell^2 / R, 2 % of the depth at 1.4 mm) and linear tetrahedra. 9 % are left at 1.4 mm
-// cells; two meshes of the ratio 1.5 extrapolate to 5 % or less. A half space would be 17 % off.
+// cells; two meshes of the ratio 1.5 extrapolate to 5 % or less. A half space would be 14 to 17 % off.
 TEST(LayerIndentation, ForceOfASphereOnABondedLayer) {
   constexpr double kRatio = 1.5;
   for (const double nu : {0.3, 0.45}) {
