@@ -174,7 +174,7 @@ TEST(Grasp, LiftsAndHoldsWithoutSlidingOrCreep) {
   EXPECT_LE(grasp.creep(), 5e-6);
   grasp.markHeldPoints();
   grasp.playTo(kHeld, expect_held);
-  EXPECT_LE(grasp.creep(), 1e-6);  // in 1.2 s; 1e-9 measured
+  EXPECT_LE(grasp.creep(), 1e-6);  // in 1.2 s; 1e-8 measured
 }
 
 // With mu_s > mu_k the contacts let go one after the other, and each that has gone carries less: so the pull never reaches
@@ -205,7 +205,7 @@ TEST(Grasp, SlipsAtTheStaticLimitSlidesAtTheKineticOneAndComesBackToRest) {
   EXPECT_EQ(simulator.wrench(0).force.norm(), 0.0);
   EXPECT_EQ(simulator.wrench(0).torque.norm(), 0.0);
   const NodalVectors moved = simulator.positions(0) - simulator.tissues()[0].restPositions();
-  EXPECT_LE(moved.colwise().norm().maxCoeff(), 1e-6);  // 3 s after it went; 2e-7 measured
+  EXPECT_LE(moved.colwise().norm().maxCoeff(), 1e-9);  // 3 s after it went, well damped
 }
 
 // With mu_s = mu_k nothing is lost on the way: all contacts are at their limit when the pull is strongest.
