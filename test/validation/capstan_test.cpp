@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <iostream>
 
@@ -114,13 +115,14 @@ std::string writeBelt(int facets) {
   const double radius = kDrumRadius + 0.5 * kThickness;
   const double turn = M_PI / facets;
   std::vector<Vector2> line;  // x, z
+  line.reserve(facets + 2 * kLegCells);
   for (int i = 0; i < kLegCells; ++i) line.emplace_back(radius, -kLeg * (kLegCells - i) / kLegCells);
   for (int i = 0; i < facets; ++i) {
     const double angle = (i + 0.5) * turn;
     line.emplace_back(radius / std::cos(0.5 * turn) * Vector2(std::cos(angle), std::sin(angle)));
   }
   for (int i = 1; i <= kLegCells; ++i) line.emplace_back(-radius, -kLeg * i / kLegCells);
-  const std::string file = testing::TempDir() + "capstan_belt_" + std::to_string(facets) + ".obj";
+  std::string file = testing::TempDir() + "capstan_belt_" + std::to_string(facets) + ".obj";
   std::ofstream obj(file);
   obj.precision(17);
   for (const Vector2& p : line) {
@@ -147,17 +149,20 @@ std::string drumUrdf() {
          std::to_string(kDrumRadius) + "' length='0.05'/></geometry></collision></link></robot>";
 }
 
-Simulator makeBrake(int facets, double mu_static) {
+Simulator makeBrake(int facets) {
+  const std::string file = writeBelt(facets);
   std::ostringstream yaml;
-  yaml << "tissues:\n  - name: belt\n    shell: {file: \"" << writeBelt(facets) << "\", thickness_m: " << kThickness
+  yaml << "tissues:\n  - name: belt\n    shell: {file: \"" << file << "\", thickness_m: " << kThickness
        << "}\n    material: {youngs_modulus_pa: 1.0e6, poissons_ratio: 0, density_kg_per_m3: 3.0e4,"
        << " bending_stiffness_n_m: 0}\n    damping: {stiffness_s: 0.002}\n"
        << "    fixed: [{plane: {point_m: [0, 0, " << 1e-6 - kLeg << "], normal: [0, 0, 1]}}]\n"
        << "instruments:\n  - {name: drum, robot_description: drum, tip_link: lift, contact_links: [drum],"
        << " joint_state_topics: [/drum]}\n"
-       << "friction:\n  - {instrument: drum, tissue: belt, static: " << mu_static << ", kinetic: " << kMu << "}\n"
+       << "friction:\n  - {instrument: drum, tissue: belt, static: " << kMu << "}\n"
        << "solver: {iterations: 300, tolerance: 1.0e-6}\n";
-  return test::makeSimulator(yaml.str(), {{"drum", drumUrdf()}});
+  Simulator simulator = test::makeSimulator(yaml.str(), {{"drum", drumUrdf()}});
+  std::remove(file.c_str());
+  return simulator;
 }
 
 /// What the strip pulls at its two fixed ends, N: left (x < 0), right.
@@ -175,8 +180,8 @@ Vector2 endForces(const Simulator& simulator) {
 }
 
 /// Lifts the drum by 1 mm, which tightens the strip, and turns it until it slides evenly: from right to left over the top.
-Simulator brake(int facets, double mu_static) {
-  Simulator simulator = makeBrake(facets, mu_static);
+Simulator brake(int facets) {
+  Simulator simulator = makeBrake(facets);
   for (int k = 1; k <= 200; ++k) simulator.advance(0.001, {Vector2(0.001 * k / 200, 0.0)});
   for (int k = 1; k <= 500; ++k) simulator.advance(0.001, {Vector2(0.001, -5e-4 * k)});
   return simulator;
@@ -185,7 +190,7 @@ Simulator brake(int facets, double mu_static) {
 TEST(Capstan, BeltOnATurningDrum) {
   const double smooth = std::exp(kMu * M_PI);
   for (const int facets : {16, 32}) {
-    Simulator simulator = brake(facets, kMu);
+    Simulator simulator = brake(facets);
     const Vector2 ends = endForces(simulator);
     const double ratio = ends.maxCoeff() / ends.minCoeff();
     const Wrench wrench = simulator.wrench(0);
