@@ -14,7 +14,7 @@ import re
 import subprocess
 import sys
 
-ROOMS = ["core", "scene", "instrument", "tissue", "contact", "friction", "solver", "simulation", "tools", "ros"]
+ROOMS = ["core", "scene", "instrument", "tissue", "contact", "friction", "solver", "simulation", "validation", "tools", "ros"]
 PRIVATE_LIBRARIES = {"fcl", "urdf_model", "urdf_parser", "urdf_world", "console_bridge", "assimp", "yaml-cpp"}
 OPERATING_SYSTEM = {"fcntl.h", "sys", "unistd.h"}
 LINKED = re.compile(r"^(lib(fcl|urdfdom_model|console_bridge|assimp|yaml-cpp|stdc\+\+|gcc_s|m|c)|ld-linux.*)\.so(\.[0-9.]+)?$")

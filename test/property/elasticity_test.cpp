@@ -12,7 +12,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "support/elasticity_helpers.h"
+#include "validation/elasticity_helpers.h"
 #include "tissue_contact/tissue/make_elasticity.h"
 #include "tissue_contact/tissue/membrane.h"
 #include "tissue_contact/tissue/sheet_mesh.h"

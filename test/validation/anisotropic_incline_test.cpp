@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "support/test_scene.h"
+#include "validation/text_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -29,7 +29,7 @@ Simulator makeIncline(double degrees, double turned_rad, const std::string& law)
       << "instruments:\n  - {name: table, robot_description: table, tip_link: table, contact_links: [table]}\n"
       << "friction:\n  - {instrument: table, tissue: block, " << law << "}\n"
       << "solver: {iterations: 200, tolerance: 1.0e-8}\n";
-  return test::makeSimulator(yaml.str(), {{"table", test::tableUrdf()}});
+  return makeSimulator(yaml.str(), {{"table", tableUrdf()}});
 }
 
 void run(Simulator& simulator, double seconds) {

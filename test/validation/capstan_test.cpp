@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "support/test_scene.h"
+#include "validation/text_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -160,7 +160,7 @@ Simulator makeBrake(int facets) {
        << " joint_state_topics: [/drum]}\n"
        << "friction:\n  - {instrument: drum, tissue: belt, static: " << kMu << "}\n"
        << "solver: {iterations: 300, tolerance: 1.0e-6}\n";
-  Simulator simulator = test::makeSimulator(yaml.str(), {{"drum", drumUrdf()}});
+  Simulator simulator = makeSimulator(yaml.str(), {{"drum", drumUrdf()}});
   std::remove(file.c_str());
   return simulator;
 }

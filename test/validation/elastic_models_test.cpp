@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "support/elasticity_helpers.h"
+#include "validation/elasticity_helpers.h"
 #include "tissue_contact/tissue/make_elasticity.h"
 #include "tissue_contact/tissue/tet_mesh.h"
 #include "tissue_contact/tissue/tissue.h"

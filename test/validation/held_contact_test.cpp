@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "support/test_scene.h"
+#include "validation/text_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -87,7 +87,7 @@ std::string blockOnTable(double degrees, double mu) {
 
 // The critical angle of 0.3 is 16.699 degrees, so 99.4 % of the friction there is are in use.
 TEST(HeldContact, BlockOnAnInclineStaysForAMinute) {
-  Simulator simulator = test::makeSimulator(blockOnTable(16.6, 0.3), {{"table", test::movingTableUrdf()}});
+  Simulator simulator = makeSimulator(blockOnTable(16.6, 0.3), {{"table", movingTableUrdf()}});
   const std::vector<VectorX> still = {VectorX::Zero(1)};
   for (int k = 0; k < 1000; ++k) simulator.advance(kStep, still);
   const HeldPoints held(simulator, 1);
@@ -100,7 +100,7 @@ TEST(HeldContact, BlockOnAnInclineStaysForAMinute) {
 
 // Shaken at 1 Hz and 5 mm, which takes 0.2 of the 0.5 m/s^2 per m/s^2 there is: the block goes with the tray.
 TEST(HeldContact, BlockGoesWithAShakenTray) {
-  Simulator simulator = test::makeSimulator(blockOnTable(0.0, 0.5), {{"table", test::movingTableUrdf()}});
+  Simulator simulator = makeSimulator(blockOnTable(0.0, 0.5), {{"table", movingTableUrdf()}});
   const auto tray = [](int k) { return VectorX::Constant(1, 0.005 * (1.0 - std::cos(2.0 * M_PI * k * kStep))); };
   for (int k = 1; k <= 1000; ++k) simulator.advance(kStep, {tray(k)});
   const HeldPoints held(simulator, 1);
@@ -135,7 +135,7 @@ void pressAndPull(Simulator& simulator, double aside_m) {
 }
 
 TEST(HeldContact, InstrumentHoldsTissueAsideForAMinute) {
-  Simulator simulator = test::makeSimulator(probeOnPad(1.0), {{"probe", test::probeUrdf(0.005)}});
+  Simulator simulator = makeSimulator(probeOnPad(1.0), {{"probe", probeUrdf(0.005)}});
   pressAndPull(simulator, 0.0005);
   const std::vector<VectorX> still = {Vector3(0.0005, 0.0, -0.0021)};
   for (int k = 0; k < 1000; ++k) simulator.advance(kStep, still);
@@ -170,7 +170,7 @@ HeldPoints moveHolding(Simulator& simulator, int seconds, const Target& target) 
 // Back and forth by 0.1 mm once a second. Inside the contact nothing slips, and nothing adds up: the face that carries a
 // point rocks and stretches a little, which takes points beside it some 50 nm to and fro.
 TEST(HeldContact, TissueGoesBackAndForthWithAnInstrument) {
-  Simulator simulator = test::makeSimulator(probeOnPad(1.0), {{"probe", test::probeUrdf(0.005)}});
+  Simulator simulator = makeSimulator(probeOnPad(1.0), {{"probe", probeUrdf(0.005)}});
   pressAndPull(simulator, 0.0005);
   const HeldPoints held = moveHolding(
       simulator, 20, [](double t) { return Vector3(0.00045 + 5e-5 * std::cos(2.0 * M_PI * t), 0.0, -0.0021); });
@@ -185,7 +185,7 @@ TEST(HeldContact, TissueGoesBackAndForthWithAnInstrument) {
 TEST(HeldContact, TissueGoesRoundWithAnInstrumentButForAThousandth) {
   constexpr int kTurns = 5;
   constexpr double kRadius = 5e-5;
-  Simulator simulator = test::makeSimulator(probeOnPad(2.0), {{"probe", test::probeUrdf(0.005)}});
+  Simulator simulator = makeSimulator(probeOnPad(2.0), {{"probe", probeUrdf(0.005)}});
   pressAndPull(simulator, 0.0005);
   const HeldPoints held = moveHolding(simulator, kTurns, [](double t) {
     const double angle = 2.0 * M_PI * t;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "support/test_scene.h"
+#include "validation/text_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -24,7 +24,7 @@ Simulator makePress(int cells, double mu) {
           "[tip]\n"
        << "friction:\n  - {instrument: probe, tissue: block, static: " << mu << ", kinetic: " << mu << "}\n"
        << "step: {max_step_s: 0.02}\nsolver: {iterations: 150, tolerance: 1.0e-6}\n";
-  return test::makeSimulator(yaml.str(), {{"probe", test::probeUrdf(0.04)}});
+  return makeSimulator(yaml.str(), {{"probe", probeUrdf(0.04)}});
 }
 
 /// Lowers the sphere by `depth_m` in 0.2 s and waits 0.3 s; implicit Euler at 20 ms damps what is left of the motion.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "support/press_scene.h"
+#include "validation/press_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -34,7 +34,7 @@ double layerForce(double E, double nu) {
 /// 90 mm wide, three thicknesses: its free sides take less than 1 % off. `refinement` 1: 20 x 20 x 8 cells of 2.2 mm at
 /// the contact, 1.154 times longer each; at another one all cells are smaller by that ratio, the same mesh otherwise.
 double pressForce(double refinement, double nu) {
-  test::PressScene scene;
+  PressScene scene;
   scene.size_m = Vector3(0.09, 0.09, kThickness);
   const int across = static_cast<int>(std::lround(20 * refinement));
   scene.cells = {across, across, static_cast<int>(std::lround(8 * refinement))};
@@ -42,8 +42,8 @@ double pressForce(double refinement, double nu) {
   scene.poissons_ratio = nu;
   scene.radius_m = kRadius;
   scene.solver = "{iterations: 300, tolerance: 1.0e-6}";
-  Simulator simulator = test::makePress(scene);
-  test::pressSmooth(simulator, kDepth, 6);
+  Simulator simulator = makePress(scene);
+  pressSmooth(simulator, kDepth, 6);
   return simulator.wrench(0).force.z();
 }
 

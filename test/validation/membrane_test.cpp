@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "support/elasticity_helpers.h"
+#include "validation/elasticity_helpers.h"
 #include "tissue_contact/tissue/sheet_mesh.h"
 
 namespace tissue_contact {

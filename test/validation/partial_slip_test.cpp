@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "support/press_scene.h"
+#include "validation/press_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -37,7 +37,7 @@ class Drag {
         loss_ -= slip.dot(solution.impulses[c].tail<2>());
       }
     });
-    test::pressSmooth(simulator_, kDepth, 10);
+    pressSmooth(simulator_, kDepth, 10);
     // Frictionless press: the rough sphere takes the smooth one's place.
     simulator_.placeInstrument(0, away());
     simulator_.placeInstrument(1, Vector3(0.0, 0.0, -kDepth));
@@ -47,7 +47,7 @@ class Drag {
   Drag(const Drag&) = delete;
   Drag& operator=(const Drag&) = delete;
 
-  void step(double d) { simulator_.advance(test::kPressStep, {away(), Vector3(d, 0.0, -kDepth)}); }
+  void step(double d) { simulator_.advance(kPressStep, {away(), Vector3(d, 0.0, -kDepth)}); }
 
   double normalForce() const { return simulator_.wrench(1).force.z(); }
   double share() const { return -simulator_.wrench(1).force.x() / (kMu * normalForce()); }  ///< Q / (mu P)
@@ -75,11 +75,11 @@ class Drag {
  private:
   static Vector3 away() { return {0.0, 0.0, 0.5}; }
   static Simulator make(int cells, double growth) {
-    test::PressScene scene;
+    PressScene scene;
     scene.cells = {cells, cells, cells / 2};
     scene.growth = growth;
     scene.mu = kMu;
-    return test::makePress(scene);
+    return makePress(scene);
   }
 
   double loss_ = 0.0;
@@ -105,7 +105,7 @@ TEST(PartialSlip, DragForceAndLoss) {
     EXPECT_NEAR(partly, 0.648, 0.01);
     EXPECT_NEAR(drag.share(), 0.9998, 0.01);
     EXPECT_NEAR(loss, kLoss, 0.03 * kLoss);
-    const Ring all = drag.ring(0.0, 1.0, kDragStep / test::kPressStep);
+    const Ring all = drag.ring(0.0, 1.0, kDragStep / kPressStep);
     EXPECT_LE(all.held, 0.02);
     EXPECT_GE(all.slip, 0.9);
   }
@@ -119,8 +119,8 @@ TEST(PartialSlip, AnnulusSlidesWhileTheCentreHolds) {
   Drag drag(24, 1.15);
   for (int k = 1; k <= 20; ++k) drag.step(k * kDragStep);
   const double held_radius = kContactRadius * std::cbrt(1.0 - drag.share());
-  const Ring inside = drag.ring(0.0, 0.8 * held_radius, kDragStep / test::kPressStep);
-  const Ring outside = drag.ring(1.2 * held_radius, 1.0, kDragStep / test::kPressStep);
+  const Ring inside = drag.ring(0.0, 0.8 * held_radius, kDragStep / kPressStep);
+  const Ring outside = drag.ring(1.2 * held_radius, 1.0, kDragStep / kPressStep);
   std::cout << "c " << held_radius << " m (0.00353); within 0.8 c " << inside.held << " of the force is held, slip "
             << inside.slip << " of the sphere's speed; beyond 1.2 c " << outside.held << ", " << outside.slip << "\n";
   EXPECT_NEAR(held_radius, kContactRadius * std::cbrt(1.0 - 0.648), 0.01 * kContactRadius);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "support/test_scene.h"
+#include "validation/text_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -75,7 +75,7 @@ class Strip {
          << " joint_state_topics: [/floor], base_pose: {position_m: [0, 0, " << -0.5 * kThickness << "]}}\n"
          << "friction:\n  - {instrument: floor, tissue: strip, static: " << kMu << "}\n"
          << "step: {max_step_s: " << kStep << "}\nsolver: {iterations: 400, tolerance: 1.0e-6}\n";
-    return test::makeSimulator(yaml.str(), {{"floor", test::movingTableUrdf()}});
+    return makeSimulator(yaml.str(), {{"floor", movingTableUrdf()}});
   }
 
   Simulator simulator_;

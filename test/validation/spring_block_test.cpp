@@ -6,8 +6,8 @@
 #include <cmath>
 #include <iostream>
 
-#include "support/sliding_mass.h"
-#include "support/test_scene.h"
+#include "validation/sliding_mass.h"
+#include "validation/text_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -32,7 +32,7 @@ struct Motion {
 // one step, leave: half a step at the turn is 1e-4 of the swing, two steps of 0.628 s are 0.3 %.
 TEST(SpringBlock, StopsWhereItMustWithTheMidpointRule) {
   constexpr double dt = 0.001;
-  test::SlidingMass block(kMass, kStiffness, kGravity, {kMu, kMu}, kStart);
+  SlidingMass block(kMass, kStiffness, kGravity, {kMu, kMu}, kStart);
   Motion motion;
   for (int k = 1; k <= 1000; ++k) {
     block.step(dt, 0.0);
@@ -61,7 +61,7 @@ Motion swingScene(double dt) {
       << " base_pose: {position_m: [0, 0, -0.005]}}\n"
       << "friction:\n  - {instrument: table, tissue: strip, static: " << kMu << "}\n"
       << "step: {max_step_s: 0.001}\nsolver: {relaxation: cholesky, iterations: 200, tolerance: 1.0e-9}\n";
-  Simulator simulator = test::makeSimulator(yaml.str(), {{"table", test::tableUrdf()}});
+  Simulator simulator = makeSimulator(yaml.str(), {{"table", tableUrdf()}});
   const NodalVectors& rest = simulator.tissues()[0].restPositions();
   const VectorX& masses = simulator.tissues()[0].nodeMasses();
   const auto displacement = [&] {  // of the block's four nodes; what the strip weighs beside them is 0.1 %

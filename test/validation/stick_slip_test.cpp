@@ -8,7 +8,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "support/sliding_mass.h"
+#include "validation/sliding_mass.h"
 
 namespace tissue_contact {
 namespace {
@@ -32,7 +32,7 @@ struct Measured {
 
 /// Time between the first and the last tearing off in 12 s, shared among the periods between.
 Measured measure(double mu_static, double mu_kinetic, double dt) {
-  test::SlidingMass block(kMass, kStiffness, kGravity, {mu_static, mu_kinetic}, 0.0);
+  SlidingMass block(kMass, kStiffness, kGravity, {mu_static, mu_kinetic}, 0.0);
   const int steps = static_cast<int>(std::lround(12.0 / dt));
   int first = -1;
   int last = -1;
@@ -90,7 +90,7 @@ TEST(StickSlip, PeriodIsThatOfTheClosedFormWhereSlipDominates) {
 TEST(StickSlip, SwingsHarmonicallyWithOneCoefficient) {
   constexpr double dt = 0.001;
   const double center = 0.3 * kMass * kGravity / kStiffness;
-  test::SlidingMass block(kMass, kStiffness, kGravity, {0.3, 0.3}, 0.0);
+  SlidingMass block(kMass, kStiffness, kGravity, {0.3, 0.3}, 0.0);
   double low = 1.0;
   double high = -1.0;
   int first = -1;

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/test_scene.h"
+#include "validation/text_scene.h"
 #include "tissue_contact/instrument/parse_urdf.h"
 
 namespace tissue_contact {
@@ -82,7 +82,7 @@ class KeptPoints : public ::testing::Test {
     description.tip_link = "tip";
     description.joint_state_topics = {"/joint_states"};
     description.contact_links = {{"tip", {}}};
-    instruments.emplace_back(description, parseUrdf(test::probeUrdf(1.0), "test", "", nullptr), Pose::Identity());
+    instruments.emplace_back(description, parseUrdf(probeUrdf(1.0), "test", "", nullptr), Pose::Identity());
     TissueSurface surface;
     surface.triangles = {{0, 1, 2}};
     surface.fixed = {false, false, false};
@@ -149,7 +149,7 @@ TEST(KeptRidgePoint, DoesNotDependOnTriangleOrder) {
   description.joint_state_topics = {"/joint_states"};
   description.contact_links = {{"tip", {}}};
   std::vector<Instrument> instruments;
-  instruments.emplace_back(description, parseUrdf(test::probeUrdf(1.0), "test", "", nullptr), Pose::Identity());
+  instruments.emplace_back(description, parseUrdf(probeUrdf(1.0), "test", "", nullptr), Pose::Identity());
   // Face (0, 1, 2) looks up; face (1, 0, 3) hangs down and looks along -y. They share the edge 0-1.
   std::vector<NodalVectors> positions(1, NodalVectors(3, 4));
   positions[0] << -1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "support/test_scene.h"
+#include "validation/text_scene.h"
 #include "tissue_contact/simulation/build_scene.h"
 
 namespace tissue_contact {
@@ -36,7 +36,7 @@ friction:
 )";
 
 std::string twoLinkUrdf() {
-  std::string urdf = test::probeUrdf(0.005);
+  std::string urdf = probeUrdf(0.005);
   const std::string end = "</robot>";
   urdf.resize(urdf.size() - end.size());
   return urdf +

@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "support/test_scene.h"
+#include "validation/text_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -25,7 +25,7 @@ Simulator makeScene(double max_step_s = 0.001, double height_m = 0.026) {
       << "    contact_links: [tip]\n"
       << "friction:\n  - {instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}\n"
       << "step: {max_step_s: " << max_step_s << "}\n";
-  return test::makeSimulator(yaml.str(), {{"probe", test::probeUrdf(0.005)}});
+  return makeSimulator(yaml.str(), {{"probe", probeUrdf(0.005)}});
 }
 
 /// Deepest point of the tissue surface inside the sphere, m.
@@ -119,7 +119,7 @@ TEST(Simulator, LargeJointMovesAreCutIntoSteps) {
 
 TEST(Simulator, StepWithoutFiniteAnswerIsDiscardedAndSaidSo) {
   SceneEnvironment environment;
-  environment.urdf_text = [](const std::string&) { return test::probeUrdf(0.005); };
+  environment.urdf_text = [](const std::string&) { return probeUrdf(0.005); };
   Scene scene = makeScene().scene();
   scene.gravity_m_per_s2 = Vector3(0.0, 0.0, -1e308);  // beyond what the loader allows: overflows within a step of 10 s
   scene.step.max_step_s = 10.0;

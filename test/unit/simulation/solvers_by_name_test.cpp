@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "support/test_scene.h"
+#include "validation/text_scene.h"
 
 namespace tissue_contact {
 namespace {
 
 Simulator makeScene(const std::string& solver, const std::string& friction = "static: 0.4, kinetic: 0.4") {
-  return test::makeSimulator(
+  return makeSimulator(
       "tissues:\n"
       "  - name: block\n"
       "    block: {size_m: [0.06, 0.06, 0.03], cells: [6, 6, 3]}\n"
@@ -25,7 +25,7 @@ Simulator makeScene(const std::string& solver, const std::string& friction = "st
       "     base_pose: {position_m: [0.001, 0.002, 0.0351]}}\n"
       "friction:\n  - {instrument: probe, tissue: block, " +
           friction + "}\nsolver: {" + solver + "}\n",
-      {{"probe", test::probeUrdf(0.005)}});
+      {{"probe", probeUrdf(0.005)}});
 }
 
 /// Force at the end of a press of 3 mm and a drag of 4 mm, N.
@@ -82,7 +82,7 @@ TEST(SolversByName, AStepWithoutAnAnswerIsDiscardedByAll) {
     scene.gravity_m_per_s2 = Vector3(0.0, 0.0, -1e308);  // beyond what the loader allows
     scene.step.max_step_s = 10.0;
     SceneEnvironment environment;
-    environment.urdf_text = [](const std::string&) { return test::probeUrdf(0.005); };
+    environment.urdf_text = [](const std::string&) { return probeUrdf(0.005); };
     Simulator simulator(scene, environment);
     simulator.advance(10.0, {Vector3::Zero()});
     EXPECT_TRUE(simulator.report().discarded) << solver;

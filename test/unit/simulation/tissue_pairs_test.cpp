@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "support/test_scene.h"
+#include "validation/text_scene.h"
 #include "tissue_contact/solver/delassus.h"
 
 namespace tissue_contact {
@@ -14,7 +14,7 @@ namespace {
 /// A soft block lying on a fixed-base one of another grid, under gravity tilted by `angle` about y.
 Simulator makeStack(double friction, double angle) {
   const std::string g = std::to_string(-9.81 * std::sin(angle)) + ", 0, " + std::to_string(-9.81 * std::cos(angle));
-  return test::makeSimulator(
+  return makeSimulator(
       "gravity_m_per_s2: [" + g +
           "]\n"
           "tissues:\n"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "support/elasticity_helpers.h"
+#include "validation/elasticity_helpers.h"
 #include "tissue_contact/tissue/mass_spring.h"
 #include "tissue_contact/tissue/tet_mesh.h"
 

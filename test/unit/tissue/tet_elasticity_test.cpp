@@ -6,7 +6,7 @@
 #include <Eigen/SVD>
 #include <random>
 
-#include "support/elasticity_helpers.h"
+#include "validation/elasticity_helpers.h"
 #include "tissue_contact/tissue/tet_mesh.h"
 
 namespace tissue_contact {

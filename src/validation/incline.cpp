@@ -1,10 +1,10 @@
 /// Form B: a free block on an incline. It holds exactly while tan(theta) < mu_s, slides with g (sin - mu cos), does not
 /// creep; and form J: its weight is the sum of the contact forces, and it falls freely before it lands.
-#include <gtest/gtest.h>
-
 #include <cmath>
 
-#include "support/test_scene.h"
+#include "validation/closed_forms.h"
+#include "validation/report.h"
+#include "validation/text_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -28,7 +28,7 @@ Simulator makeIncline(double degrees, double mu_static, double mu_kinetic, doubl
       << "friction:\n  - {instrument: table, tissue: block, static: " << mu_static << ", kinetic: " << mu_kinetic
       << "}\n"
       << "step: {max_step_s: 0.001}\nsolver: {iterations: 200, tolerance: 1.0e-9}\n";
-  return test::makeSimulator(yaml.str(), {{"table", test::tableUrdf()}});
+  return makeSimulator(yaml.str(), {{"table", tableUrdf()}});
 }
 
 void run(Simulator& simulator, double seconds) {
@@ -52,62 +52,80 @@ double downhillAcceleration(double degrees, double mu) {
   return downhill.dot(massCenter(simulator, simulator.velocities(0))) - before;
 }
 
+// Source of every angle and acceleration: the point mass, holds while tan(theta) < mu_s, else a = g (sin - mu_k cos).
+constexpr const char* kPointMass = "point mass with Coulomb friction";
+
 // mu = 0.3: the critical angle is 16.699 degrees.
-TEST(Incline, HoldsJustBelowTheCriticalAngleWithoutCreep) {
+void holdsWithoutCreep(Report& report) {
   Simulator simulator = makeIncline(16.6, 0.3, 0.3);
   run(simulator, 1.0);
   const Vector3 start = massCenter(simulator, simulator.positions(0));
-  run(simulator, 60.0);
+  for (int second = 1; second <= 60; ++second) {
+    run(simulator, 1.0);
+    report.progress(0.8 * second / 60);
+  }
   const Vector3 end = massCenter(simulator, simulator.positions(0));
-  EXPECT_EQ(simulator.report().kinetic_contacts, 0);
-  EXPECT_GT(simulator.report().static_contacts, 3);
-  // One micrometre in a minute: 0.3 nm per minute per newton is what double round-off alone would allow.
-  EXPECT_LE((end - start).norm(), 1e-6);
+  report.atMost("16.6 deg, mu .3: kinetic contacts", "", 0.0, simulator.report().kinetic_contacts, kPointMass);
+  report.atLeast("16.6 deg, mu .3: static contacts", "", 4.0, simulator.report().static_contacts, kPointMass);
+  // 0.3 nm per minute per newton is what double round-off alone would allow.
+  report.atMost("16.6 deg, mu .3: creep in 60 s", "m", 1e-6, (end - start).norm(), "none: it holds");
 }
-
-TEST(Incline, SlidesJustAboveTheCriticalAngle) {
-  EXPECT_NEAR(downhillAcceleration(16.8, 0.3), 0.0180, 1e-3 * kGravity);
-}
-
-TEST(Incline, SlidesWithGravityMinusFriction) { EXPECT_NEAR(downhillAcceleration(20.0, 0.3), 0.5897, 1e-3 * kGravity); }
 
 // tan 20 = 0.364. Gravity sets in at once, so shear overshoots to up to twice its final value: mu_s must cover that.
-TEST(Incline, StaticCoefficientHoldsWhatKineticWouldNot) {
+void staticHoldsWhatKineticWouldNot(Report& report) {
   Simulator simulator = makeIncline(20.0, 0.8, 0.3);
   run(simulator, 1.0);
   const Vector3 start = massCenter(simulator, simulator.positions(0));
   run(simulator, 1.0);
-  EXPECT_LE((massCenter(simulator, simulator.positions(0)) - start).norm(), 1e-7);
+  report.atMost("20 deg, mu .8 / .3: creep in 1 s", "m", 1e-7,
+                (massCenter(simulator, simulator.positions(0)) - start).norm(), "none: it holds");
 }
 
-TEST(Incline, WeightIsTheContactForceAndItsMomentBalances) {
+void weightIsTheContactForce(Report& report) {
   Simulator simulator = makeIncline(10.0, 0.5, 0.5);
   run(simulator, 1.5);
   const double weight = kGravity * simulator.tissues()[0].nodeMasses().sum();
   const double theta = 10.0 * M_PI / 180.0;
   const Wrench on_table = simulator.wrench(0);  // in table axes
-  EXPECT_NEAR(on_table.force.x(), weight * std::sin(theta), 1e-5 * weight);
-  EXPECT_NEAR(on_table.force.y(), 0.0, 1e-5 * weight);
-  EXPECT_NEAR(on_table.force.z(), -weight * std::cos(theta), 1e-5 * weight);
+  const Vector3 expected = weight * Vector3(std::sin(theta), 0.0, -std::cos(theta));
+  // The solver stops at a relative change of 1e-9; 1e-5 of the motion is left after 1.5 s.
+  report.near("10 deg: force along the table", "N", expected.x(), on_table.force.x(), 1e-5 * weight, "weight");
+  report.near("10 deg: force across the table", "N", 0.0, on_table.force.y(), 1e-5 * weight, "weight");
+  report.near("10 deg: force into the table", "N", expected.z(), on_table.force.z(), 1e-5 * weight, "weight");
   // The table feels the weight through the block's mass centre.
-  const Vector3 center = massCenter(simulator, simulator.positions(0));
-  const Vector3 moment_W = center.cross(Vector3(0.0, 0.0, -weight));
+  const Vector3 moment_W = massCenter(simulator, simulator.positions(0)).cross(Vector3(0.0, 0.0, -weight));
   const Vector3 moment = Eigen::AngleAxisd(-theta, Vector3::UnitY()) * moment_W;
-  EXPECT_LE((on_table.torque - moment).norm(), 1e-5 * weight * 0.03);
+  report.atMost("10 deg: moment that weight does not explain", "N m", 1e-5 * weight * 0.03,
+                (on_table.torque - moment).norm(), "weight at the mass centre");
 }
 
-TEST(FreeFall, FollowsImplicitEulerExactlyUntilItLands) {
+void fallsFreelyUntilItLands(Report& report) {
   Simulator simulator = makeIncline(0.0, 0.3, 0.3, 0.1);
   const Vector3 start = massCenter(simulator, simulator.positions(0));
   run(simulator, 0.1);
   const int steps = 100;
-  const double fallen = kGravity * 1e-6 * 0.5 * steps * (steps + 1);  // sum of k g dt^2
+  const double fallen = kGravity * 1e-6 * 0.5 * steps * (steps + 1);
   // The solver stops at a relative change of 1e-9 in each of the 100 steps.
-  EXPECT_NEAR(massCenter(simulator, simulator.positions(0)).z() - start.z(), -fallen, 1e-7 * fallen);
-  EXPECT_EQ(simulator.report().static_contacts + simulator.report().kinetic_contacts, 0);
+  report.near("free fall in 0.1 s", "m", -fallen, massCenter(simulator, simulator.positions(0)).z() - start.z(),
+              1e-7 * fallen, "implicit Euler: sum of k g dt^2");
+  report.atMost("contacts that touch while it falls", "", 0.0,
+                simulator.report().static_contacts + simulator.report().kinetic_contacts, "it touches nothing");
   run(simulator, 1.5);
-  EXPECT_NEAR(massCenter(simulator, simulator.positions(0)).z(), 0.015, 1e-4);  // landed, and settled under its weight
+  // It settles under its weight by 1 um.
+  report.near("height of the mass centre after landing", "m", 0.015, massCenter(simulator, simulator.positions(0)).z(),
+              1e-4, "half the block's height");
 }
 
 }  // namespace
+
+void validateIncline(Report& report) {
+  holdsWithoutCreep(report);
+  const double tolerance = 1e-3 * kGravity;  // vibrations that have not died yet
+  report.near("16.8 deg, mu .3: acceleration", "m/s^2", 0.0180, downhillAcceleration(16.8, 0.3), tolerance, kPointMass);
+  report.near("20 deg, mu .3: acceleration", "m/s^2", 0.5897, downhillAcceleration(20.0, 0.3), tolerance, kPointMass);
+  staticHoldsWhatKineticWouldNot(report);
+  weightIsTheContactForce(report);
+  fallsFreelyUntilItLands(report);
+}
+
 }  // namespace tissue_contact

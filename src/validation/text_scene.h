@@ -1,5 +1,5 @@
 /// @file
-/// Test support: scenes written as text inside a test, with their URDFs beside them.
+/// Room `validation`: scenes written as text inside a case or a test, with their URDFs beside them.
 #pragma once
 
 #include <map>
@@ -8,21 +8,22 @@
 
 #include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/simulation/simulator.h"
+#include "validation/package_directory.h"
 
-namespace tissue_contact::test {
+namespace tissue_contact {
 
 /// Builds a simulator from scene text; `robot_description: <name>` in it means entry <name> of `urdfs`.
 inline Simulator makeSimulator(const std::string& yaml, const std::map<std::string, std::string>& urdfs) {
   SceneEnvironment environment;
   environment.package_path = [](const std::string& package) {
-    return package == "tissue_contact" ? std::string(TISSUE_CONTACT_SOURCE_DIR) : std::string();
+    return package == "tissue_contact" ? packageDirectory() : std::string();
   };
   environment.urdf_text = [urdfs](const std::string& name) {
     const auto urdf = urdfs.find(name);
-    if (urdf == urdfs.end()) throw std::invalid_argument("the test has no URDF '" + name + "'");
+    if (urdf == urdfs.end()) throw std::invalid_argument("there is no URDF '" + name + "'");
     return urdf->second;
   };
-  return Simulator(parseScene(yaml, "test scene", environment.package_path), environment);
+  return Simulator(parseScene(yaml, "text scene", environment.package_path), environment);
 }
 
 /// A sphere on three prismatic joints x, y, z along the axes of its base; link `tip` at the sphere's centre.
@@ -55,4 +56,4 @@ inline std::string movingTableUrdf() {
          "</collision></link></robot>";
 }
 
-}  // namespace tissue_contact::test
+}  // namespace tissue_contact

@@ -1,11 +1,11 @@
 /// @file
-/// Test support: one mass on a spring along x, pressed on a moving belt by its weight: the contact problem of a single
+/// Room `validation`: one mass on a spring along x, pressed on a moving belt by its weight: the contact problem of a single
 /// node given to the solver, with friction's history handed on as the simulator does.
 #pragma once
 
 #include "tissue_contact/solver/contact_solver.h"
 
-namespace tissue_contact::test {
+namespace tissue_contact {
 
 /// Stepped by the implicit midpoint rule, which neither damps nor drives an oscillation:
 ///   v = (v0 + v1) / 2,  (2 m + dt^2/2 k) v = 2 m v0 + dt (m g - k x0) + impulse,  x1 = x0 + dt v,  v1 = 2 v - v0,
@@ -72,4 +72,4 @@ class SlidingMass {
   std::unique_ptr<ContactSolver> solver_;
 };
 
-}  // namespace tissue_contact::test
+}  // namespace tissue_contact

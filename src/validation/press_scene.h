@@ -1,14 +1,14 @@
 /// @file
-/// Test support: a rigid sphere on a linear elastic block with its base fixed and cells that are smallest at the middle of its
+/// Room `validation`: a rigid sphere on a linear elastic block with its base fixed and cells that are smallest at the middle of its
 /// upper face, in quasi-static steps.
 #pragma once
 
 #include <cmath>
 #include <sstream>
 
-#include "support/test_scene.h"
+#include "validation/text_scene.h"
 
-namespace tissue_contact::test {
+namespace tissue_contact {
 
 struct PressScene {
   Vector3 size_m = Vector3(0.06, 0.06, 0.03);
@@ -67,4 +67,4 @@ inline void pressSmooth(Simulator& simulator, double depth_m, int settle = 15) {
   }
 }
 
-}  // namespace tissue_contact::test
+}  // namespace tissue_contact

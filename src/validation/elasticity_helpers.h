@@ -1,5 +1,5 @@
 /// @file
-/// What tests of elastic models share: dense matrices, forces of a position, static solutions.
+/// Room `validation`: what cases and tests of elastic models share: dense matrices, forces of a position, static solutions.
 #pragma once
 
 #include <Eigen/SparseCholesky>

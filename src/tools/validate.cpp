@@ -1,0 +1,136 @@
+#include "tools/validate.h"
+
+#include <algorithm>
+#include <exception>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "tools/validation_table.h"
+#include "validation/cases.h"
+
+namespace tissue_contact {
+namespace {
+
+constexpr const char* kUsage =
+    "usage: tissue_contact_validate [--case NAME]... [--json FILE] [--list]\n"
+    "Runs closed forms and hard cases through the product's own pipeline and prints, per quantity: verdict, what it "
+    "is,\n"
+    "unit, expected, got, error, tolerance, source. Exit code 0: all within tolerance; 1: not; 2: wrong arguments.\n"
+    "  --case NAME  this case only; may be repeated\n"
+    "  --json FILE  the same results, with convergence studies, as JSON\n"
+    "  --list       names and titles of all cases\n";
+
+struct Options {
+  std::vector<const ValidationCase*> cases;
+  std::string json;
+  bool list = false;
+  bool help = false;
+};
+
+const ValidationCase* caseByName(const std::string& name) {
+  const std::vector<ValidationCase>& all = validationCases();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const ValidationCase& one) { return name == one.name; });
+  if (found != all.end()) return &*found;
+  std::string names;
+  for (const ValidationCase& one : all) names += std::string(names.empty() ? "" : ", ") + one.name;
+  throw std::invalid_argument("--case '" + name + "' is unknown; there are: " + names);
+}
+
+Options parseOptions(const std::vector<std::string>& arguments) {
+  Options options;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string& key = arguments[i];
+    if (key == "--list") {
+      options.list = true;
+    } else if (key == "--help" || key == "-h") {
+      options.help = true;
+    } else if (key == "--case" || key == "--json") {
+      if (i + 1 == arguments.size()) throw std::invalid_argument(key + " needs a value");
+      const std::string& value = arguments[++i];
+      if (key == "--case") {
+        options.cases.push_back(caseByName(value));
+      } else {
+        options.json = value;
+      }
+    } else {
+      throw std::invalid_argument("unknown argument '" + key + "'");
+    }
+  }
+  if (options.cases.empty()) {
+    for (const ValidationCase& one : validationCases()) options.cases.push_back(&one);
+  }
+  return options;
+}
+
+/// A bar over all cases; `share` of the one that runs is done.
+void showProgress(std::size_t done, double share, std::size_t count, const char* name, std::ostream& progress) {
+  constexpr int kWidth = 30;
+  const double all = (static_cast<double>(done) + share) / static_cast<double>(count);
+  const int filled = static_cast<int>(all * kWidth);
+  progress << "\r[" << std::string(filled, '=') << std::string(kWidth - filled, ' ') << "] " << done + 1 << '/' << count
+           << ' ' << name << "\033[K" << std::flush;
+}
+
+CaseResult runCase(const ValidationCase& one, std::size_t done, std::size_t count, std::ostream* bar) {
+  const auto show = [=, &one](double share) {
+    if (bar != nullptr) showProgress(done, share, count, one.name, *bar);
+  };
+  show(0.0);
+  CaseResult result{one.name, one.title, Report(show), ""};
+  try {
+    one.run(result.report);
+  } catch (const std::exception& error) {
+    result.failure = error.what();
+  }
+  if (bar != nullptr) *bar << "\r\033[K" << std::flush;
+  return result;
+}
+
+/// The file is opened before the long run, so that a wrong path costs nothing.
+std::ofstream openJson(const std::string& file) {
+  std::ofstream json;
+  if (file.empty()) return json;
+  json.open(file);
+  if (!json) throw std::invalid_argument("--json: cannot write '" + file + "'");
+  return json;
+}
+
+int runCases(const Options& options, std::ostream& out, std::ostream* bar) {
+  std::ofstream json = openJson(options.json);
+  std::vector<CaseResult> results;
+  for (const ValidationCase* const one : options.cases) {
+    results.push_back(runCase(*one, results.size(), options.cases.size(), bar));
+    printCase(results.back(), out);
+    out << std::flush;
+  }
+  if (!options.json.empty()) {
+    writeJson(results, json);
+    if (!json.flush()) throw std::invalid_argument("--json: writing '" + options.json + "' failed; is the disk full?");
+  }
+  const auto passed = std::count_if(results.begin(), results.end(), [](const CaseResult& r) { return r.passed(); });
+  out << passed << " of " << results.size() << " cases pass\n";
+  return passed == static_cast<std::ptrdiff_t>(results.size()) ? 0 : 1;
+}
+
+}  // namespace
+
+int runValidate(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& messages, bool show_bar) {
+  try {
+    const Options options = parseOptions(arguments);
+    if (options.help) {
+      out << kUsage;
+      return 0;
+    }
+    if (options.list) {
+      for (const ValidationCase* const one : options.cases) out << one->name << ": " << one->title << '\n';
+      return 0;
+    }
+    return runCases(options, out, show_bar ? &messages : nullptr);
+  } catch (const std::invalid_argument& error) {
+    messages << "tissue_contact_validate: " << error.what() << '\n' << kUsage;
+    return 2;
+  }
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,12 @@
+/// @file
+/// Executable tissue_contact_validate: see tools/validate.h.
+#include <unistd.h>
+
+#include <iostream>
+
+#include "tools/validate.h"
+
+int main(int argc, char** argv) {
+  return tissue_contact::runValidate(std::vector<std::string>(argv + 1, argv + argc), std::cout, std::cerr,
+                                     isatty(STDERR_FILENO) == 1);
+}
