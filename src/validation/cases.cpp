@@ -8,6 +8,10 @@ namespace tissue_contact {
 const std::vector<ValidationCase>& validationCases() {
   static const std::vector<ValidationCase> cases = {
       {"incline", "B: a block on an incline holds, creeps not, slides at g (sin - mu cos)", validateIncline},
+      {"elasticity", "J: patch test, bar, cantilever and bent beam of linear tetrahedra", validateElasticity},
+      {"elastic-models", "J: neo-Hookean and mass-spring bars, layers in series, creep", validateElasticModels},
+      {"membrane", "J: patch test, strips, plates in bending and twist", validateMembrane},
+      {"grasp", "jaws close on a flap, lift, hold, pull until it slips, open; mu_s >> mu_k too", validateGrasp},
   };
   return cases;
 }

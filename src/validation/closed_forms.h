@@ -7,5 +7,9 @@ namespace tissue_contact {
 class Report;
 
 void validateIncline(Report& report);
+void validateElasticity(Report& report);
+void validateElasticModels(Report& report);
+void validateMembrane(Report& report);
+void validateGrasp(Report& report);
 
 }  // namespace tissue_contact

@@ -1,12 +1,13 @@
-/// Closed forms of membranes and plates: patch test, strips in tension, a taut strip pushed aside, bending and twisting.
+/// Form J: closed forms of membranes and plates: patch test, strips in tension, a taut strip pushed aside, bending and twisting.
 #include "tissue_contact/tissue/membrane.h"
 
-#include <gtest/gtest.h>
-
+#include <algorithm>
 #include <cmath>
 
-#include "validation/elasticity_helpers.h"
 #include "tissue_contact/tissue/sheet_mesh.h"
+#include "validation/closed_forms.h"
+#include "validation/elasticity_helpers.h"
+#include "validation/report.h"
 
 namespace tissue_contact {
 namespace {
@@ -31,7 +32,7 @@ void shakeInside(double size, SheetMesh& mesh) {
 }
 
 // A linear displacement within the plane, prescribed on the border, must be found inside a distorted mesh.
-TEST(MembranePatch, LinearFieldIsExact) {
+void patchTest(Report& report) {
   SheetMesh mesh = makeSheetMesh({Vector2(0.04, 0.03), {4, 3}, kThickness});
   const Vector3 low = mesh.positions.rowwise().minCoeff();
   const Vector3 high = mesh.positions.rowwise().maxCoeff();
@@ -52,7 +53,9 @@ TEST(MembranePatch, LinearFieldIsExact) {
     }
     const Membrane membrane = makeMembrane(mesh, 0.3, bending);
     solveStatic(membrane.makeState()->stiffness, prescribed, NodalVectors::Zero(3, u.cols()), u);
-    EXPECT_LE((u - exact).norm(), 1e-12 * exact.norm());
+    // Round-off of a direct solution.
+    report.atMost(std::string("patch test, ") + (bending < 0.0 ? "with" : "without") + " bending: relative error", "",
+                  1e-12, (u - exact).norm() / exact.norm(), "linear field, exact");
   }
 }
 
@@ -76,8 +79,10 @@ NodalVectors endLoads(const SheetMesh& mesh, const Vector3& force) {
   return loads;
 }
 
+constexpr const char* kInTension = "F L / (E h b)";
+
 // With nu = 0: F L / (E h b), and, the strain being the stretch less one, at any stretch.
-TEST(Strip, StretchesByForceTimesLengthOverStiffness) {
+void stripInTension(Report& report) {
   SheetMesh mesh = makeSheetMesh({Vector2(kLength, kWidth), {6, 2}, kThickness});
   shakeInside(2e-3, mesh);
   const Membrane membrane = makeMembrane(mesh, 0.0, 0.0);
@@ -93,17 +98,21 @@ TEST(Strip, StretchesByForceTimesLengthOverStiffness) {
     solveStatic(membrane.makeState()->stiffness, prescribed, loads, u);
     NodalVectors x = mesh.positions;
     const double residual = solveEquilibrium(membrane, prescribed, loads, 20, x);
-    EXPECT_LE(residual, 1e-11 * F);
-    for (Eigen::Index i = 0; i < u.cols(); ++i) {
-      const double expected = strain * (mesh.positions(0, i) + 0.5 * kLength);
-      ASSERT_NEAR(u(0, i), expected, 1e-10 * strain * kLength);
-      ASSERT_NEAR(x(0, i) - mesh.positions(0, i), expected, 1e-10 * strain * kLength);
-    }
+    const Eigen::RowVectorXd expected = strain * (mesh.positions.row(0).array() + 0.5 * kLength);
+    const std::string name = strain < 0.1 ? "strip stretched by .1 %: " : "strip stretched by 50 %: ";
+    report.near(name + "elongation", "m", strain * kLength, x.row(0).maxCoeff() - 0.5 * kLength,
+                1e-10 * strain * kLength, kInTension);
+    // Round-off of direct solutions.
+    report.atMost(name + "worst error of the tangent's answer", "", 1e-10,
+                  (u.row(0) - expected).cwiseAbs().maxCoeff() / (strain * kLength), kInTension);
+    report.atMost(name + "worst error of the equilibrium", "", 1e-10,
+                  (x.row(0) - mesh.positions.row(0) - expected).cwiseAbs().maxCoeff() / (strain * kLength), kInTension);
+    report.atMost(name + "imbalance over F", "", 1e-11, residual / F, "equilibrium");
   }
 }
 
 // Plane stress with nu > 0, free to contract: F L / (E h b) again, and lateral strain -nu F / (E h b).
-TEST(Strip, ContractsByPoissonsRatio) {
+void stripContracts(Report& report) {
   SheetMesh mesh = makeSheetMesh({Vector2(kLength, kWidth), {6, 2}, kThickness});
   const double nu = 0.4;
   const double strain = 1e-3;
@@ -115,15 +124,17 @@ TEST(Strip, ContractsByPoissonsRatio) {
   }
   solveStatic(membrane.makeState()->stiffness, prescribed,
               endLoads(mesh, strain * kYoung * kThickness * kWidth * Vector3::UnitX()), u);
-  for (Eigen::Index i = 0; i < u.cols(); ++i) {
-    ASSERT_NEAR(u(0, i), strain * (mesh.positions(0, i) + 0.5 * kLength), 1e-10 * strain * kLength);
-    ASSERT_NEAR(u(1, i), -nu * strain * mesh.positions(1, i), 1e-10 * strain * kLength);
-  }
+  const Eigen::RowVectorXd along = strain * (mesh.positions.row(0).array() + 0.5 * kLength);
+  report.atMost("strip, nu .4: worst error along, of the elongation", "", 1e-10,
+                (u.row(0) - along).cwiseAbs().maxCoeff() / (strain * kLength), kInTension);
+  report.atMost("strip, nu .4: worst error across, of the elongation", "", 1e-10,
+                (u.row(1) + nu * strain * mesh.positions.row(1)).cwiseAbs().maxCoeff() / (strain * kLength),
+                "lateral strain -nu F / (E h b)");
 }
 
 // A strip without bending stiffness, stretched between its ends and pushed aside across its middle: a string of tension
 // T, deflection F l / (4 T), l its stretched length. Small, so that the tangent alone must give it.
-TEST(Strip, TautItResistsLikeAString) {
+void tautStrip(Report& report) {
   const SheetMesh mesh = makeSheetMesh({Vector2(kLength, kWidth), {6, 2}, kThickness});
   const Membrane membrane = makeMembrane(mesh, 0.0, 0.0);
   const double strain = 0.02;
@@ -143,7 +154,8 @@ TEST(Strip, TautItResistsLikeAString) {
   NodalVectors u = NodalVectors::Zero(3, x.cols());
   solveStatic(state->stiffness, prescribed, loads, u);
   const double expected = F * kLength * (1.0 + strain) / (4.0 * T);
-  EXPECT_NEAR(u.row(2).maxCoeff(), expected, 1e-9 * expected);
+  report.near("taut strip pushed aside: deflection", "m", expected, u.row(2).maxCoeff(), 1e-9 * expected,
+              "string, F l / (4 T)");
 }
 
 /// Tip deflection under an end load of a cantilever with n cells across and 3 n along, over that of a beam of bending
@@ -170,77 +182,90 @@ double cantileverRatio(int n, double nu, double shake, double sag) {
   return tip / (1e-6 * length * length * length / (3.0 * D * (1.0 - nu * nu) * kWidth));
 }
 
+constexpr const char* kPlateStrip = "plate strip, F L^3 / (3 B b)";
+
 // Second order in the cells, from below. A grid without shaking is exact for bending along it but for the end load's
 // last half cell.
-TEST(Cantilever, SheetBendsAsAPlateStrip) {
-  const double coarse = cantileverRatio(2, 0.0, 0.0, 0.0);
-  const double fine = cantileverRatio(4, 0.0, 0.0, 0.0);
-  RecordProperty("ratio_nu_0", std::to_string(coarse) + " " + std::to_string(fine));
-  EXPECT_NEAR(coarse, 1.0, 0.01);
-  EXPECT_NEAR(fine, 1.0, 0.003);
-  EXPECT_NEAR((1.0 - coarse) / (1.0 - fine), 4.0, 0.5);
+void plateStrip(Report& report) {
+  ConvergenceStudy study{"sheet as cantilever: deflection over the plate strip's", "", "cell (m)", {}, 1.0};
+  for (const int n : {2, 4, 8}) study.levels.push_back({kLength / (3 * n), cantileverRatio(n, 0.0, 0.0, 0.0)});
+  report.near("cantilever, 2 cells across: deflection", "", 1.0, study.levels[0].value, 0.01, kPlateStrip);
+  report.near("cantilever, 4 cells across: deflection", "", 1.0, study.levels[1].value, 0.003, kPlateStrip);
+  report.near("cantilever: order of convergence", "", 2.0, study.observedOrder(), 0.2, "second order in the cells");
+  report.convergence(study);
 }
 
 // With Poisson's ratio the beam's free contraction is held at the clamp, which makes the strip 2 to 4 % stiffer. What
 // matters here: distorted and even meshes go to the same answer.
-TEST(Cantilever, DistortedSheetsAgree) {
+void distortedSheet(Report& report) {
   const double even = cantileverRatio(8, 0.3, 0.0, 0.0);
   const double distorted = cantileverRatio(8, 0.3, 0.2, 0.0);
-  RecordProperty("ratio_nu_0.3", std::to_string(even) + " " + std::to_string(distorted));
-  EXPECT_NEAR(distorted, even, 0.005);
-  EXPECT_GT(even, 0.94);
-  EXPECT_LT(even, 1.0);
+  report.near("cantilever, nu .3, distorted mesh: deflection", "", even, distorted, 0.005, "that of the even mesh");
+  report.atLeast("cantilever, nu .3: deflection", "", 0.94, even, "plate strip, 2 to 4 % stiffer by its clamp");
+  report.atMost("cantilever, nu .3: deflection", "", 1.0, even, kPlateStrip);
 }
 
 // A sag of 1e-6 of the width takes the bending by angles, which must be the same plate.
-TEST(Cantilever, BendingByAnglesIsTheSamePlate) {
+void bendingByAngles(Report& report) {
   for (const double nu : {0.0, 0.3}) {
     const double flat = cantileverRatio(3, nu, 0.1, 0.0);
     const double curved = cantileverRatio(3, nu, 0.1, 1e-4);
-    EXPECT_NEAR(curved, flat, 1e-4);
-    EXPECT_NE(curved, flat);  // else it did not
+    const std::string name = std::string("cantilever, nu ") + (nu == 0.0 ? "0" : ".3");
+    report.near(name + ", sagging: deflection", "", flat, curved, 1e-4, "that of the flat sheet");
+    report.require(name + ": another form of bending was taken", curved != flat, "bending by angles");
   }
 }
 
 // A square plate with forces +P, -P at alternate corners: pure twist, w = P x y / (2 D (1 - nu)) (Timoshenko).
-TEST(Plate, TwistsByItsShearStiffness) {
-  const auto ratio = [](int n, double shake) {
-    SheetMesh mesh = makeSheetMesh({Vector2(kWidth, kWidth), {n, n}, kThickness});
-    shakeInside(shake * kWidth / n, mesh);
-    const double D = 1e-3;
-    const double nu = 0.3;
-    const double P = 1e-6;
-    const Membrane membrane = makeMembrane(mesh, nu, D);
-    std::vector<bool> prescribed(3 * mesh.positions.cols(), true);
-    NodalVectors loads = NodalVectors::Zero(3, mesh.positions.cols());
-    NodalVectors u = NodalVectors::Zero(3, mesh.positions.cols());
-    const double w = P * 0.25 * kWidth * kWidth / (2.0 * D * (1.0 - nu));
-    int corners = 0;
-    double work = 0.0;
-    for (Eigen::Index i = 0; i < u.cols(); ++i) {
-      const double x = mesh.positions(0, i);
-      const double y = mesh.positions(1, i);
-      prescribed[3 * i + 2] = false;
-      if (std::abs(x) < 0.5 * kWidth || std::abs(y) < 0.5 * kWidth) continue;
-      loads(2, i) = x * y > 0.0 ? P : -P;
-      if (corners++ < 3) {  // statically determinate: without reaction
-        prescribed[3 * i + 2] = true;
-        u(2, i) = x * y > 0.0 ? w : -w;
-      }
+double twistRatio(int n, double shake) {
+  SheetMesh mesh = makeSheetMesh({Vector2(kWidth, kWidth), {n, n}, kThickness});
+  shakeInside(shake * kWidth / n, mesh);
+  const double D = 1e-3;
+  const double nu = 0.3;
+  const double P = 1e-6;
+  const Membrane membrane = makeMembrane(mesh, nu, D);
+  std::vector<bool> prescribed(3 * mesh.positions.cols(), true);
+  NodalVectors loads = NodalVectors::Zero(3, mesh.positions.cols());
+  NodalVectors u = NodalVectors::Zero(3, mesh.positions.cols());
+  const double w = P * 0.25 * kWidth * kWidth / (2.0 * D * (1.0 - nu));
+  int corners = 0;
+  double work = 0.0;
+  for (Eigen::Index i = 0; i < u.cols(); ++i) {
+    const double x = mesh.positions(0, i);
+    const double y = mesh.positions(1, i);
+    prescribed[3 * i + 2] = false;
+    if (std::abs(x) < 0.5 * kWidth || std::abs(y) < 0.5 * kWidth) continue;
+    loads(2, i) = x * y > 0.0 ? P : -P;
+    if (corners++ < 3) {  // statically determinate: without reaction
+      prescribed[3 * i + 2] = true;
+      u(2, i) = x * y > 0.0 ? w : -w;
     }
-    solveStatic(membrane.makeState()->stiffness, prescribed, loads, u);
-    for (Eigen::Index i = 0; i < u.cols(); ++i) work += loads(2, i) * u(2, i);
-    // Prescribed corners move as the closed form says; the fourth tells the stiffness: 3 w + its own.
-    return work / P / w - 3.0;
-  };
-  const double coarse = ratio(4, 0.0);
-  const double fine = ratio(8, 0.0);
-  const double distorted = ratio(8, 0.2);
-  RecordProperty("ratio", std::to_string(coarse) + " " + std::to_string(fine) + " " + std::to_string(distorted));
-  EXPECT_NEAR(coarse, 1.0, 1e-9);  // constant curvature: exact on even meshes, whichever way the diagonals run
-  EXPECT_NEAR(fine, 1.0, 1e-9);
-  EXPECT_NEAR(distorted, 1.0, 0.02);
+  }
+  solveStatic(membrane.makeState()->stiffness, prescribed, loads, u);
+  for (Eigen::Index i = 0; i < u.cols(); ++i) work += loads(2, i) * u(2, i);
+  // Prescribed corners move as the closed form says; the fourth tells the stiffness: 3 w + its own.
+  return work / P / w - 3.0;
+}
+
+// Constant curvature: exact on even meshes, whichever way the diagonals run.
+void twistedPlate(Report& report) {
+  const char* const source = "pure twist (Timoshenko)";
+  report.near("twisted plate, 4 x 4 cells: deflection", "", 1.0, twistRatio(4, 0.0), 1e-9, source);
+  report.near("twisted plate, 8 x 8 cells: deflection", "", 1.0, twistRatio(8, 0.0), 1e-9, source);
+  report.near("twisted plate, distorted mesh: deflection", "", 1.0, twistRatio(8, 0.2), 0.02, source);
 }
 
 }  // namespace
+
+void validateMembrane(Report& report) {
+  patchTest(report);
+  stripInTension(report);
+  stripContracts(report);
+  tautStrip(report);
+  plateStrip(report);
+  distortedSheet(report);
+  bendingByAngles(report);
+  twistedPlate(report);
+}
+
 }  // namespace tissue_contact
