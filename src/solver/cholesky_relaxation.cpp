@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 
 #include "solver/factored_body.h"
 #include "solver/relaxation.h"
@@ -57,6 +58,8 @@ class CholeskyRelaxation : public Relaxation {
   std::vector<Local> contacts_;
   std::vector<NodalVectors> saved_;  ///< velocities before a relaxation
   double loads_ = 0.0;               ///< |b|, N s
+  double left_ = 0.0;                ///< defect that the last relaxation of this step left, N s
+  bool fresh_ = false;               ///< all factors are of this step: to renew them would change nothing
   long renewals_ = 0;                ///< factors renewed in mid-step
 };
 
@@ -67,9 +70,10 @@ void CholeskyRelaxation::prepare(const ContactProblem& problem, ContactSolution&
   tracked_.resize(bodies_.size());
   contacts_.resize(problem.contacts.size());
   loads_ = 0.0;
+  fresh_ = true;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const BodySystem& body = problem.bodies[k];
-    bodies_[k].prepare(body);
+    fresh_ = bodies_[k].prepare(body) && fresh_;
     impulses_[k].setZero(3, body.K->rows());
     defect_[k].resize(3, body.K->rows());
     loads_ += body.b.squaredNorm();
@@ -83,24 +87,30 @@ void CholeskyRelaxation::prepare(const ContactProblem& problem, ContactSolution&
     }
   }
   // The first relaxation comes before the compliances, which would be lost with a factor that proves useless.
+  left_ = std::numeric_limits<double>::infinity();
   computeDefect(problem, solution);
   relaxSafely(problem, solution);
+  left_ = std::numeric_limits<double>::infinity();  // what the first contact passes bring is news, not growth
   for (FactoredBody& body : bodies_) body.beginTouching();
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) prepareContact(problem, c, solution);
 }
 
-/// Relaxes; where the factor makes things worse or hardly better, it is renewed at once and the relaxation done again with
-/// A itself. A part of the answer that the factor drives apart may be small at first, so every relaxation is watched.
-/// @return the defect left, N s.
+/// Relaxes; where an old factor makes things worse or hardly better, or leaves more than the relaxation before the last
+/// contact passes, it is renewed at once and the relaxation done again with A itself. A part of the answer that the factor
+/// drives apart may be small at first, so every relaxation is watched. @return the defect left, N s.
 double CholeskyRelaxation::relaxSafely(const ContactProblem& problem, ContactSolution& solution) {
   const double before = normOf(defect_);
   saved_ = solution.v;
   const double after = relaxOnce(problem, solution, before);
-  if (after <= kUselessContraction * before || after <= kRoundOff * loads_) return after;
+  const bool serves = after <= kUselessContraction * before && after <= left_;
+  left_ = after;
+  if (serves || fresh_ || after <= kRoundOff * loads_) return after;
   solution.v = saved_;
   for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].renew(problem.bodies[k]);
+  fresh_ = true;
   ++renewals_;
-  return relaxOnce(problem, solution, computeDefect(problem, solution));
+  left_ = relaxOnce(problem, solution, computeDefect(problem, solution));
+  return left_;
 }
 
 void CholeskyRelaxation::prepareContact(const ContactProblem& problem, std::size_t contact, ContactSolution& solution) {

@@ -18,10 +18,12 @@ bool isNear(double now, double then) { return now <= kScaleRatio * then && then 
 
 }  // namespace
 
-void FactoredBody::prepare(const BodySystem& body) {
+bool FactoredBody::prepare(const BodySystem& body) {
   const bool close = isNear(body.stiffness_scale, stiffness_scale_) && isNear(body.damping_scale, damping_scale_) &&
                      isNear(body.mass.sum(), total_mass_);
-  if (!valid_ || stale_ || !close) renew(body);
+  const bool outdated = !valid_ || stale_ || !close;
+  if (outdated) renew(body);
+  return outdated;
 }
 
 void FactoredBody::renew(const BodySystem& body) {

@@ -13,8 +13,8 @@ namespace tissue_contact {
 /// columns lack are in the new column. It lives as long as the factor.
 class FactoredBody {
  public:
-  /// Begins a step: renews the factor if it is stale or A has changed too much.
-  void prepare(const BodySystem& body);
+  /// Begins a step: renews the factor if it is stale or A has changed too much. @return whether it did.
+  bool prepare(const BodySystem& body);
   void renew(const BodySystem& body);  ///< factors A of this step; allocates
   void markStale() { stale_ = true; }  ///< renew at the next prepare()
 
