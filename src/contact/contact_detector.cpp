@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "contact/conforming_gap.h"
 #include "contact/narrow_phase.h"
 #include "contact/triangle_tree.h"
 #include "tissue_contact/core/check.h"
@@ -151,11 +152,18 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
     if (shape.instrument != key.instrument || shape.contact_link != key.link || shape.shape != key.shape) continue;
     const Pose X_WS = X_WL.at(shape.instrument).at(shape.link) * shape.X_LS;
     Vector3 p_W = Vector3::Zero();
-    for (int i = 0; i < 3; ++i) p_W += contact.weights[i] * x.col(contact.nodes[i]);
+    std::array<Vector3, 3> corners_S;
+    std::array<double, 3> distances;
+    for (int i = 0; i < 3; ++i) {
+      p_W += contact.weights[i] * x.col(contact.nodes[i]);
+      corners_S[i] = X_WS.linear().transpose() * (x.col(contact.nodes[i]) - X_WS.translation());
+      distances[i] = shape.distance->at(corners_S[i]).distance;
+    }
     const SignedDistance here = shape.distance->at(X_WS.linear().transpose() * (p_W - X_WS.translation()));
     const Vector3 normal_W = (X_WS.linear() * here.normal).normalized();
     const NarrowPhase& surface = implementation_->surfaces[key.tissue].narrow_phase;
-    const double gap = here.distance - surface.halfThickness();
+    const double gap =
+        conformingGap(corners_S, distances, contact.weights, here.distance).gap - surface.halfThickness();
     if (!(gap <= margin_m) || !surface.faces(key.feature, normal_W, x)) return false;
     contact.p_WC = p_W;
     contact.R_WC = contactFrame(normal_W);

@@ -81,6 +81,7 @@ bool CylinderDistance::closest(const TrianglePoints& triangle, double margin, Cl
   if (minimum.lowest() > margin) return false;  // psi <= phi
   result.weights = minimum.weights();
   result.gradients = GradientSet();
+  result.beyond_rim = false;
   const Vector3 p = triangle.pointAt(result.weights);
   const SignedDistance here = at(p);
   result.distance = here.distance;
@@ -157,6 +158,7 @@ void CylinderDistance::addNormals(const Vector3& p, ClosestPoint& result) const 
 }
 
 void CylinderDistance::findBeyondRim(const TrianglePoints& triangle, ClosestPoint& result) const {
+  result.beyond_rim = true;
   Vector3 nearest;
   if (gjk_.nearest(triangle.corners, nearest)) {
     const Vector3 weights = projectOnTriangle(triangle.corners, nearest);

@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "contact/conforming_gap.h"
 #include "contact/stationary_gradient.h"
 #include "contact/tolerances.h"
 #include "tissue_contact/core/check.h"
@@ -64,12 +65,8 @@ void NarrowPhase::findContacts(const ShapeDistance& shape, const Pose& X_WS, con
   contacts.clear();
   for (const int triangle : candidates) {
     const TrianglePoints points = trianglePoints(triangle);
-    double flush_gap = std::numeric_limits<double>::infinity();
-    if (shape.hasFlatParts()) {
-      if (certainlyFar(triangle, points)) continue;
-      flush_gap = addCorners(triangle, points);
-    }
-    addClosest(triangle, points, flush_gap);
+    if (certainlyFar(triangle, points)) continue;
+    addClosest(triangle, points, shape.hasFlatParts() ? addCorners(triangle, points) : 0.0);
   }
   mergeAndSort();
 }
@@ -100,6 +97,12 @@ TrianglePoints NarrowPhase::trianglePoints(int triangle) {
   points.corners = {nodePosition(nodes[0]), nodePosition(nodes[1]), nodePosition(nodes[2])};
   points.normal = triangleNormalOf(triangle);
   return points;
+}
+
+/// Of vertices that certainlyFar() has measured.
+std::array<double, 3> NarrowPhase::vertexDistances(int triangle) const {
+  const Triangle& nodes = topology_.triangles()[triangle];
+  return {nodes_[nodes[0]].distance, nodes_[nodes[1]].distance, nodes_[nodes[2]].distance};
 }
 
 /// Distance of a tissue vertex, and its contact if it has one.
@@ -144,11 +147,30 @@ double NarrowPhase::addCorners(int triangle, const TrianglePoints& points) {
     const double gap = forward.dot(points.corners[0] - corner.p_S);
     if (!(gap <= call_.margin && gap >= -call_.shape->cornerReach())) continue;
     const Vector3 foot = corner.p_S + gap * forward;
-    const Vector3 weights = projectOnTriangle(points.corners, foot);
-    if ((points.pointAt(weights) - foot).norm() > kTouch * call_.shape->size()) continue;  // beside the triangle
-    if (add(triangle, snapped(weights), corner.index, forward, gap)) lowest = std::min(lowest, gap);
+    const Vector3 weights = snapped(projectOnTriangle(points.corners, foot));
+    const double beside = (points.pointAt(weights) - foot).norm();
+    if (beside > kTouch * call_.shape->size()) {
+      if (beside < -gap) addCornerInFold(triangle, weights, corner);
+      continue;
+    }
+    if (add(triangle, weights, corner.index, forward, gap)) lowest = std::min(lowest, gap);
   }
   return lowest;
+}
+
+/// A corner that is below all triangles around an edge or vertex yet beside each of them is under a valley of the
+/// surface, where projections on the triangles leave a gap: it is pushed back along the mean of their normals.
+void NarrowPhase::addCornerInFold(int triangle, const Vector3& weights, const ShapeCorner& corner) {
+  if (half_thickness_ > 0.0) return;
+  const Vector3 p = trianglePoints(triangle).pointAt(weights);
+  Vector3 outward = Vector3::Zero();
+  const bool above_any = topology_.anyTriangleOf(topology_.featureOf(triangle, weights), [&](int other) {
+    outward += triangleNormalOf(other);
+    return triangleNormalOf(other).dot(corner.p_S - p) >= 0.0;
+  });
+  if (above_any || outward.isZero(0.0)) return;
+  outward.normalize();
+  add(triangle, weights, corner.index, -outward, outward.dot(p - corner.p_S));
 }
 
 void NarrowPhase::addClosest(int triangle, const TrianglePoints& points, double flush_gap) {
@@ -156,9 +178,14 @@ void NarrowPhase::addClosest(int triangle, const TrianglePoints& points, double 
   if (!call_.shape->closest(points, call_.margin, closest)) return;
   const Vector3 weights = snapped(closest.weights);
   const SurfaceFeature feature = topology_.featureOf(triangle, weights);
-  const bool at_vertex = feature[1] < 0;
-  if (at_vertex && call_.shape->hasFlatParts()) return;  // measureVertex() has it
-  const Direction direction = contactDirection(closest, tangentOf(points, weights));
+  if (feature[1] < 0) return;  // a vertex: measureVertex() has it
+  Direction direction = contactDirection(closest, tangentOf(points, weights));
+  if (!closest.beyond_rim) {
+    const ConformingGap conforming =
+        conformingGap(points.corners, vertexDistances(triangle), weights, closest.distance);
+    if (conforming.fully) return;
+    direction.gap += conforming.gap - closest.distance;
+  }
   if (call_.shape->hasFlatParts()) {
     const double lowest = std::min(flush_gap, lowestVertexGap(feature));
     if (direction.gap >= lowest - kFlush * call_.shape->size()) return;

@@ -2,9 +2,9 @@
 /// Room `contact`: contacts of one shape with one tissue surface. Candidate triangles in; merged, sorted contacts out.
 ///
 /// Per triangle: the point where the shape is nearest or deepest, named by the face, edge or vertex it lies on, so that
-/// triangles sharing that feature report it once. Where a flat part of the shape can lie flush, that point is one of
-/// many; there the tissue's vertices and the shape's corners carry the contact instead, which stay the same from step
-/// to step.
+/// triangles sharing that feature report it once. Where the shape lies flush on the triangle, or is smooth compared with it
+/// (conforming_gap.h), that point is one of many; there the tissue's vertices, and corners of the shape, carry the
+/// contact instead, which stay the same from step to step.
 ///
 /// Which contacts are real (shapes are solid):
 ///  - On the boundary of a volume a contact counts when at least one surface triangle at its feature faces the
@@ -79,9 +79,11 @@ class NarrowPhase {
   const Vector3& nodePosition(int node);
   const Vector3& triangleNormalOf(int triangle);
   TrianglePoints trianglePoints(int triangle);
+  std::array<double, 3> vertexDistances(int triangle) const;
   const NodeCache& measureVertex(int triangle, int corner);
   bool certainlyFar(int triangle, const TrianglePoints& points);
   double addCorners(int triangle, const TrianglePoints& points);
+  void addCornerInFold(int triangle, const Vector3& weights, const ShapeCorner& corner);
   void addClosest(int triangle, const TrianglePoints& points, double flush_gap);
   double lowestVertexGap(const SurfaceFeature& feature) const;
   bool add(int triangle, const Vector3& weights, int corner, const Vector3& normal_S, double gap);

@@ -40,6 +40,7 @@ struct ClosestPoint {
   Vector3 weights = Vector3::UnitX();  ///< barycentric
   double distance = 0.0;               ///< signed distance there
   GradientSet gradients;               ///< at that point, one unless it lies on a ridge
+  bool beyond_rim = false;             ///< an edge between smooth parts of the shape is nearest
 };
 
 /// A corner of the shape near a triangle.

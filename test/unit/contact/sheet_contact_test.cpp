@@ -127,13 +127,10 @@ TEST(SheetContact, StripAroundACylinder) {
         const Vector3 radial(c.p_WC.x(), 0.0, c.p_WC.z());
         EXPECT_NEAR(c.gap_m, radial.norm() - radius - 0.5 * kThick, 1e-9);
         EXPECT_LT((normalOf(c) - radial.normalized()).norm(), 1e-6);
-        if (c.key.feature[1] < 0) ++nodes_held[c.key.feature[0]];
+        EXPECT_LT(c.key.feature[1], 0);  // chords of 0.2 radii bend with the cylinder: their ends carry them
+        ++nodes_held[c.key.feature[0]];
       }
       for (const int held : nodes_held) EXPECT_EQ(held, 1);
-      // The middle of each chord dips in by the sagitta.
-      const double deepest =
-          std::min_element(contacts.begin(), contacts.end(), [](auto& a, auto& b) { return a.gap_m < b.gap_m; })->gap_m;
-      EXPECT_NEAR(deepest, away * std::cos(0.5 * kPi / rows) - radius - 0.5 * kThick, 1e-9);
     }
   }
 }
