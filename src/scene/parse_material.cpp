@@ -20,6 +20,10 @@ constexpr std::pair<const char*, ElasticModel> kModels[] = {{"linear", ElasticMo
                                                             {"mass_spring", ElasticModel::kMassSpring},
                                                             {"membrane", ElasticModel::kMembrane}};
 
+constexpr std::pair<const char*, Dilatation> kDilatations[] = {{"auto", Dilatation::kAuto},
+                                                               {"element", Dilatation::kElement},
+                                                               {"patch", Dilatation::kPatch}};
+
 ElasticModel parseModel(const YamlCursor& cursor, bool is_membrane) {
   const ElasticModel model = cursor.choice(kModels);
   if ((model == ElasticModel::kMembrane) == is_membrane) return model;
@@ -58,6 +62,13 @@ MaterialDescription parseMaterial(const YamlCursor& cursor, bool is_membrane) {
   MaterialDescription material;
   material.model = is_membrane ? ElasticModel::kMembrane : ElasticModel::kCorotational;
   if (const YamlCursor* value = map.find("model")) material.model = parseModel(*value, is_membrane);
+  if (const YamlCursor* value = map.find("dilatation")) {
+    material.dilatation = value->choice(kDilatations);
+    if (material.dilatation == Dilatation::kPatch && material.model != ElasticModel::kLinear &&
+        material.model != ElasticModel::kCorotational) {
+      value->fail("is \"patch\", which only the models linear and corotational know; remove the key");
+    }
+  }
   material.youngs_modulus_pa = map.get("youngs_modulus_pa").number(kYoungRange);
   material.poissons_ratio = map.get("poissons_ratio").number(kPoissonRange);
   material.density_kg_per_m3 = map.get("density_kg_per_m3").number(kDensityRange);

@@ -23,7 +23,7 @@ const std::map<MapKind, SceneMapKeys>& tables() {
       {MapKind::kShell, {"tissues[].shell", {"file", "scale_m_per_unit", "thickness_m"}}},
       {MapKind::kMaterial,
        {"tissues[].material",
-        {"model", "youngs_modulus_pa", "poissons_ratio", "density_kg_per_m3", "bending_stiffness_n_m"}}},
+        {"model", "dilatation", "youngs_modulus_pa", "poissons_ratio", "density_kg_per_m3", "bending_stiffness_n_m"}}},
       {MapKind::kDamping, {"tissues[].damping", {"mass_per_s", "stiffness_s"}}},
       {MapKind::kFixedRegion, {"tissues[].fixed[]", {"box", "plane", "sphere"}}},
       {MapKind::kFixedBox, {"tissues[].fixed[].box", {"min_m", "max_m"}}},

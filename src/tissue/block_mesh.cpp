@@ -121,7 +121,7 @@ TetMesh makeBlockMesh(const BlockDescription& block) {
       for (const double x : axes[0]) mesh.positions.col(node++) = Vector3(x, y, z);
     }
   }
-  mesh.tetrahedra.reserve(static_cast<std::size_t>(5 * total));
+  mesh.tetrahedra.reserve(static_cast<std::size_t>(kTetrahedraPerCell * total));
   for (int k = 0; k < block.cells[2]; ++k) {
     for (int j = 0; j < block.cells[1]; ++j) {
       for (int i = 0; i < block.cells[0]; ++i) appendCell({i, j, k}, block.cells, mesh.tetrahedra);

@@ -1,20 +1,47 @@
 #include "tissue_contact/tissue/make_elasticity.h"
 
+#include <algorithm>
 #include <stdexcept>
 
+#include "element_patches.h"
 #include "tissue_contact/tissue/mass_spring.h"
+#include "tissue_contact/tissue/mean_dilatation.h"
 #include "tissue_contact/tissue/neo_hookean.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 namespace tissue_contact {
 
+namespace {
+
+bool hasPatches(ElasticModel model) { return model == ElasticModel::kLinear || model == ElasticModel::kCorotational; }
+
+}  // namespace
+
+bool averagesDilatation(const ElementMaterials& materials) {
+  const MaterialDescription& first = materials.materials.at(0);
+  if (first.dilatation != Dilatation::kAuto) return first.dilatation == Dilatation::kPatch;
+  return hasPatches(first.model) &&
+         std::any_of(materials.materials.begin(), materials.materials.end(),
+                     [](const MaterialDescription& one) { return one.poissons_ratio >= kAveragedPoissonsRatio; });
+}
+
 std::unique_ptr<const Elasticity> makeVolumeElasticity(const NodalVectors& rest,
                                                        const std::vector<Tetrahedron>& tetrahedra,
                                                        const std::vector<bool>& fixed,
-                                                       const ElementMaterials& materials) {
-  switch (materials.materials.at(0).model) {
+                                                       const ElementMaterials& materials, int cell_size) {
+  const MaterialDescription& first = materials.materials.at(0);
+  if (first.dilatation == Dilatation::kPatch && !hasPatches(first.model)) {
+    throw std::invalid_argument("dilatation 'patch' is for models linear and corotational, not " +
+                                std::string(elasticModelName(first.model)));
+  }
+  switch (first.model) {
     case ElasticModel::kLinear:
     case ElasticModel::kCorotational:
+      if (averagesDilatation(materials)) {
+        return std::make_unique<MeanDilatation>(
+            rest, tetrahedra, fixed, materials,
+            cell_size > 0 ? patchesByCells(tetrahedra.size(), cell_size) : patchesByFaces(tetrahedra));
+      }
       return std::make_unique<TetElasticity>(rest, tetrahedra, fixed, materials);
     case ElasticModel::kNeoHookean:
       return std::make_unique<NeoHookean>(rest, tetrahedra, fixed, materials);

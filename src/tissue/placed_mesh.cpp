@@ -35,6 +35,7 @@ void setGeometry(const TissueDescription& description, const std::string& source
   const auto inFile = [&](const std::string& file) { return source + ", mesh file '" + file + "'"; };
   if (const auto* block = std::get_if<BlockDescription>(&description.geometry)) {
     setVolume(makeBlockMesh(*block), source, placed);
+    placed.cell_size = kTetrahedraPerCell;
   } else if (const auto* mesh = std::get_if<MeshDescription>(&description.geometry)) {
     setVolume(loadTetMesh(*mesh), inFile(mesh->file), placed);
   } else if (const auto* sheet = std::get_if<SheetDescription>(&description.geometry)) {

@@ -1,6 +1,7 @@
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 #include <Eigen/SVD>
+#include <utility>
 
 #include "element_kernel.h"
 #include "tet_elements.h"
@@ -58,19 +59,26 @@ TetElasticity::TetElasticity(const NodalVectors& rest, const std::vector<Tetrahe
     : corotational_(materials.materials.at(0).model == ElasticModel::kCorotational),
       tets_(std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, lameParameters)) {}
 
+TetElasticity::TetElasticity(bool corotational, std::unique_ptr<const TetElements> tets)
+    : corotational_(corotational), tets_(std::move(tets)) {}
+
 TetElasticity::~TetElasticity() = default;
 
 std::unique_ptr<Elasticity::State> TetElasticity::makeState() const {
+  auto state = std::make_unique<RotationState>();
+  prepare(*state);
+  return state;
+}
+
+void TetElasticity::prepare(RotationState& state) const {
   RotationBatch identity{};
   identity[0].fill(1.0);
-  auto state = std::make_unique<RotationState>();
-  state->rotations.assign(tets_->batches.size(), identity);
-  state->tangent_rotations = state->rotations;
-  state->turned.assign(tets_->batches.size(), 0);
-  tets_->prepare(*state);
+  state.rotations.assign(tets_->batches.size(), identity);
+  state.tangent_rotations = state.rotations;
+  state.turned.assign(tets_->batches.size(), 0);
+  tets_->prepare(state);
   const auto add = tets_->damps ? addStiffness<true> : addStiffness<false>;
-  for (const TetElement& element : tets_->elements) add(element, Quaternion::Identity(), 1.0, *state);
-  return state;
+  for (const TetElement& element : tets_->elements) add(element, Quaternion::Identity(), 1.0, state);
 }
 
 template <bool kDamps>

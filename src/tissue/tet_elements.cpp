@@ -1,6 +1,7 @@
 #include "tet_elements.h"
 
 #include <Eigen/LU>
+#include <utility>
 
 namespace tissue_contact {
 namespace {
@@ -38,8 +39,9 @@ std::vector<BatchMaterial> makeBatchMaterials(const std::vector<TetElement>& ele
 }  // namespace
 
 TetElements::TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
-                         const std::vector<bool>& fixed, const ElementMaterials& materials, Lame lame)
-    : damps(!materials.damping_s.empty()), pattern(BlockMatrix::forTetrahedra(tetrahedra, fixed)) {
+                         const std::vector<bool>& fixed, const ElementMaterials& materials, Lame lame,
+                         BlockMatrix couplings)
+    : damps(!materials.damping_s.empty()), pattern(std::move(couplings)) {
   for (const MaterialDescription& description : materials.materials) checkMaterial(description, "");
   elements.reserve(tetrahedra.size());
   bool same = true;

@@ -26,10 +26,13 @@ struct TetElement {
 struct TetElements {
   using Lame = LameParameters (*)(const MaterialDescription&);
 
-  /// @param lame the model's elastic parameters from a material. @throws std::invalid_argument for a material out of
-  /// range.
+  /// @param lame the model's elastic parameters from a material. @param couplings zero matrix with at least the blocks of
+  /// the tetrahedra. @throws std::invalid_argument for a material out of range.
   TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
-              const ElementMaterials& materials, Lame lame);
+              const ElementMaterials& materials, Lame lame, BlockMatrix couplings);
+  TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
+              const ElementMaterials& materials, Lame lame)
+      : TetElements(rest, tetrahedra, fixed, materials, lame, BlockMatrix::forTetrahedra(tetrahedra, fixed)) {}
 
   /// Zero matrices of the right pattern.
   void prepare(Elasticity::State& state) const;

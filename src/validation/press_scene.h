@@ -18,6 +18,7 @@ struct PressScene {
   double poissons_ratio = 0.45;
   double radius_m = 0.04;
   double mu = 0.0;
+  std::string dilatation = "patch";
   std::string solver = "{iterations: 150, tolerance: 1.0e-6}";
 
   double shearModulus() const { return youngs_modulus_pa / (2.0 * (1.0 + poissons_ratio)); }
@@ -43,8 +44,9 @@ inline Simulator makePress(const PressScene& scene) {
        << "]\n      cells: [" << scene.cells[0] << ", " << scene.cells[1] << ", " << scene.cells[2]
        << "]\n      grading: {x: {growth: " << scene.growth << "}, y: {growth: " << scene.growth
        << "}, z: {growth: " << scene.growth << ", fine_at: maximum}}\n"
-       << "    material: {model: linear, youngs_modulus_pa: " << scene.youngs_modulus_pa
-       << ", poissons_ratio: " << scene.poissons_ratio << ", density_kg_per_m3: 1000}\n"
+       << "    material: {model: linear, dilatation: " << scene.dilatation
+       << ", youngs_modulus_pa: " << scene.youngs_modulus_pa << ", poissons_ratio: " << scene.poissons_ratio
+       << ", density_kg_per_m3: 1000}\n"
        << "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
        << "instruments:\n";
   for (const char* const name : {"smooth", "rough"}) {

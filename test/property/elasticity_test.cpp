@@ -12,11 +12,11 @@
 #include <random>
 #include <stdexcept>
 
-#include "validation/elasticity_helpers.h"
 #include "tissue_contact/tissue/make_elasticity.h"
 #include "tissue_contact/tissue/membrane.h"
 #include "tissue_contact/tissue/sheet_mesh.h"
 #include "tissue_contact/tissue/tet_mesh.h"
+#include "validation/elasticity_helpers.h"
 
 namespace {
 std::atomic<long> allocations{0};
@@ -53,7 +53,7 @@ struct Model {
 void PrintTo(const Model& model, std::ostream* out) { *out << model.name; }
 
 MaterialDescription material(ElasticModel model, double E, double nu, double bending = -1.0) {
-  return {model, E, nu, 1000.0, bending};
+  return {model, E, nu, 1000.0, bending, Dilatation::kElement};
 }
 
 std::vector<bool> firstFixed(int fixed_nodes, Eigen::Index nodes) {
@@ -88,12 +88,20 @@ Body makeFlat(const ElementMaterials& materials, int fixed_nodes) { return makeS
 Body makeCurved(const ElementMaterials& materials, int fixed_nodes) { return makeSheet(materials, fixed_nodes, 15.0); }
 
 /// Three materials, 10 : 1 : 3, dealt out over the elements.
-ElementMaterials layered(ElasticModel model) {
+ElementMaterials layered(ElasticModel model, Dilatation dilatation = Dilatation::kElement) {
   ElementMaterials materials(material(model, 5e3, 0.4));
   materials.materials.push_back(material(model, 5e2, 0.1));
   materials.materials.push_back(material(model, 1.5e3, 0.3));
+  for (MaterialDescription& one : materials.materials) one.dilatation = dilatation;
   for (int e = 0; e < 40; ++e) materials.of_element.push_back(e * e % 3);
   return materials;
+}
+
+/// Volume averaged over patches, nearly incompressible.
+MaterialDescription averaged(ElasticModel model) {
+  MaterialDescription description = material(model, 5e3, 0.49);
+  description.dilatation = Dilatation::kPatch;
+  return description;
 }
 
 std::vector<Model> models() {
@@ -108,6 +116,9 @@ std::vector<Model> models() {
           {"MembraneCurvedAtRest", makeCurved, material(E::kMembrane, 5e4, 0.3)},
           {"LayeredLinear", makeBlock, layered(E::kLinear), false},
           {"LayeredCorotational", makeBlock, layered(E::kCorotational)},
+          {"MeanDilatationLinear", makeBlock, averaged(E::kLinear), false},
+          {"MeanDilatationCorotational", makeBlock, averaged(E::kCorotational)},
+          {"MeanDilatationLayered", makeBlock, layered(E::kCorotational, Dilatation::kPatch)},
           {"LayeredNeoHookean", makeBlock, layered(E::kNeoHookean)},
           {"LayeredMassSpring", makeBlock, layered(E::kMassSpring)},
           {"LayeredMembrane", makeFlat, layered(E::kMembrane)},

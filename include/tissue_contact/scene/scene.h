@@ -58,6 +58,13 @@ struct ShellDescription {
 /// kLinear to kMassSpring are for volumes (block, mesh); kMembrane is for surfaces (sheet, shell) and their only model.
 enum class ElasticModel { kLinear, kCorotational, kNeoHookean, kMassSpring, kMembrane };
 
+/// Over what a linear or corotational volume averages its change of volume.
+enum class Dilatation {
+  kAuto,     ///< kPatch from Poisson's ratio 0.3 on, where it pays; else kElement
+  kElement,  ///< each tetrahedron: locks as Poisson's ratio nears 1/2
+  kPatch     ///< the five tetrahedra of a block's cell, or about five neighbours of a mesh: does not
+};
+
 struct MaterialDescription {
   ElasticModel model = ElasticModel::kCorotational;
   double youngs_modulus_pa = 0.0;
@@ -65,6 +72,7 @@ struct MaterialDescription {
   double density_kg_per_m3 = 0.0;
   /// Membranes: bending stiffness per width, N m; negative: that of a plate, E h^3 / (12 (1 - nu^2)).
   double bending_stiffness_n_m = -1.0;
+  Dilatation dilatation = Dilatation::kAuto;
 };
 
 /// Damping matrix D = mass_per_s * M + stiffness_s * K (Rayleigh; the second part is Kelvin-Voigt's, with

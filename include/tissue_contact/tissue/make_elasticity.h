@@ -11,11 +11,20 @@
 
 namespace tissue_contact {
 
-/// @param rest 3 x n, m. @param materials all of the model of the first.
-/// @throws std::invalid_argument for a material out of range, or a membrane (see membrane.h), which a volume cannot be.
+/// From this Poisson's ratio on Dilatation::kAuto averages. Measured on 10 mm cells under a sphere of 5 mm radius: 80 % too
+/// stiff without and 28 % with it at 0.45, 50 % and 33 % at 0.3, for 1.5 to 1.9 times the time of a step.
+constexpr double kAveragedPoissonsRatio = 0.3;
+
+/// Whether volume changes of these materials are averaged over patches: what they ask for, or what kAuto chooses.
+bool averagesDilatation(const ElementMaterials& materials);
+
+/// @param rest 3 x n, m. @param materials all of the model and dilatation of the first. @param cell_size tetrahedra per
+///   cell where they come cell by cell (a generated block); 0: patches, where the material wants them, are found by faces.
+/// @throws std::invalid_argument for a material out of range, a membrane (see membrane.h), which a volume cannot be, or
+///   patches for a model without them.
 std::unique_ptr<const Elasticity> makeVolumeElasticity(const NodalVectors& rest,
                                                        const std::vector<Tetrahedron>& tetrahedra,
                                                        const std::vector<bool>& fixed,
-                                                       const ElementMaterials& materials);
+                                                       const ElementMaterials& materials, int cell_size = 0);
 
 }  // namespace tissue_contact

@@ -51,6 +51,13 @@ class TetElasticity : public Elasticity {
   /// the implicit Euler step itself.
   static constexpr double kTangentAngle = 0.01;
 
+ protected:
+  /// For models that add to this one: with their own parameters in the place of Lame's, and more couplings.
+  TetElasticity(bool corotational, std::unique_ptr<const TetElements> tets);
+
+  const TetElements& tets() const { return *tets_; }
+  void prepare(RotationState& state) const;
+
  private:
   template <bool kDamps>
   static void addStiffness(const TetElement& element, const Quaternion& rotation, double sign, State& state);

@@ -21,6 +21,9 @@ struct TetMesh {
 /// range, more than a million cells, or growth that makes the longest cell over a million times the shortest.
 TetMesh makeBlockMesh(const BlockDescription& block);
 
+/// Of makeBlockMesh(), whose tetrahedra come cell by cell.
+constexpr int kTetrahedraPerCell = 5;
+
 /// Reads Gmsh .msh (2.x, 4.0, 4.1) or legacy VTK (1 to 5), ASCII and binary; the contents decide which, not the name.
 /// Other elements than tetrahedra are skipped; tetrahedra of higher order are refused. Coordinates are multiplied by
 /// the scale. Node and element order is the file's; unreferenced nodes are dropped if the description says so, else

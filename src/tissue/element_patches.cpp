@@ -1,0 +1,90 @@
+#include "element_patches.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace tissue_contact {
+namespace {
+
+constexpr std::size_t kPatchSize = 5;
+
+/// Up to four neighbours of each tetrahedron, -1 at the boundary.
+std::vector<std::array<int, 4>> neighboursThroughFaces(const std::vector<Tetrahedron>& tetrahedra) {
+  std::vector<std::pair<std::array<int, 3>, std::pair<int, int>>> faces;  // nodes ascending; (tetrahedron, local face)
+  faces.reserve(4 * tetrahedra.size());
+  for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
+    for (int f = 0; f < 4; ++f) {
+      std::array<int, 3> nodes;
+      for (int i = 0, k = 0; i < 4; ++i) {
+        if (i != f) nodes[k++] = tetrahedra[e][i];
+      }
+      std::sort(nodes.begin(), nodes.end());
+      faces.push_back({nodes, {static_cast<int>(e), f}});
+    }
+  }
+  std::sort(faces.begin(), faces.end());
+  std::vector<std::array<int, 4>> neighbours(tetrahedra.size(), {-1, -1, -1, -1});
+  for (std::size_t i = 0; i + 1 < faces.size(); ++i) {
+    if (faces[i].first != faces[i + 1].first) continue;
+    const auto [a, side_of_a] = faces[i].second;
+    const auto [b, side_of_b] = faces[i + 1].second;
+    neighbours[a][side_of_a] = b;
+    neighbours[b][side_of_b] = a;
+  }
+  return neighbours;
+}
+
+/// The tetrahedron outside all patches that shares most faces with `patch`, of those the first; -1: none.
+int nextFor(const std::vector<int>& patch, const std::vector<std::array<int, 4>>& neighbours,
+            const std::vector<int>& patch_of) {
+  int best = -1;
+  std::ptrdiff_t most = 0;
+  for (const int member : patch) {
+    for (const int candidate : neighbours[member]) {
+      if (candidate < 0 || patch_of[candidate] >= 0) continue;
+      const auto shared = std::count_if(neighbours[candidate].begin(), neighbours[candidate].end(), [&](int other) {
+        return std::find(patch.begin(), patch.end(), other) != patch.end();
+      });
+      if (shared > most || (shared == most && candidate < best)) {
+        most = shared;
+        best = candidate;
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<int> patchesByFaces(const std::vector<Tetrahedron>& tetrahedra) {
+  const std::vector<std::array<int, 4>> neighbours = neighboursThroughFaces(tetrahedra);
+  std::vector<int> patch_of(tetrahedra.size(), -1);
+  int patches = 0;
+  for (std::size_t first = 0; first < tetrahedra.size(); ++first) {
+    if (patch_of[first] >= 0) continue;
+    std::vector<int> patch;
+    for (int next = static_cast<int>(first); next >= 0 && patch.size() < kPatchSize;) {
+      patch_of[next] = patches;
+      patch.push_back(next);
+      next = nextFor(patch, neighbours, patch_of);
+    }
+    // What is left between others would be stiff on its own: it joins a neighbour.
+    const auto joined = std::find_if(neighbours[first].begin(), neighbours[first].end(),
+                                     [&](int other) { return other >= 0 && patch_of[other] != patches; });
+    if (2 * patch.size() < kPatchSize && joined != neighbours[first].end()) {
+      for (const int member : patch) patch_of[member] = patch_of[*joined];
+    } else {
+      ++patches;
+    }
+  }
+  return patch_of;
+}
+
+std::vector<int> patchesByCells(std::size_t tetrahedra, int cell_size) {
+  std::vector<int> patch_of(tetrahedra);
+  for (std::size_t e = 0; e < tetrahedra; ++e) patch_of[e] = static_cast<int>(e) / cell_size;
+  return patch_of;
+}
+
+}  // namespace tissue_contact

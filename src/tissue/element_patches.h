@@ -1,0 +1,22 @@
+/// @file
+/// Room `tissue`, private: neighbouring tetrahedra in groups, over which their change of volume is averaged.
+#pragma once
+
+#include <vector>
+
+#include "tissue_contact/core/types.h"
+
+namespace tissue_contact {
+
+/// Patch of every tetrahedron, numbered from 0 without gaps. Tetrahedra of a patch are connected through faces. Grown
+/// element by element in the order of their indices, so the same mesh gives the same patches.
+///
+/// Sizes: linear tetrahedra have 5 to 6 elements per node, so one constraint of volume per element asks for more than the
+/// three coordinates of the node can give; patches of 5 leave about three coordinates per constraint, the ratio of the
+/// continuum (Hughes, The Finite Element Method, 1987, section 4.3.7).
+std::vector<int> patchesByFaces(const std::vector<Tetrahedron>& tetrahedra);
+
+/// The same where tetrahedra come cell by cell, `cell_size` each.
+std::vector<int> patchesByCells(std::size_t tetrahedra, int cell_size);
+
+}  // namespace tissue_contact

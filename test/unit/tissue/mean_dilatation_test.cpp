@@ -1,0 +1,121 @@
+/// Volume changes averaged over patches: the patches, where nothing may change, and where locking must go.
+#include "tissue_contact/tissue/mean_dilatation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "tissue/element_patches.h"
+#include "tissue_contact/tissue/make_elasticity.h"
+#include "tissue_contact/tissue/tet_mesh.h"
+#include "validation/elasticity_helpers.h"
+
+namespace tissue_contact {
+namespace {
+
+TetMesh block(const Vector3& size_m, const std::array<int, 3>& cells) {
+  BlockDescription description;
+  description.size_m = size_m;
+  description.cells = cells;
+  return makeBlockMesh(description);
+}
+
+MaterialDescription material(double poissons_ratio, Dilatation dilatation) {
+  MaterialDescription description;
+  description.model = ElasticModel::kLinear;
+  description.youngs_modulus_pa = 1e4;
+  description.poissons_ratio = poissons_ratio;
+  description.density_kg_per_m3 = 1000.0;
+  description.dilatation = dilatation;
+  return description;
+}
+
+bool shareAFace(const Tetrahedron& a, const Tetrahedron& b) {
+  return std::count_if(a.begin(), a.end(), [&](int n) { return std::find(b.begin(), b.end(), n) != b.end(); }) == 3;
+}
+
+TEST(Patches, CoverAMeshWithConnectedGroupsOfAboutFive) {
+  const TetMesh mesh = block(Vector3(0.05, 0.04, 0.03), {5, 4, 3});
+  const std::vector<int> patch_of = patchesByFaces(mesh.tetrahedra);
+  std::map<int, std::vector<Tetrahedron>> patches;
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) patches[patch_of[e]].push_back(mesh.tetrahedra[e]);
+  EXPECT_EQ(patches.begin()->first, 0);
+  EXPECT_EQ(patches.rbegin()->first, static_cast<int>(patches.size()) - 1);
+  EXPECT_NEAR(static_cast<double>(mesh.tetrahedra.size()) / static_cast<double>(patches.size()), 5.0, 1.0);
+  for (const auto& [patch, members] : patches) {
+    EXPECT_GE(members.size(), 3u) << patch;
+    std::set<std::size_t> reached = {0};
+    for (std::size_t pass = 0; pass < members.size(); ++pass) {
+      for (std::size_t i = 0; i < members.size(); ++i) {
+        const bool beside = std::any_of(reached.begin(), reached.end(),
+                                        [&](std::size_t k) { return shareAFace(members[i], members[k]); });
+        if (beside) reached.insert(i);
+      }
+    }
+    EXPECT_EQ(reached.size(), members.size()) << patch;
+  }
+}
+
+TEST(Patches, WrongNumbersAreRefused) {
+  const TetMesh mesh = block(Vector3(0.01, 0.01, 0.01), {1, 1, 1});
+  const std::vector<bool> fixed(8, false);
+  const MaterialDescription soft = material(0.3, Dilatation::kPatch);
+  EXPECT_THROW(MeanDilatation(mesh.positions, mesh.tetrahedra, fixed, soft, {0, 0, 0}), std::invalid_argument);
+  EXPECT_THROW(MeanDilatation(mesh.positions, mesh.tetrahedra, fixed, soft, {0, 0, -1, 0, 0}), std::invalid_argument);
+  EXPECT_THROW(MeanDilatation(mesh.positions, mesh.tetrahedra, fixed, soft, {0, 0, 2, 2, 0}), std::invalid_argument);
+}
+
+// Where all elements are strained alike, averaging changes nothing.
+TEST(MeanDilatation, UniformStrainGivesTheForcesOfPlainTetrahedra) {
+  const TetMesh mesh = block(Vector3(0.03, 0.02, 0.02), {3, 2, 2});
+  const std::vector<bool> fixed(mesh.positions.cols(), false);
+  Matrix3 F;
+  F << 1.02, 0.01, -0.02, 0.005, 0.97, 0.01, 0.0, 0.03, 1.01;
+  const NodalVectors x = F * mesh.positions;
+  const auto forces = [&](Dilatation dilatation) {
+    return elasticForces(*makeVolumeElasticity(mesh.positions, mesh.tetrahedra, fixed, material(0.45, dilatation)), x);
+  };
+  const NodalVectors plain = forces(Dilatation::kElement);
+  EXPECT_LE((forces(Dilatation::kPatch) - plain).norm(), 1e-12 * plain.norm());
+}
+
+/// Deflection of the free end of a cantilever, 0.10 x 0.02 x 0.02 m in 20 x 4 x 4 cells, over that of Timoshenko's beam
+/// F L^3 / (3 E I) + F L / (k G A), k = 5/6.
+double deflectionRatio(double poissons_ratio, Dilatation dilatation, int cell_size) {
+  const TetMesh mesh = block(Vector3(0.1, 0.02, 0.02), {20, 4, 4});
+  const Eigen::Index nodes = mesh.positions.cols();
+  const std::vector<bool> none(static_cast<std::size_t>(nodes), false);
+  const auto elasticity =
+      makeVolumeElasticity(mesh.positions, mesh.tetrahedra, none, material(poissons_ratio, dilatation), cell_size);
+  std::vector<bool> prescribed(static_cast<std::size_t>(3 * nodes), false);
+  NodalVectors loads = NodalVectors::Zero(3, nodes);
+  for (Eigen::Index i = 0; i < nodes; ++i) {
+    if (mesh.positions(0, i) < -0.0499) std::fill_n(prescribed.begin() + 3 * i, 3, true);
+    if (mesh.positions(0, i) > 0.0499) loads(2, i) = 1e-3 / 25.0;
+  }
+  NodalVectors u = NodalVectors::Zero(3, nodes);
+  solveStatic(elasticity->makeState()->stiffness, prescribed, loads, u);
+  double end = 0.0;
+  for (Eigen::Index i = 0; i < nodes; ++i) end += loads(2, i) * u(2, i) / 1e-3;
+  const double shear = 1e4 / (2.0 * (1.0 + poissons_ratio));
+  const double beam = 1e-3 * 1e-3 / (3.0 * 1e4 * 1.6e-7 / 12.0) + 1e-3 * 0.1 / (5.0 / 6.0 * shear * 4e-4);
+  return end / beam;
+}
+
+// Four cells over the thickness. From nu = 0.3 to 0.499 plain tetrahedra lose a sixth of their deflection (measured: 0.875
+// to 0.727), averaged ones a twenty-fifth (0.904 to 0.866); what is missing at 0.3 is the mesh's stiffness in bending.
+TEST(MeanDilatation, BendingDoesNotLockAsPoissonsRatioNearsOneHalf) {
+  const auto lost = [](Dilatation dilatation, int cell_size) {
+    return 1.0 - deflectionRatio(0.499, dilatation, cell_size) / deflectionRatio(0.3, dilatation, cell_size);
+  };
+  EXPECT_GE(lost(Dilatation::kElement, 5), 0.15);
+  EXPECT_LE(lost(Dilatation::kPatch, 5), 0.05);
+  EXPECT_LE(lost(Dilatation::kPatch, 0), 0.05);
+  EXPECT_GE(deflectionRatio(0.499, Dilatation::kPatch, 5), 0.85);
+  EXPECT_LE(deflectionRatio(0.499, Dilatation::kPatch, 5), 1.0);
+}
+
+}  // namespace
+}  // namespace tissue_contact
