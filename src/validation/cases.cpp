@@ -11,6 +11,9 @@ const std::vector<ValidationCase>& validationCases() {
       {"elasticity", "J: patch test, bar, cantilever and bent beam of linear tetrahedra", validateElasticity},
       {"elastic-models", "J: neo-Hookean and mass-spring bars, layers in series, creep", validateElasticModels},
       {"membrane", "J: patch test, strips, plates in bending and twist", validateMembrane},
+      {"layer-indentation", "F: sphere on a bonded layer", validateLayerIndentation},
+      {"partial-slip", "G, H: a sphere is dragged; an annulus slides while the centre holds", validatePartialSlip},
+      {"benchmark-block", "H, J: press force over meshes, equilibrium, determinism", validateBenchmarkBlock},
       {"grasp", "jaws close on a flap, lift, hold, pull until it slips, open; mu_s >> mu_k too", validateGrasp},
   };
   return cases;

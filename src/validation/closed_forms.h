@@ -10,6 +10,9 @@ void validateIncline(Report& report);
 void validateElasticity(Report& report);
 void validateElasticModels(Report& report);
 void validateMembrane(Report& report);
+void validateLayerIndentation(Report& report);
+void validatePartialSlip(Report& report);
+void validateBenchmarkBlock(Report& report);
 void validateGrasp(Report& report);
 
 }  // namespace tissue_contact

@@ -1,11 +1,11 @@
 /// Form F: a rigid sphere pressed without friction into an elastic layer on a rigid base. Hertz on a half space, times a
 /// series in chi = contact radius / thickness for a layer bonded to its base (Dimitriadis et al. 2002).
-#include <gtest/gtest.h>
-
 #include <cmath>
-#include <iostream>
+#include <string>
 
+#include "validation/closed_forms.h"
 #include "validation/press_scene.h"
+#include "validation/report.h"
 
 namespace tissue_contact {
 namespace {
@@ -41,32 +41,35 @@ double pressForce(double refinement, double nu) {
   scene.growth = std::pow(1.1537, 1.0 / refinement);
   scene.poissons_ratio = nu;
   scene.radius_m = kRadius;
+  scene.dilatation = "patch";
   scene.solver = "{iterations: 300, tolerance: 1.0e-6}";
   Simulator simulator = makePress(scene);
   pressSmooth(simulator, kDepth, 6);
   return simulator.wrench(0).force.z();
 }
 
-// Both errors of the mesh make it stiffer and go with the square of its cells: facets that may not cut the sphere (their
-// corners lie deeper by a quarter of cell^2 / R, 2 % of the depth at 1.4 mm) and linear tetrahedra. 9 % are left at 1.4 mm
-// cells; two meshes of the ratio 1.5 extrapolate to 5 % or less. A half space would be 14 to 17 % off.
-TEST(LayerIndentation, ForceOfASphereOnABondedLayer) {
+}  // namespace
+
+// The mesh's error goes with the square of its cells: two meshes of the ratio 1.5 extrapolate most of it away. What is left
+// (2.3 % at nu .3, -0.3 % at .45) holds the free sides, under 1 %, and the contact's edge, which jumps from node to node; it
+// was not split further. 3 % covers it, and is far from the 14 to 17 % of the half space.
+void validateLayerIndentation(Report& report) {
   constexpr double kRatio = 1.5;
   for (const double nu : {0.3, 0.45}) {
+    const std::string at = nu == 0.3 ? ", nu .3" : ", nu .45";
     const double expected = layerForce(1e4, nu);
     const double coarse = pressForce(1.0, nu);
+    report.progress(nu == 0.3 ? 0.1 : 0.6);
     const double fine = pressForce(kRatio, nu);
+    report.progress(nu == 0.3 ? 0.5 : 1.0);
     const double extrapolated = (kRatio * kRatio * fine - coarse) / (kRatio * kRatio - 1.0);
-    std::cout << "nu " << nu << ": " << expected << " N; 2.2 mm cells " << 100.0 * (coarse / expected - 1.0)
-              << " %, 1.4 mm " << 100.0 * (fine / expected - 1.0) << " %, extrapolated "
-              << 100.0 * (extrapolated / expected - 1.0) << " %; half space "
-              << 100.0 * (halfSpaceForce(1e4, nu) / expected - 1.0) << " %\n";
-    EXPECT_GT(coarse, fine);
-    EXPECT_GT(fine, expected);
-    EXPECT_NEAR(fine, expected, 0.10 * expected);
-    EXPECT_NEAR(extrapolated, expected, 0.05 * expected);
+    report.near("press force, 1.4 mm cells" + at, "N", expected, fine, 0.05 * expected, "Dimitriadis et al. 2002");
+    report.near("press force, extrapolated" + at, "N", expected, extrapolated, 0.03 * expected,
+                "Dimitriadis et al. 2002");
+    report.convergence({"press force" + at, "N", "cell, m", {{0.0022, coarse}, {0.0022 / kRatio, fine}}, expected});
+    report.note("a half space would be " + std::to_string(100.0 * (halfSpaceForce(1e4, nu) / expected - 1.0)) +
+                " % off" + at);
   }
 }
 
-}  // namespace
 }  // namespace tissue_contact
