@@ -7,7 +7,14 @@ namespace tissue_contact {
 
 const std::vector<ValidationCase>& validationCases() {
   static const std::vector<ValidationCase> cases = {
+      {"one-contact", "A: stick, slip, threshold and hysteresis of one contact, to round-off", validateOneContact},
       {"incline", "B: a block on an incline holds, creeps not, slides at g (sin - mu cos)", validateIncline},
+      {"directional-incline", "I: orthotropic and asymmetric friction on an incline", validateDirectionalIncline},
+      {"held-contact", "B: what static friction holds does not creep, point by point", validateHeldContact},
+      {"spring-block", "C: a block on a spring stops where friction holds it; order in dt", validateSpringBlock},
+      {"stick-slip", "C: a block on a spring and a belt, mu_s > mu_k and mu_s = mu_k", validateStickSlip},
+      {"shear-lag", "D: a strip pulled over a floor, both relaxations; order in the mesh", validateShearLag},
+      {"capstan", "E: a belt on a drum, a polygon of nodes; order in the turn per facet", validateCapstan},
       {"elasticity", "J: patch test, bar, cantilever and bent beam of linear tetrahedra", validateElasticity},
       {"elastic-models", "J: neo-Hookean and mass-spring bars, layers in series, creep", validateElasticModels},
       {"membrane", "J: patch test, strips, plates in bending and twist", validateMembrane},

@@ -6,7 +6,14 @@ namespace tissue_contact {
 
 class Report;
 
+void validateOneContact(Report& report);
 void validateIncline(Report& report);
+void validateDirectionalIncline(Report& report);
+void validateHeldContact(Report& report);
+void validateSpringBlock(Report& report);
+void validateStickSlip(Report& report);
+void validateShearLag(Report& report);
+void validateCapstan(Report& report);
 void validateElasticity(Report& report);
 void validateElasticModels(Report& report);
 void validateMembrane(Report& report);
