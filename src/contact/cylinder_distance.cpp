@@ -6,8 +6,8 @@
 /// has a closed form; all are tried.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "contact/gjk_location.h"
 #include "contact/shape_distance.h"
 #include "contact/soft_minimum.h"
 #include "contact/tolerances.h"
@@ -18,7 +18,7 @@ namespace {
 class CylinderDistance : public ShapeDistance {
  public:
   CylinderDistance(double radius, double half_length)
-      : radius_(radius), half_length_(half_length), size_(std::min(radius, half_length)), gjk_(radius, half_length) {}
+      : radius_(radius), half_length_(half_length), size_(std::min(radius, half_length)) {}
 
   double size() const override { return size_; }
   Vector3 halfExtents(const Matrix3& R_WS) const override {
@@ -42,12 +42,13 @@ class CylinderDistance : public ShapeDistance {
   void offerEdge(const TrianglePoints& triangle, int edge, SoftMinimum& minimum) const;
   void offerInside(const TrianglePoints& triangle, SoftMinimum& minimum) const;
   void addNormals(const Vector3& p, ClosestPoint& result) const;
+  bool nearestInside(const TrianglePoints& triangle, Vector3& weights) const;
+  double nearestOnEdge(const Vector3& a, const Vector3& d) const;
   void findBeyondRim(const TrianglePoints& triangle, ClosestPoint& result) const;
 
   double radius_;
   double half_length_;
   double size_;
-  GjkLocation gjk_;
 };
 
 /// Outward direction of the side at p; x on the axis itself, where all are gradients.
@@ -157,12 +158,45 @@ void CylinderDistance::addNormals(const Vector3& p, ClosestPoint& result) const 
   if (-std::abs(p.z()) - half_length_ >= active) result.gradients.add(-capNormal(p));
 }
 
+/// The point below the cylinder's foremost point towards the triangle's plane, if the triangle holds it. Where that is a
+/// line or a cap, an edge is as near.
+bool CylinderDistance::nearestInside(const TrianglePoints& triangle, Vector3& weights) const {
+  if (triangle.normal.isZero(0.0)) return false;
+  const double height = triangle.normal.dot(triangle.corners[0]);
+  const Vector3 n = std::copysign(1.0, height) * triangle.normal;
+  const double tilt = std::sqrt(n.x() * n.x() + n.y() * n.y());
+  if (!(tilt > 0.0)) return false;
+  const Vector3 foremost(radius_ * n.x() / tilt, radius_ * n.y() / tilt, std::copysign(half_length_, n.z()));
+  if (!(n.dot(foremost) < std::abs(height))) return false;  // the plane cuts the cylinder
+  weights = projectOnTriangle(triangle.corners, foremost);
+  return weights.minCoeff() > 0.0;
+}
+
+/// Parameter in [0, 1] of the point of a + u d nearest to the cylinder: the distance is convex along it.
+double CylinderDistance::nearestOnEdge(const Vector3& a, const Vector3& d) const {
+  constexpr int kMaxSteps = 54;  // to round-off
+  double low = 0.0;
+  double high = 1.0;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const double middle = 0.5 * (low + high);
+    (at(a + middle * d).normal.dot(d) > 0.0 ? high : low) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// By location, not by value: distances that differ by round-off are 1e-8 of the size apart.
 void CylinderDistance::findBeyondRim(const TrianglePoints& triangle, ClosestPoint& result) const {
   result.beyond_rim = true;
-  Vector3 nearest;
-  if (gjk_.nearest(triangle.corners, nearest)) {
-    const Vector3 weights = projectOnTriangle(triangle.corners, nearest);
-    if (at(triangle.pointAt(weights)).distance < result.distance) result.weights = weights;
+  if (!nearestInside(triangle, result.weights)) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int edge = 0; edge < 3; ++edge) {
+      const Vector3& a = triangle.corners[edge];
+      const double u = nearestOnEdge(a, triangle.corners[(edge + 1) % 3] - a);
+      const double distance = at(triangle.pointAt(weightsOnEdge(edge, u))).distance;
+      if (!(distance < least)) continue;
+      least = distance;
+      result.weights = weightsOnEdge(edge, u);
+    }
   }
   const SignedDistance there = at(triangle.pointAt(result.weights));
   result.distance = there.distance;

@@ -29,6 +29,17 @@ double travel(const Vector3& center, double bounding_radius, const Pose& X_start
   return (X_end * center - X_start * center).norm() + angle * bounding_radius;
 }
 
+/// Largest angle, rad, by which a joint of the model turns, mimic joints included. What slides ends farther off the
+/// farther it went; what turns need not.
+double farthestTurn(const RobotModel& model, const VectorX& start, const VectorX& target) {
+  double farthest = 0.0;
+  for (const RobotModel::Link& link : model.links()) {
+    if (link.motion != RobotModel::Link::Motion::kRevolute) continue;
+    farthest = std::max(farthest, std::abs(link.multiplier * (target[link.joint] - start[link.joint])));
+  }
+  return farthest;
+}
+
 }  // namespace
 
 InstrumentMotion::InstrumentMotion(const std::vector<Instrument>& instruments)
@@ -61,15 +72,15 @@ void InstrumentMotion::place(int instrument, const VectorX& positions) {
 int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets) {
   // A duration that is a whole number of steps up to round-off of the stamps must not get one step more.
   constexpr double kRoundOff = 1e-9;
-  constexpr double kLargestJointMove = 1.0;  // rad, or m
+  constexpr double kLargestTurn = 1.0;  // rad
   double joint_steps = 1.0;
   for (std::size_t i = 0; i < states_.size(); ++i) {
     State& state = states_[i];
     state.start = state.positions;
     state.target = targets[i];
     if (instruments_[i].isObstacle()) continue;
-    const double farthest = (state.target - state.start).cwiseAbs().maxCoeff();
-    joint_steps = std::max(joint_steps, std::ceil(farthest / kLargestJointMove));
+    const double turn = farthestTurn(instruments_[i].model(), state.start, state.target);
+    joint_steps = std::max(joint_steps, std::ceil(turn / kLargestTurn));
   }
   const double by_time = std::max(1.0, std::ceil(duration_s / max_step_s - kRoundOff));
   double steps = std::max(by_time, joint_steps);

@@ -20,7 +20,7 @@ class InstrumentMotion {
 
   /// Prepares the interval to `targets` (sizes checked by the caller) and returns the number of equal steps to cut it
   /// into: none longer than max_step_s, none in which a shape moves more than half its smallest half extent, so that it
-  /// cannot pass through a feature thinner than itself, and none in which a joint moves more than 1 rad or 1 m (a full turn
+  /// cannot pass through a feature thinner than itself, and none in which a joint turns by more than 1 rad (a full turn
   /// ends where it began). A motion that would need more than kMaxTravelSteps steps is a jump: the instruments are placed
   /// at the targets.
   int begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets);
