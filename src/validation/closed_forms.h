@@ -21,5 +21,7 @@ void validateLayerIndentation(Report& report);
 void validatePartialSlip(Report& report);
 void validateBenchmarkBlock(Report& report);
 void validateGrasp(Report& report);
+void validateInvariances(Report& report);
+void validatePloughing(Report& report);
 
 }  // namespace tissue_contact

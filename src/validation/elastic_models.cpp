@@ -105,8 +105,8 @@ void neoHookeanBar(Report& report) {
       lateral_error = std::max(lateral_error, std::abs(got.lateral - lateral));
       residual = std::max(residual, got.residual);
     }
-    const std::string name = "neo-Hookean bar, nu " + text(nu) + ", stretch .6 to 1.8: ";
-    const char* const source = "uniaxial stress of the energy";
+    const std::string name = "neo-Hookean bar, nu " + text(nu) + ": ";
+    const char* const source = "uniaxial stress of the energy, stretch .6 to 1.8";
     report.atMost(name + "stress error", "", 1e-8, stress_error, source);
     report.atMost(name + "lateral error", "", 1e-8, lateral_error, source);
     report.atMost(name + "imbalance", "", 1e-9, residual, "equilibrium");

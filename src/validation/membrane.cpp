@@ -103,7 +103,7 @@ void stripInTension(Report& report) {
     report.near(name + "elongation", "m", strain * kLength, x.row(0).maxCoeff() - 0.5 * kLength,
                 1e-10 * strain * kLength, kInTension);
     // Round-off of direct solutions.
-    report.atMost(name + "worst error of the tangent's answer", "", 1e-10,
+    report.atMost(name + "worst error of the tangent", "", 1e-10,
                   (u.row(0) - expected).cwiseAbs().maxCoeff() / (strain * kLength), kInTension);
     report.atMost(name + "worst error of the equilibrium", "", 1e-10,
                   (x.row(0) - mesh.positions.row(0) - expected).cwiseAbs().maxCoeff() / (strain * kLength), kInTension);
