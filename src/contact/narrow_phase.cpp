@@ -150,7 +150,7 @@ double NarrowPhase::addCorners(int triangle, const TrianglePoints& points) {
     const Vector3 weights = snapped(projectOnTriangle(points.corners, foot));
     const double beside = (points.pointAt(weights) - foot).norm();
     if (beside > kTouch * call_.shape->size()) {
-      if (beside < -gap) addCornerInFold(triangle, weights, corner);
+      if (beside < -gap) lowest = std::min(lowest, addCornerInFold(triangle, corner));
       continue;
     }
     if (add(triangle, weights, corner.index, forward, gap)) lowest = std::min(lowest, gap);
@@ -158,19 +158,25 @@ double NarrowPhase::addCorners(int triangle, const TrianglePoints& points) {
   return lowest;
 }
 
-/// A corner that is below all triangles around an edge or vertex yet beside each of them is under a valley of the
-/// surface, where projections on the triangles leave a gap: it is pushed back along the mean of their normals.
-void NarrowPhase::addCornerInFold(int triangle, const Vector3& weights, const ShapeCorner& corner) {
-  if (half_thickness_ > 0.0) return;
+/// Under a valley of the surface projections on its triangles leave a hole: a corner below all triangles around an edge
+/// or vertex that is their nearest point, each of them. It is pushed back along the mean of their normals. Returns its
+/// gap.
+double NarrowPhase::addCornerInFold(int triangle, const ShapeCorner& corner) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  if (half_thickness_ > 0.0) return kNone;
+  const auto nearest = [&](int other) { return snapped(projectOnTriangle(trianglePoints(other).corners, corner.p_S)); };
+  const Vector3 weights = nearest(triangle);
+  const SurfaceFeature feature = topology_.featureOf(triangle, weights);
   const Vector3 p = trianglePoints(triangle).pointAt(weights);
   Vector3 outward = Vector3::Zero();
-  const bool above_any = topology_.anyTriangleOf(topology_.featureOf(triangle, weights), [&](int other) {
+  const bool elsewhere = topology_.anyTriangleOf(feature, [&](int other) {
     outward += triangleNormalOf(other);
-    return triangleNormalOf(other).dot(corner.p_S - p) >= 0.0;
+    return triangleNormalOf(other).dot(corner.p_S - p) >= 0.0 || topology_.featureOf(other, nearest(other)) != feature;
   });
-  if (above_any || outward.isZero(0.0)) return;
+  if (elsewhere || outward.isZero(0.0)) return kNone;
   outward.normalize();
-  add(triangle, weights, corner.index, -outward, outward.dot(p - corner.p_S));
+  const double gap = outward.dot(corner.p_S - p);
+  return add(triangle, weights, corner.index, -outward, gap) ? gap : kNone;
 }
 
 void NarrowPhase::addClosest(int triangle, const TrianglePoints& points, double flush_gap) {

@@ -83,7 +83,7 @@ class NarrowPhase {
   const NodeCache& measureVertex(int triangle, int corner);
   bool certainlyFar(int triangle, const TrianglePoints& points);
   double addCorners(int triangle, const TrianglePoints& points);
-  void addCornerInFold(int triangle, const Vector3& weights, const ShapeCorner& corner);
+  double addCornerInFold(int triangle, const ShapeCorner& corner);
   void addClosest(int triangle, const TrianglePoints& points, double flush_gap);
   double lowestVertexGap(const SurfaceFeature& feature) const;
   bool add(int triangle, const Vector3& weights, int corner, const Vector3& normal_S, double gap);
