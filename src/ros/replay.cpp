@@ -3,24 +3,19 @@
 #include "tissue_contact/ros/replay.h"
 
 #include <ros/package.h>
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
-#include <sensor_msgs/JointState.h>
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <fstream>
 #include <iostream>
-#include <map>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "tissue_contact/ros/conversions.h"
 #include "tissue_contact/ros/environment.h"
+#include "tissue_contact/ros/joint_state_bag.h"
 #include "tissue_contact/ros/replay_table.h"
 #include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/simulation/joint_state_player.h"
@@ -31,24 +26,6 @@ namespace tissue_contact {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// A relative topic name means the same offline as in a node without a namespace.
-std::string globalName(const std::string& topic) { return !topic.empty() && topic[0] == '/' ? topic : "/" + topic; }
-
-std::string joined(const std::set<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none" : text;
-}
-
-void openBag(const std::string& file, rosbag::Bag& bag) {
-  try {
-    bag.open(file, rosbag::bagmode::Read);
-  } catch (const std::exception& error) {
-    throw std::runtime_error("bag '" + file + "' cannot be read: " + error.what() +
-                             "; if it was cut off, `rosbag reindex` may mend it");
-  }
-}
 
 /// Says every few seconds how far a long replay has come, in whole lines that also read well in a log file.
 class Progress {
@@ -77,22 +54,21 @@ class Replay {
         simulator_(scene_, bagEnvironment(options.bag_file, options.urdf_file, scene_.world_frame)),
         player_(simulator_) {
     if (options_.dump_step > 0) simulator_.setStepObserver([this] { dumpIfWanted(); });
-    for (std::size_t i = 0; i < player_.topics().size(); ++i) {
-      topic_index_[globalName(player_.topics()[i])] = static_cast<int>(i);
-    }
   }
 
   void run() {
-    rosbag::Bag bag;
-    openBag(options_.bag_file, bag);
-    rosbag::View view(bag, rosbag::TopicQuery(topicsIn(bag)));
-    ReplayTable table(options_.csv_file);
-    Progress progress(view.getBeginTime(), view.getEndTime());
-    for (const rosbag::MessageInstance& instance : view) {
-      push(instance);
-      playAll(table);
-      progress.at(instance.getTime());
+    const JointStateBag bag(options_.bag_file, player_.topics());
+    if (!bag.missingTopics().empty()) {
+      std::cerr << "tissue_contact_replay: warning: the bag has no message on " << joinedNames(bag.missingTopics())
+                << "; its joints stay where the scene puts them\n";
     }
+    ReplayTable table(options_.csv_file);
+    Progress progress(bag.begin(), bag.end());
+    bag.forEach([&](int topic, JointStateSample sample, ros::Time recorded) {
+      player_.push(topic, std::move(sample));
+      playAll(table);
+      progress.at(recorded);
+    });
     player_.finish();
     playAll(table);
     requireDumped();
@@ -105,39 +81,6 @@ class Replay {
   }
 
  private:
-  /// The scene's topics as the bag spells them. @throws when it has none of them.
-  std::vector<std::string> topicsIn(const rosbag::Bag& bag) const {
-    std::set<std::string> in_bag;
-    std::set<std::string> wanted;
-    std::vector<std::string> found;
-    rosbag::View view(bag);
-    for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
-      if (in_bag.insert(connection->topic).second && topic_index_.count(globalName(connection->topic)) > 0) {
-        found.push_back(connection->topic);
-      }
-    }
-    for (const auto& [topic, index] : topic_index_) wanted.insert(topic);
-    if (found.empty()) {
-      throw std::runtime_error("bag '" + options_.bag_file + "' has no message on the scene's joint-state topics (" +
-                               joined(wanted) + "); its topics are: " + joined(in_bag));
-    }
-    for (const std::string& topic : found) wanted.erase(globalName(topic));
-    if (!wanted.empty()) {
-      std::cerr << "tissue_contact_replay: warning: the bag has no message on " << joined(wanted)
-                << "; its joints stay where the scene puts them\n";
-    }
-    return found;
-  }
-
-  void push(const rosbag::MessageInstance& instance) {
-    const sensor_msgs::JointStateConstPtr message = instance.instantiate<sensor_msgs::JointState>();
-    if (!message) {
-      throw std::runtime_error("topic " + instance.getTopic() + " of bag '" + options_.bag_file + "' is of type " +
-                               instance.getDataType() + "; it must be sensor_msgs/JointState");
-    }
-    player_.push(topic_index_.at(globalName(instance.getTopic())), toSample(*message));
-  }
-
   /// Writes the contact problem of the step asked for, the first time it is taken.
   void dumpIfWanted() {
     if (dumped_ || simulator_.stepCount() != options_.dump_step) return;
@@ -204,7 +147,6 @@ class Replay {
   Scene scene_;
   Simulator simulator_;
   JointStatePlayer player_;
-  std::map<std::string, int> topic_index_;
   std::string first_refusal_;
   bool dumped_ = false;
   long jumps_ = 0;
