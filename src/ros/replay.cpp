@@ -76,6 +76,7 @@ class Replay {
         scene_(loadScene(options.scene_file, ros::package::getPath)),
         simulator_(scene_, bagEnvironment(options.bag_file, options.urdf_file, scene_.world_frame)),
         player_(simulator_) {
+    for (const std::string& line : simulator_.advice()) std::cerr << "tissue_contact_replay: advisor: " << line << "\n";
     if (options_.dump_step > 0) simulator_.setStepObserver([this] { dumpIfWanted(); });
     for (std::size_t i = 0; i < player_.topics().size(); ++i) {
       topic_index_[globalName(player_.topics()[i])] = static_cast<int>(i);
