@@ -50,12 +50,13 @@ void Simulator::Implementation::assembleTissues(double dt) {
     if (still_changed[t]) tissue.elasticity().holdStill(sleep[t].still(), x[t], *elastic_states[t]);
     still_changed[t] = false;
     tissue.elasticity().update(x[t], *elastic_states[t], loads[t]);
-    loads[t] += scene.gravity_m_per_s2 * tissue.nodeMasses().transpose();
     body.stiffness_scale = dt * (dt + tissue.damping().stiffness_s);
     body.damping_scale = body.D != nullptr ? dt : 0.0;
     body.mass = (1.0 + dt * tissue.damping().mass_per_s) * tissue.nodeMasses();
     body.b = solution.v[t] * tissue.nodeMasses().asDiagonal();
     body.b += dt * loads[t];
+    body.b += (dt * scene.gravity_m_per_s2) * tissue.nodeMasses().transpose();
+    if (!sleep.empty()) loads[t] += scene.gravity_m_per_s2 * tissue.nodeMasses().transpose();
     for (int i = 0; i < tissue.nodeCount(); ++i) {
       if ((*body.fixed)[i]) body.b.col(i).setZero();
     }
