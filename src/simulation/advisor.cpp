@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "tissue_contact/tissue/element_materials.h"
+#include "tissue_contact/tissue/make_elasticity.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 namespace tissue_contact {
@@ -23,11 +24,19 @@ std::string sleepLine(const Scene& scene) {
   return line.str();
 }
 
+bool averages(const TissueDescription& tissue) {
+  ElementMaterials materials(tissue.material);
+  for (const TissueRegion& region : tissue.regions) materials.materials.push_back(region.material);
+  return averagesDilatation(materials);
+}
+
 std::string modelLine(const Scene& scene, const TissueDescription& tissue) {
   std::ostringstream line;
   line << "tissue " << quoted(tissue.name) << ": " << elasticModelName(tissue.material.model);
   if (tissue.material.model != ElasticModel::kCorotational) {
     line << ", as the scene says";
+  } else if (scene.advisor.adapt_rotations && averages(tissue)) {
+    line << " always: changes of volume are averaged over patches, which follow rotations";
   } else if (scene.advisor.adapt_rotations) {
     line << ", linear while no element turns by " << TetElasticity::kTurnOn << " rad (spurious strain below "
          << 0.5 * TetElasticity::kTurnOn * TetElasticity::kTurnOn << ")";

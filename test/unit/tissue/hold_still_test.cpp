@@ -16,8 +16,10 @@ struct Body {
   ElementMaterials materials;
 };
 
+using Model = std::pair<ElasticModel, Dilatation>;
+
 /// Two regions of different stiffness and damping along x; the lower half along z is still.
-Body makeBody(ElasticModel model) {
+Body makeBody(const Model& model) {
   BlockDescription block;
   block.size_m = Vector3(0.06, 0.03, 0.04);
   block.cells = {6, 3, 4};
@@ -26,7 +28,16 @@ Body makeBody(ElasticModel model) {
     body.fixed.push_back(body.mesh.positions(2, i) == 0.0);
     body.still.push_back(body.mesh.positions(2, i) < 0.025);
   }
-  body.materials.materials = {{model, 5e3, 0.4, 1000.0}, {model, 2e4, 0.3, 1000.0}};
+  MaterialDescription soft;
+  soft.model = model.first;
+  soft.dilatation = model.second;
+  soft.youngs_modulus_pa = 5e3;
+  soft.poissons_ratio = 0.4;
+  soft.density_kg_per_m3 = 1000.0;
+  MaterialDescription stiff = soft;
+  stiff.youngs_modulus_pa = 2e4;
+  stiff.poissons_ratio = 0.3;
+  body.materials.materials = {soft, stiff};
   body.materials.damping_s = {0.001, 0.004};
   for (const Tetrahedron& nodes : body.mesh.tetrahedra) {
     body.materials.of_element.push_back(body.mesh.positions(0, nodes[0]) > 0.0 ? 1 : 0);
@@ -46,11 +57,11 @@ NodalVectors deformed(const Body& body, double more) {
   return x;
 }
 
-class HoldStill : public testing::TestWithParam<ElasticModel> {};
+class HoldStill : public testing::TestWithParam<Model> {};
 
 TEST_P(HoldStill, ForcesAndMatricesAreThoseOfAFullEvaluation) {
   const Body body = makeBody(GetParam());
-  const auto model = makeVolumeElasticity(body.mesh.positions, body.mesh.tetrahedra, body.fixed, body.materials);
+  const auto model = makeVolumeElasticity(body.mesh.positions, body.mesh.tetrahedra, body.fixed, body.materials, 5);
   const auto held = model->makeState();
   const auto full = model->makeState();
   NodalVectors f_held(3, body.mesh.positions.cols());
@@ -77,9 +88,9 @@ TEST_P(HoldStill, ForcesAndMatricesAreThoseOfAFullEvaluation) {
 }
 
 TEST_P(HoldStill, ElementsOfStillNodesAreNotLookedAt) {
-  if (GetParam() == ElasticModel::kMassSpring) GTEST_SKIP() << "evaluates all of them";
+  if (GetParam().first == ElasticModel::kMassSpring) GTEST_SKIP() << "evaluates all of them";
   const Body body = makeBody(GetParam());
-  const auto model = makeVolumeElasticity(body.mesh.positions, body.mesh.tetrahedra, body.fixed, body.materials);
+  const auto model = makeVolumeElasticity(body.mesh.positions, body.mesh.tetrahedra, body.fixed, body.materials, 5);
   const auto state = model->makeState();
   NodalVectors before(3, body.mesh.positions.cols());
   NodalVectors after = before;
@@ -94,9 +105,16 @@ TEST_P(HoldStill, ElementsOfStillNodesAreNotLookedAt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, HoldStill,
-                         testing::Values(ElasticModel::kLinear, ElasticModel::kCorotational, ElasticModel::kNeoHookean,
-                                         ElasticModel::kMassSpring),
-                         [](const auto& model) { return std::string(elasticModelName(model.param)); });
+                         testing::Values(Model{ElasticModel::kLinear, Dilatation::kElement},
+                                         Model{ElasticModel::kLinear, Dilatation::kPatch},
+                                         Model{ElasticModel::kCorotational, Dilatation::kElement},
+                                         Model{ElasticModel::kCorotational, Dilatation::kPatch},
+                                         Model{ElasticModel::kNeoHookean, Dilatation::kAuto},
+                                         Model{ElasticModel::kMassSpring, Dilatation::kAuto}),
+                         [](const auto& model) {
+                           const bool patches = model.param.second == Dilatation::kPatch;
+                           return std::string(elasticModelName(model.param.first)) + (patches ? "_of_patches" : "");
+                         });
 
 }  // namespace
 }  // namespace tissue_contact
