@@ -1,7 +1,8 @@
-/// What the model advisor saves and what it costs in accuracy: each scene with each of its choices off and on. Prints CSV:
-/// scene, feature, ms per step off, on (processor time, least of the repeats), their ratio, error the feature adds to the
-/// wrench (RMS over the run, relative to its RMS; 0 where nothing is touched), and the bound stated for it. Where runs differ
-/// at all, the error is that of runs with a tighter solver: with 30 iterations on 3087 nodes the solver's own error, 0.3 %, hides it.
+/// What the model advisor saves and what it costs in accuracy: each scene with each of its choices off and on. Prints
+/// CSV: scene, feature, ms per step off, on (processor time, least of the repeats), their ratio, error the feature adds to
+/// the wrench (RMS over the run, relative to its RMS; 0 where nothing is touched), and the bound stated for it. Where runs
+/// differ at all, the error is that of runs with a tighter solver: with 30 iterations on 3087 nodes the solver's own error,
+/// 0.3 %, hides it.
 /// usage: advisor [REPEATS [SCENE ...]]     REPEATS 1 by default; SCENE psm=FILE.csv: the arm of config/psm_dvrk.yaml along
 ///   a table of times (s, from 0) and positions of the joints that its first line names, as grasp_path.csv
 #include <algorithm>
