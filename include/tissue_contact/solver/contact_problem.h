@@ -24,10 +24,10 @@ struct BodySystem {
   /// All nodes rest in this step: b = 0, v = 0 is the answer, the rest of this may be old. For solvers that carry
   /// something from step to step; the others may go by `fixed` alone.
   bool asleep = false;
-  double stiffness_scale = 0.0;              ///< s^2
-  double damping_scale = 0.0;                ///< s: dt where there is a D
-  VectorX mass;                              ///< kg, per node
-  NodalVectors b;                            ///< N s
+  double stiffness_scale = 0.0;  ///< s^2
+  double damping_scale = 0.0;    ///< s: dt where there is a D
+  VectorX mass;                  ///< kg, per node
+  NodalVectors b;                ///< N s
 };
 
 /// A node a contact acts on.
