@@ -46,7 +46,9 @@ struct TissuePairDetector::Implementation {
   std::vector<Eigen::Index> node_counts;
   VertexFace vertex_face;
   EdgeEdge edge_edge;
+  std::vector<bool> placed;  ///< scratch, per tissue
 
+  void place(int tissue, const std::vector<NodalVectors>& positions);
   void detectPair(const SurfacePair& pair, std::vector<Contact>& contacts);
 };
 
@@ -71,7 +73,7 @@ TissuePairDetector::TissuePairDetector(TissuePairDetector&&) noexcept = default;
 TissuePairDetector& TissuePairDetector::operator=(TissuePairDetector&&) noexcept = default;
 
 void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, double margin_m,
-                                std::vector<Contact>& contacts) {
+                                const std::vector<bool>& apart, std::vector<Contact>& contacts) {
   Implementation& self = *implementation_;
   if (!(margin_m >= 0.0 && std::isfinite(margin_m)))
     requireNonNegative("tissue pairs: margin", margin_m, "m");  // no string else
@@ -79,9 +81,13 @@ void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, doub
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(contacts.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     requireSameSize("nodes of a tissue", positions[i].cols(), self.node_counts[i]);
-    if (self.surfaces[i]) self.surfaces[i]->place(positions[i]);
   }
-  for (const TouchingTissues& pair : self.pairs) {
+  self.placed.assign(positions.size(), false);
+  for (std::size_t p = 0; p < self.pairs.size(); ++p) {
+    if (!apart.empty() && apart[p]) continue;
+    const TouchingTissues& pair = self.pairs[p];
+    self.place(pair.tissue, positions);
+    self.place(pair.other, positions);
     self.detectPair({*self.surfaces[pair.tissue], *self.surfaces[pair.other], margin_m}, contacts);
   }
   const auto order = [](const Contact& a, const Contact& b) {
@@ -90,6 +96,11 @@ void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, doub
   std::sort(contacts.begin() + first, contacts.end(), order);
   const auto same = [](const Contact& a, const Contact& b) { return a.key == b.key; };
   contacts.erase(std::unique(contacts.begin() + first, contacts.end(), same), contacts.end());
+}
+
+void TissuePairDetector::Implementation::place(int tissue, const std::vector<NodalVectors>& positions) {
+  if (!placed[tissue]) surfaces[tissue]->place(positions[tissue]);
+  placed[tissue] = true;
 }
 
 void TissuePairDetector::Implementation::detectPair(const SurfacePair& pair, std::vector<Contact>& contacts) {

@@ -45,6 +45,7 @@ Node::Node()
       player_(simulator_),
       outputs_(private_node_, simulator_, player_),
       health_(simulator_, player_) {
+  for (const std::string& line : simulator_.advice()) ROS_INFO_STREAM("advisor: " << line);
   updater_.setHardwareID("none");
   updater_.add("tissue contact", [this](diagnostic_updater::DiagnosticStatusWrapper& status) { health_.fill(status); });
   // By the wall clock: with simulated time a bag that is paused or over would silence the diagnostics.

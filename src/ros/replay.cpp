@@ -53,6 +53,7 @@ class Replay {
         scene_(loadScene(options.scene_file, ros::package::getPath)),
         simulator_(scene_, bagEnvironment(options.bag_file, options.urdf_file, scene_.world_frame)),
         player_(simulator_) {
+    for (const std::string& line : simulator_.advice()) std::cerr << "tissue_contact_replay: advisor: " << line << "\n";
     if (options_.dump_step > 0) simulator_.setStepObserver([this] { dumpIfWanted(); });
   }
 

@@ -102,6 +102,7 @@ Scene parseScene(const std::string& yaml, const std::string& file, const Package
   if (const YamlCursor* value = map.find("friction")) scene.friction = parseFrictionPairs(*value, scene);
   if (const YamlCursor* value = map.find("step")) scene.step = parseStep(*value);
   if (const YamlCursor* value = map.find("solver")) scene.solver = parseSolver(*value);
+  if (const YamlCursor* value = map.find("advisor")) scene.advisor = parseAdvisor(*value);
   if (const YamlCursor* value = map.find("publish")) scene.publish = parsePublish(*value);
   return scene;
 }

@@ -10,7 +10,7 @@ const std::map<MapKind, SceneMapKeys>& tables() {
       {MapKind::kScene,
        {"scene",
         {"world_frame", "gravity_m_per_s2", "tissues", "instruments", "tissue_pairs", "friction", "step", "solver",
-         "publish"}}},
+         "advisor", "publish"}}},
       {MapKind::kTissue,
        {"tissues[]",
         {"name", "block", "mesh", "sheet", "shell", "pose", "material", "damping", "fibre_direction", "regions",
@@ -56,6 +56,7 @@ const std::map<MapKind, SceneMapKeys>& tables() {
       {MapKind::kSolver,
        {"solver",
         {"method", "relaxation", "iterations", "contact_passes", "tolerance", "time_budget_s", "cone_sides"}}},
+      {MapKind::kAdvisor, {"advisor", {"sleep", "sleep_error", "rotations", "self_contact", "friction_path"}}},
       {MapKind::kPublish, {"publish", {"mesh_rate_hz", "contacts_rate_hz", "status_rate_hz", "markers_rate_hz", "tf"}}},
   };
   return all;

@@ -40,6 +40,7 @@ enum class MapKind {
   kFrictionAxis,
   kStep,
   kSolver,
+  kAdvisor,
   kPublish,
 };
 

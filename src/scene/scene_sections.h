@@ -49,6 +49,7 @@ ContactLinkDescription parseContactLink(const YamlCursor& cursor, const PathCont
 std::vector<TissuePair> parseTissuePairs(const YamlCursor& cursor, const Scene& scene);
 /// `scene` has its tissues, instruments and tissue pairs.
 std::vector<FrictionDescription> parseFrictionPairs(const YamlCursor& cursor, const Scene& scene);
+AdvisorDescription parseAdvisor(const YamlCursor& cursor);
 SolverDescription parseSolver(const YamlCursor& cursor);
 
 }  // namespace tissue_contact

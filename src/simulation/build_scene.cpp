@@ -60,6 +60,10 @@ std::vector<TouchingTissues> buildTissuePairs(const Scene& scene) {
 void requireMethodForLaws(const Scene& scene) {
   const SolverMethod method = scene.solver.method;
   if (method == SolverMethod::kPredictorCorrector || method == SolverMethod::kReference) return;
+  if (scene.advisor.general_friction) {
+    throw std::invalid_argument("solver.method " + std::string(solverMethodName(method)) +
+                                " handles isotropic friction only, but advisor.friction_path is general; make it auto");
+  }
   for (const FrictionDescription& pair : scene.friction) {
     if (pair.law.kind == FrictionLawDescription::Kind::kIsotropic) continue;
     throw std::invalid_argument("solver.method " + std::string(solverMethodName(method)) +

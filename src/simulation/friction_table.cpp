@@ -46,6 +46,15 @@ struct FrictionTable::Surface {
 
 namespace {
 
+/// An isotropic law as one that depends on direction, with the same friction along both axes.
+FrictionLawDescription directional(FrictionLawDescription law) {
+  if (law.kind != FrictionLawDescription::Kind::kIsotropic) return law;
+  law.kind = FrictionLawDescription::Kind::kOrthotropic;
+  law.static_coefficients.resize(2, law.static_coefficients.at(0));
+  law.kinetic_coefficients.resize(2, law.kinetic_coefficients.at(0));
+  return law;
+}
+
 template <typename Named>
 int indexOf(const std::vector<Named>& all, const std::string& name, const std::string& kind,
             std::string (*name_of)(const Named&)) {
@@ -124,8 +133,8 @@ void FrictionTable::add(const FrictionDescription& description, const Scene& sce
   }
   const int index = static_cast<int>(entries_.size());
   Entry& entry = entries_.emplace_back();
-  entry.numbers = description.law;
-  entry.anisotropic = makeAnisotropicFriction(description.law);
+  entry.numbers = scene.advisor.general_friction ? directional(description.law) : description.law;
+  entry.anisotropic = makeAnisotropicFriction(entry.numbers);
   entry.law.anisotropic = entry.anisotropic.get();
   if (entry.anisotropic == nullptr) {
     entry.law.mu_static = description.law.static_coefficients.at(0);

@@ -73,8 +73,12 @@ void CholeskyRelaxation::prepare(const ContactProblem& problem, ContactSolution&
   fresh_ = true;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const BodySystem& body = problem.bodies[k];
-    fresh_ = bodies_[k].prepare(body) && fresh_;
     impulses_[k].setZero(3, body.K->rows());
+    if (body.asleep) {
+      defect_[k].setZero(3, body.K->rows());
+      continue;
+    }
+    fresh_ = bodies_[k].prepare(body) && fresh_;
     defect_[k].resize(3, body.K->rows());
     loads_ += body.b.squaredNorm();
   }
@@ -106,7 +110,9 @@ double CholeskyRelaxation::relaxSafely(const ContactProblem& problem, ContactSol
   left_ = after;
   if (serves || fresh_ || after <= kRoundOff * loads_) return after;
   solution.v = saved_;
-  for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].renew(problem.bodies[k]);
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (!problem.bodies[k].asleep) bodies_[k].renew(problem.bodies[k]);
+  }
   fresh_ = true;
   ++renewals_;
   left_ = relaxOnce(problem, solution, computeDefect(problem, solution));
@@ -135,14 +141,16 @@ void CholeskyRelaxation::prepareContact(const ContactProblem& problem, std::size
 double CholeskyRelaxation::computeDefect(const ContactProblem& problem, const ContactSolution& solution) {
   double sum = 0.0;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    sum += bodyDefect(problem.bodies[k], solution.v[k], impulses_[k], defect_[k]);
+    if (!problem.bodies[k].asleep) sum += bodyDefect(problem.bodies[k], solution.v[k], impulses_[k], defect_[k]);
   }
   return std::sqrt(sum);
 }
 
 /// v += P^-1 defect. @return the defect it leaves.
 double CholeskyRelaxation::relaxOnce(const ContactProblem& problem, ContactSolution& solution, double before) {
-  for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].relax(defect_[k], solution.v[k]);
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (!problem.bodies[k].asleep) bodies_[k].relax(defect_[k], solution.v[k]);
+  }
   const double after = computeDefect(problem, solution);
   if (!(after <= kStaleContraction * before) && !(after <= kRoundOff * loads_)) {
     for (FactoredBody& body : bodies_) body.markStale();

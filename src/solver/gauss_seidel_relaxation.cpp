@@ -48,13 +48,18 @@ void GaussSeidelRelaxation::prepareBodies(const ContactProblem& problem) {
   contact_impulses_.resize(problem.bodies.size());
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     const BodySystem& body = problem.bodies[k];
+    if (body.asleep) continue;
     const int nodes = body.K->rows();
     block_inverse_[k].resize(nodes);
     for (int i = 0; i < nodes; ++i) {
+      if ((*body.fixed)[i]) {
+        block_inverse_[k][i].setZero();
+        continue;
+      }
       Matrix3 block = body.stiffness_scale * body.K->diagonal[i];
       if (body.D != nullptr) block += body.damping_scale * body.D->diagonal[i];
       block.diagonal().array() += body.mass[i];
-      block_inverse_[k][i] = (*body.fixed)[i] ? Matrix3(Matrix3::Zero()) : Matrix3(block.inverse());
+      block_inverse_[k][i] = block.inverse();
     }
     contact_impulses_[k].setZero(3, nodes);
   }
@@ -144,6 +149,7 @@ double GaussSeidelRelaxation::sweep(const ContactProblem& problem, bool forward,
   double change = 0.0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     const BodySystem& body = problem.bodies[k];
+    if (body.asleep) continue;
     change += body.D == nullptr ? sweepBody<false>(body, block_inverse_[k], contact_impulses_[k], forward, v[k])
                                 : sweepBody<true>(body, block_inverse_[k], contact_impulses_[k], forward, v[k]);
   }
@@ -157,6 +163,7 @@ double GaussSeidelRelaxation::sweepHolding(const ContactProblem& problem, bool f
   double change = 0.0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     const BodySystem& body = problem.bodies[k];
+    if (body.asleep) continue;
     const int nodes = body.K->rows();
     for (int step = 0; step < nodes; ++step) {
       const int i = forward ? step : nodes - 1 - step;

@@ -44,7 +44,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
   double load = 0.0;
   scratch_.resize(problem.bodies.size());
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    load += problem.bodies[k].b.squaredNorm();
+    if (!problem.bodies[k].asleep) load += problem.bodies[k].b.squaredNorm();
     scratch_[k].resize(3, problem.bodies[k].K->rows());
   }
   load_scale_ = std::sqrt(load);

@@ -16,7 +16,9 @@ void worsen(double& worst, double value) {
 /// |A v - b - J'lambda| / |J'lambda| over all bodies.
 double momentumResidual(const ContactProblem& problem, const ContactSolution& solution,
                         std::vector<NodalVectors>& contact_impulses) {
-  for (NodalVectors& p : contact_impulses) p.setZero();
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
+    if (!problem.bodies[k].asleep) contact_impulses[k].setZero();
+  }
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     const ContactRow& row = problem.contacts[c];
     const Vector3 impulse = row.R_WC * solution.impulses[c];
@@ -29,6 +31,7 @@ double momentumResidual(const ContactProblem& problem, const ContactSolution& so
   double scale = 0.0;
   double load = 0.0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
+    if (problem.bodies[k].asleep) continue;
     scale += contact_impulses[k].squaredNorm();
     load += problem.bodies[k].b.squaredNorm();
     defect += bodyDefect(problem.bodies[k], solution.v[k], contact_impulses[k], contact_impulses[k]);

@@ -1,5 +1,7 @@
 #include "element_kernel.h"
 
+#include <algorithm>
+
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 namespace tissue_contact {
@@ -136,13 +138,19 @@ TISSUE_CONTACT_INLINE unsigned char turnedLanes(const LaneQuaternion& q, const L
   return bits(x * x + y * y + z * z > 0.25 * angle * angle * q_squared * t_squared);
 }
 
+/// About that share of the angle of q, of length 1.
+TISSUE_CONTACT_INLINE LaneQuaternion shareOf(const LaneQuaternion& q, double share) {
+  const Lanes along = q.w < 0.0 ? Lanes{-share, -share, -share, -share} : Lanes{share, share, share, share};
+  return {1.0 - share + along * q.w, along * q.x, along * q.y, along * q.z};
+}
+
 template <typename Material>
-TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches, const Material& material,
-                                        double tangent_angle, const double* x,
+TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches, BatchRange range,
+                                        const Material& material, double tangent_angle, double share, const double* x,
                                         const std::vector<RotationBatch>& tangents,
                                         std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
                                         double* forces) {
-  for (std::size_t b = 0; b < batches.size(); ++b) {
+  for (std::size_t b = range.begin; b < range.end; ++b) {
     LaneMatrix F, R, S;
     LaneQuaternion q, t;
     typename Material::Value lambda, mu;
@@ -150,6 +158,10 @@ TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches
     loadQuaternion(rotations[b], q);
     loadQuaternion(tangents[b], t);
     updateRotation(F, q, R, S);
+    if (share < 1.0) {
+      rotationMatrix(shareOf(q, share), R);
+      rotateBack(R, F, S);
+    }
     material.get(b, lambda, mu);
     addForces(batches[b], lambda, mu, &R, S, forces);
     store(q.w, rotations[b][0]);
@@ -160,44 +172,60 @@ TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches
   }
 }
 
-template <typename Material>
-TISSUE_CONTACT_INLINE void linear(const std::vector<ElementBatch>& batches, const Material& material, const double* x,
-                                  double* forces) {
-  for (std::size_t b = 0; b < batches.size(); ++b) {
+/// Raises `most` to the squared sine of the turn, as the axial part of F has it to first order.
+TISSUE_CONTACT_INLINE void watchTurn(const LaneMatrix& F, Lanes& most) {
+  const Lanes x = F.m[5] - F.m[7], y = F.m[6] - F.m[2], z = F.m[1] - F.m[3];
+  const Lanes squared = 0.25 * (x * x + y * y + z * z);
+  most = squared > most ? squared : most;
+}
+
+template <bool kWatch, typename Material>
+TISSUE_CONTACT_INLINE void linear(const std::vector<ElementBatch>& batches, BatchRange range, const Material& material,
+                                  const double* x, double* forces, double* turn_squared) {
+  Lanes most = {0.0, 0.0, 0.0, 0.0};
+  for (std::size_t b = range.begin; b < range.end; ++b) {
     LaneMatrix F;
     typename Material::Value lambda, mu;
     deformationGradients(batches[b], x, F);
     material.get(b, lambda, mu);
     addForces(batches[b], lambda, mu, nullptr, F, forces);
+    if (kWatch) watchTurn(F, most);
   }
+  for (int lane = 0; kWatch && lane < kLanes; ++lane) *turn_squared = std::max(*turn_squared, most[lane]);
 }
 
 }  // namespace
 
 TISSUE_CONTACT_CLONES
-void addCorotationalForces(const std::vector<ElementBatch>& batches, const LameParameters& material,
-                           double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
+void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
+                           double tangent_angle, double share, const double* x,
+                           const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
+                           std::vector<unsigned char>& turned, double* forces) {
+  corotational(batches, range, UniformMaterial{material}, tangent_angle, share, x, tangents, rotations, turned, forces);
+}
+
+TISSUE_CONTACT_CLONES
+void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range,
+                           const std::vector<BatchMaterial>& materials, double tangent_angle, double share,
+                           const double* x, const std::vector<RotationBatch>& tangents,
                            std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces) {
-  corotational(batches, UniformMaterial{material}, tangent_angle, x, tangents, rotations, turned, forces);
+  corotational(batches, range, VaryingMaterial{materials}, tangent_angle, share, x, tangents, rotations, turned,
+               forces);
 }
 
 TISSUE_CONTACT_CLONES
-void addCorotationalForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
-                           double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
-                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces) {
-  corotational(batches, VaryingMaterial{materials}, tangent_angle, x, tangents, rotations, turned, forces);
+void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
+                     const double* x, double* forces, double* turn_squared) {
+  turn_squared == nullptr ? linear<false>(batches, range, UniformMaterial{material}, x, forces, nullptr)
+                          : linear<true>(batches, range, UniformMaterial{material}, x, forces, turn_squared);
 }
 
 TISSUE_CONTACT_CLONES
-void addLinearForces(const std::vector<ElementBatch>& batches, const LameParameters& material, const double* x,
-                     double* forces) {
-  linear(batches, UniformMaterial{material}, x, forces);
-}
-
-TISSUE_CONTACT_CLONES
-void addLinearForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
-                     const double* x, double* forces) {
-  linear(batches, VaryingMaterial{materials}, x, forces);
+void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range,
+                     const std::vector<BatchMaterial>& materials, const double* x, double* forces,
+                     double* turn_squared) {
+  turn_squared == nullptr ? linear<false>(batches, range, VaryingMaterial{materials}, x, forces, nullptr)
+                          : linear<true>(batches, range, VaryingMaterial{materials}, x, forces, turn_squared);
 }
 
 }  // namespace tissue_contact

@@ -15,19 +15,23 @@ namespace tissue_contact {
 /// Quaternions (w, x, y, z) of four elements; need not be of unit length.
 using RotationBatch = std::array<std::array<double, kLanes>, 4>;
 
-/// Brings `rotations` up to date with positions x (3 x n) and adds the elastic forces to `forces` (3 x n).
+/// For the batches of `range`: brings `rotations` up to date with positions x (3 x n) and adds the elastic forces to `forces` (3 x n).
 /// `turned[b]` gets bit `lane` set where the rotation is more than `tangent_angle` (rad, small) away from `tangents`.
-void addCorotationalForces(const std::vector<ElementBatch>& batches, const LameParameters& material,
-                           double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
-                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces);
-void addCorotationalForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
-                           double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
+/// The forces are those of `share` (0 to 1) of each rotation.
+void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
+                           double tangent_angle, double share, const double* x,
+                           const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
+                           std::vector<unsigned char>& turned, double* forces);
+void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range,
+                           const std::vector<BatchMaterial>& materials, double tangent_angle, double share,
+                           const double* x, const std::vector<RotationBatch>& tangents,
                            std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces);
 
-/// The same without rotations.
-void addLinearForces(const std::vector<ElementBatch>& batches, const LameParameters& material, const double* x,
-                     double* forces);
-void addLinearForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
-                     const double* x, double* forces);
+/// The same without rotations. `turn_squared`, unless null, is raised to the square of the largest turn, rad, where small.
+void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
+                     const double* x, double* forces, double* turn_squared);
+void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range,
+                     const std::vector<BatchMaterial>& materials, const double* x, double* forces,
+                     double* turn_squared);
 
 }  // namespace tissue_contact

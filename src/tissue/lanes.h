@@ -32,6 +32,12 @@ struct ElementBatch {
   std::array<Tetrahedron, kLanes> nodes;
 };
 
+/// Batches [begin, end).
+struct BatchRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
 /// Elastic parameters of four elements, Pa: Lame's, or the model's own in their place.
 struct BatchMaterial {
   std::array<double, kLanes> lambda;

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "rotation_state.h"
 #include "tet_elements.h"
 
 namespace tissue_contact {
@@ -27,6 +28,7 @@ struct MeanDilatation::Patch {
 struct MeanDilatation::PatchState : RotationState {
   std::vector<Vector3> gradients;          ///< b of every patch's nodes, patch after patch, m^2
   std::vector<Vector3> tangent_gradients;  ///< those `stiffness` was computed with
+  std::vector<bool> still;                 ///< per patch: its forces are among the held ones; empty: none is
 };
 
 namespace {
@@ -163,23 +165,47 @@ bool MeanDilatation::turned(const Patch& patch, const RotationState& state) cons
   });
 }
 
+/// Brings the gradients of a patch, and its share of the stiffness, in line with the rotations of its elements.
+void MeanDilatation::follow(const Patch& patch, PatchState& state) const {
+  Vector3* const gradients = &state.gradients[patch.first];
+  std::fill(gradients, gradients + patch.nodes.size(), Vector3::Zero());
+  addGradients(patch, state, gradients);
+  if (!turned(patch, state)) return;
+  Vector3* const tangent = &state.tangent_gradients[patch.first];
+  addStiffness(patch, tangent, -1.0, state);
+  addStiffness(patch, gradients, 1.0, state);
+  std::copy(gradients, gradients + patch.nodes.size(), tangent);
+}
+
+void MeanDilatation::addForces(const Patch& patch, const NodalVectors& x, const PatchState& state,
+                               NodalVectors& forces) {
+  const Vector3* const gradients = &state.gradients[patch.first];
+  const double pressure = patch.bulk * dilatation(patch, gradients, x);
+  for (std::size_t i = 0; i < patch.nodes.size(); ++i) forces.col(patch.nodes[i]) -= pressure * gradients[i];
+}
+
 void MeanDilatation::update(const NodalVectors& x, State& any_state, NodalVectors& forces) const {
   TetElasticity::update(x, any_state, forces);
   auto& state = static_cast<PatchState&>(any_state);  // made by makeState()
-  if (corotational_) std::fill(state.gradients.begin(), state.gradients.end(), Vector3::Zero());
-  for (const Patch& patch : patches_) {
-    Vector3* const gradients = &state.gradients[patch.first];
-    if (corotational_) {
-      addGradients(patch, state, gradients);
-      if (turned(patch, state)) {
-        Vector3* const tangent = &state.tangent_gradients[patch.first];
-        addStiffness(patch, tangent, -1.0, state);
-        addStiffness(patch, gradients, 1.0, state);
-        std::copy(gradients, gradients + patch.nodes.size(), tangent);
-      }
-    }
-    const double pressure = patch.bulk * dilatation(patch, gradients, x);
-    for (std::size_t i = 0; i < patch.nodes.size(); ++i) forces.col(patch.nodes[i]) -= pressure * gradients[i];
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    if (!state.still.empty() && state.still[p]) continue;
+    if (corotational_) follow(patches_[p], state);
+    addForces(patches_[p], x, state, forces);
+  }
+}
+
+void MeanDilatation::holdStill(const std::vector<bool>& still, const NodalVectors& x, State& any_state) const {
+  TetElasticity::holdStill(still, x, any_state);
+  auto& state = static_cast<PatchState&>(any_state);
+  state.still.assign(state.held.forces.cols() > 0 ? patches_.size() : 0, false);
+  for (std::size_t p = 0; p < state.still.size(); ++p) {
+    const std::vector<int>& nodes = patches_[p].nodes;
+    state.still[p] = std::all_of(nodes.begin(), nodes.end(), [&](int node) { return static_cast<bool>(still[node]); });
+    if (corotational_) follow(patches_[p], state);  // also those that move: some of their elements may be still
+    if (state.still[p]) addForces(patches_[p], x, state, state.held.forces);
+  }
+  for (const BatchRange range : state.held.still) {
+    std::fill(state.turned.begin() + range.begin, state.turned.begin() + range.end, 0);
   }
 }
 

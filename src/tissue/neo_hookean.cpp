@@ -97,18 +97,15 @@ Matrix3 matrixInLane(const MatrixBatch& batch, std::size_t lane) {
   return matrix;
 }
 
-template <typename Call>
-void forEachChanged(const NeoHookean::DeformationState& state, std::size_t elements, const Call& call) {
-  for (std::size_t batch = 0; batch < state.changed.size(); ++batch) {
-    if (state.changed[batch] == 0) continue;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const bool used = batch * kLanes + lane < elements;
-      if (used && (state.changed[batch] >> lane & 1) != 0) call(batch, lane);
-    }
-  }
-}
-
 }  // namespace
+
+/// Deformation gradients are kept four elements at a time, column-major.
+struct NeoHookean::DeformationState : State {
+  std::vector<MatrixBatch> deformations;          ///< scratch: of each element at the last update
+  std::vector<MatrixBatch> tangent_deformations;  ///< those `stiffness` was computed with
+  std::vector<unsigned char> changed;             ///< scratch: elements to refresh, a bit each
+  TetElements::Held held;
+};
 
 NeoHookean::NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
                        const std::vector<bool>& fixed, const ElementMaterials& materials)
@@ -123,9 +120,24 @@ std::unique_ptr<Elasticity::State> NeoHookean::makeState() const {
   state->deformations.assign(tets_->batches.size(), identity);
   state->tangent_deformations = state->deformations;
   state->changed.assign(tets_->batches.size(), 0);
+  state->held = tets_->nothingHeld();
   tets_->prepare(*state);
   rebuildStiffness(*state);
   return state;
+}
+
+template <typename Call>
+void NeoHookean::forEachChanged(const std::vector<BatchRange>& ranges, const DeformationState& state,
+                                const Call& call) const {
+  for (const BatchRange range : ranges) {
+    for (std::size_t batch = range.begin; batch < range.end; ++batch) {
+      if (state.changed[batch] == 0) continue;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const bool used = batch * kLanes + lane < tets_->elements.size();
+        if (used && (state.changed[batch] >> lane & 1) != 0) call(batch, lane);
+      }
+    }
+  }
 }
 
 void NeoHookean::rebuildStiffness(DeformationState& state) const {
@@ -136,15 +148,15 @@ void NeoHookean::rebuildStiffness(DeformationState& state) const {
   }
 }
 
-void NeoHookean::refreshStiffness(DeformationState& state) const {
+void NeoHookean::refreshStiffness(const std::vector<BatchRange>& ranges, DeformationState& state) const {
   std::size_t changes = 0;
   bool cancels = false;
-  forEachChanged(state, tets_->elements.size(), [&](std::size_t batch, std::size_t lane) {
+  forEachChanged(ranges, state, [&](std::size_t batch, std::size_t lane) {
     ++changes;
     cancels = cancels || matrixInLane(state.tangent_deformations[batch], lane).squaredNorm() > kLargeDeformation;
   });
   const bool rebuild = cancels || 2 * changes > tets_->elements.size();
-  forEachChanged(state, tets_->elements.size(), [&](std::size_t batch, std::size_t lane) {
+  forEachChanged(ranges, state, [&](std::size_t batch, std::size_t lane) {
     const TetElement& element = tets_->elements[batch * kLanes + lane];
     if (!rebuild) addStiffness(element, matrixInLane(state.tangent_deformations[batch], lane), -1.0, state);
     for (std::size_t i = 0; i < 9; ++i) state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];
@@ -155,13 +167,27 @@ void NeoHookean::refreshStiffness(DeformationState& state) const {
 
 void NeoHookean::update(const NodalVectors& x, State& any_state, NodalVectors& forces) const {
   auto& state = static_cast<DeformationState&>(any_state);  // made by makeState()
-  forces.setZero();
-  const auto add = [&](const auto& material) {
-    addNeoHookeanForces(tets_->batches, material, kTangentChange, x.data(), state.tangent_deformations,
+  state.held.startForces(forces);
+  evaluate(x, state.held.moving, state, forces);
+}
+
+void NeoHookean::holdStill(const std::vector<bool>& still, const NodalVectors& x, State& any_state) const {
+  auto& state = static_cast<DeformationState&>(any_state);
+  tets_->split(still, state.held);
+  evaluate(x, state.held.still, state, state.held.forces);
+}
+
+/// Adds the forces of these batches, and brings their share of the stiffness up to date.
+void NeoHookean::evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, DeformationState& state,
+                          NodalVectors& forces) const {
+  const auto add = [&](BatchRange range, const auto& material) {
+    addNeoHookeanForces(tets_->batches, range, material, kTangentChange, x.data(), state.tangent_deformations,
                         state.deformations, state.changed, forces.data());
   };
-  tets_->batch_materials.empty() ? add(tets_->material) : add(tets_->batch_materials);
-  refreshStiffness(state);
+  for (const BatchRange range : ranges) {
+    tets_->batch_materials.empty() ? add(range, tets_->material) : add(range, tets_->batch_materials);
+  }
+  refreshStiffness(ranges, state);
 }
 
 double NeoHookean::energy(const NodalVectors& x) const {

@@ -25,11 +25,11 @@ TISSUE_CONTACT_INLINE unsigned char changedLanes(const LaneMatrix& F, const Matr
 }
 
 template <typename Material>
-TISSUE_CONTACT_INLINE void neoHookean(const std::vector<ElementBatch>& batches, const Material& material,
-                                      double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
-                                      std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed,
-                                      double* forces) {
-  for (std::size_t b = 0; b < batches.size(); ++b) {
+TISSUE_CONTACT_INLINE void neoHookean(const std::vector<ElementBatch>& batches, BatchRange range,
+                                      const Material& material, double tangent_change, const double* x,
+                                      const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
+                                      std::vector<unsigned char>& changed, double* forces) {
+  for (std::size_t b = range.begin; b < range.end; ++b) {
     LaneMatrix F, C, P;
     typename Material::Value lambda, mu;
     deformationGradients(batches[b], x, F);
@@ -50,17 +50,18 @@ TISSUE_CONTACT_INLINE void neoHookean(const std::vector<ElementBatch>& batches, 
 }  // namespace
 
 TISSUE_CONTACT_CLONES
-void addNeoHookeanForces(const std::vector<ElementBatch>& batches, const LameParameters& material,
+void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
                          double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
                          std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed, double* forces) {
-  neoHookean(batches, UniformMaterial{material}, tangent_change, x, tangents, deformations, changed, forces);
+  neoHookean(batches, range, UniformMaterial{material}, tangent_change, x, tangents, deformations, changed, forces);
 }
 
 TISSUE_CONTACT_CLONES
-void addNeoHookeanForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
-                         double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
-                         std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed, double* forces) {
-  neoHookean(batches, VaryingMaterial{materials}, tangent_change, x, tangents, deformations, changed, forces);
+void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range,
+                         const std::vector<BatchMaterial>& materials, double tangent_change, const double* x,
+                         const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
+                         std::vector<unsigned char>& changed, double* forces) {
+  neoHookean(batches, range, VaryingMaterial{materials}, tangent_change, x, tangents, deformations, changed, forces);
 }
 
 }  // namespace tissue_contact

@@ -16,11 +16,12 @@ using MatrixBatch = std::array<std::array<double, kLanes>, 9>;
 /// Computes `deformations` F at positions x (3 x n) and adds the elastic forces to `forces` (3 x n). `changed[b]` gets
 /// bit `lane` set where F is further than `tangent_change` (Frobenius norm) away from `tangents`.
 /// @param material lambda and mu of the model, which are not Lame's.
-void addNeoHookeanForces(const std::vector<ElementBatch>& batches, const LameParameters& material,
+void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
                          double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
                          std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed, double* forces);
-void addNeoHookeanForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
-                         double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
-                         std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed, double* forces);
+void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range,
+                         const std::vector<BatchMaterial>& materials, double tangent_change, const double* x,
+                         const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
+                         std::vector<unsigned char>& changed, double* forces);
 
 }  // namespace tissue_contact

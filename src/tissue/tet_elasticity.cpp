@@ -1,9 +1,11 @@
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 #include <Eigen/SVD>
+#include <algorithm>
 #include <utility>
 
 #include "element_kernel.h"
+#include "rotation_state.h"
 #include "tet_elements.h"
 
 namespace tissue_contact {
@@ -14,6 +16,18 @@ Quaternion rotationBySvd(const Matrix3& F) {
   Matrix3 U = svd.matrixU();
   if ((U * svd.matrixV().transpose()).determinant() < 0.0) U.col(2) = -U.col(2);
   return Quaternion(U * svd.matrixV().transpose());
+}
+
+/// Of small turns: sin(angle/2) = |vec q| / |q|.
+double largestTurnSquared(const std::vector<RotationBatch>& rotations) {
+  double largest = 0.0;
+  for (const RotationBatch& q : rotations) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const double axial = q[1][lane] * q[1][lane] + q[2][lane] * q[2][lane] + q[3][lane] * q[3][lane];
+      largest = std::max(largest, 4.0 * axial / (q[0][lane] * q[0][lane] + axial));
+    }
+  }
+  return largest;
 }
 
 }  // namespace
@@ -57,10 +71,11 @@ Quaternion nearestRotation(const Matrix3& F, const Quaternion& guess) {
 TetElasticity::TetElasticity(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
                              const std::vector<bool>& fixed, const ElementMaterials& materials)
     : corotational_(materials.materials.at(0).model == ElasticModel::kCorotational),
+      adapts_(corotational_),
       tets_(std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, lameParameters)) {}
 
 TetElasticity::TetElasticity(bool corotational, std::unique_ptr<const TetElements> tets)
-    : corotational_(corotational), tets_(std::move(tets)) {}
+    : corotational_(corotational), adapts_(false), tets_(std::move(tets)) {}
 
 TetElasticity::~TetElasticity() = default;
 
@@ -76,6 +91,7 @@ void TetElasticity::prepare(RotationState& state) const {
   state.rotations.assign(tets_->batches.size(), identity);
   state.tangent_rotations = state.rotations;
   state.turned.assign(tets_->batches.size(), 0);
+  state.held = tets_->nothingHeld();
   tets_->prepare(state);
   const auto add = tets_->damps ? addStiffness<true> : addStiffness<false>;
   for (const TetElement& element : tets_->elements) add(element, Quaternion::Identity(), 1.0, state);
@@ -114,20 +130,55 @@ void TetElasticity::refreshStiffness(std::size_t batch, RotationState& state) co
 
 void TetElasticity::update(const NodalVectors& x, State& any_state, NodalVectors& forces) const {
   auto& state = static_cast<RotationState&>(any_state);  // made by makeState()
-  forces.setZero();
-  const bool uniform = tets_->batch_materials.empty();
-  if (!corotational_) {
-    uniform ? addLinearForces(tets_->batches, tets_->material, x.data(), forces.data())
-            : addLinearForces(tets_->batches, tets_->batch_materials, x.data(), forces.data());
-    return;
+  if (adapts_ && state.adapt_rotations) adaptRotations(x, state);
+  state.turn_squared = 0.0;
+  state.held.startForces(forces);
+  evaluate(x, state.held.moving, state, forces);
+}
+
+/// One update nearer to what the turns of the last one ask for.
+void TetElasticity::adaptRotations(const NodalVectors& x, RotationState& state) const {
+  if (state.blend_to == 0) {
+    const double turn_squared = state.blend == 0 ? state.turn_squared : largestTurnSquared(state.rotations);
+    if (turn_squared > kTurnOn * kTurnOn) state.blend_to = kBlendUpdates;
+  } else if (++state.updates == kBlendUpdates) {
+    state.updates = 0;
+    state.calm = largestTurnSquared(state.rotations) < kTurnOff * kTurnOff ? state.calm + kBlendUpdates : 0;
+    if (state.calm >= kCalmUpdates) {
+      state.blend_to = 0;
+      state.calm = 0;
+    }
   }
-  const auto rotate = [&](const auto& material) {
-    addCorotationalForces(tets_->batches, material, kTangentAngle, x.data(), state.tangent_rotations, state.rotations,
-                          state.turned, forces.data());
+  if (state.blend == state.blend_to) return;
+  state.blend += state.blend < state.blend_to ? 1 : -1;
+  if (state.held.forces.cols() == 0) return;
+  state.held.forces.setZero();
+  evaluate(x, state.held.still, state, state.held.forces);
+}
+
+void TetElasticity::holdStill(const std::vector<bool>& still, const NodalVectors& x, State& any_state) const {
+  auto& state = static_cast<RotationState&>(any_state);
+  tets_->split(still, state.held);
+  evaluate(x, state.held.still, state, state.held.forces);
+}
+
+/// Adds the forces of these batches, and brings their share of the stiffness up to date.
+void TetElasticity::evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, RotationState& state,
+                             NodalVectors& forces) const {
+  const auto add = [&](BatchRange range, const auto& material) {
+    if (!corotational_ || state.blend == 0) {
+      addLinearForces(tets_->batches, range, material, x.data(), forces.data(),
+                      corotational_ ? &state.turn_squared : nullptr);
+      return;
+    }
+    addCorotationalForces(tets_->batches, range, material, kTangentAngle, state.blend / double{kBlendUpdates}, x.data(),
+                          state.tangent_rotations, state.rotations, state.turned, forces.data());
+    for (std::size_t batch = range.begin; batch < range.end; ++batch) {
+      if (state.turned[batch] != 0) refreshStiffness(batch, state);
+    }
   };
-  uniform ? rotate(tets_->material) : rotate(tets_->batch_materials);
-  for (std::size_t batch = 0; batch < tets_->batches.size(); ++batch) {
-    if (state.turned[batch] != 0) refreshStiffness(batch, state);
+  for (const BatchRange range : ranges) {
+    tets_->batch_materials.empty() ? add(range, tets_->material) : add(range, tets_->batch_materials);
   }
 }
 

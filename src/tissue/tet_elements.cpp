@@ -58,6 +58,24 @@ TetElements::TetElements(const NodalVectors& rest, const std::vector<Tetrahedron
   if (!same) batch_materials = makeBatchMaterials(elements);
 }
 
+void TetElements::split(const std::vector<bool>& still, Held& held) const {
+  held.moving.clear();
+  held.still.clear();
+  for (std::size_t b = 0; b < batches.size(); ++b) {
+    bool rests = true;
+    for (const Tetrahedron& nodes : batches[b].nodes) {
+      for (const int node : nodes) rests = rests && still[node];
+    }
+    std::vector<BatchRange>& ranges = rests ? held.still : held.moving;
+    if (!ranges.empty() && ranges.back().end == b) {
+      ++ranges.back().end;
+    } else {
+      ranges.push_back({b, b + 1});
+    }
+  }
+  held.forces.setZero(3, held.still.empty() ? 0 : static_cast<Eigen::Index>(still.size()));
+}
+
 void TetElements::prepare(Elasticity::State& state) const {
   state.stiffness = pattern;
   if (damps) state.damping = pattern;

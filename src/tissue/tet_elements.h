@@ -37,6 +37,25 @@ struct TetElements {
   /// Zero matrices of the right pattern.
   void prepare(Elasticity::State& state) const;
 
+  /// What update() evaluates and what holdStill() has put aside.
+  struct Held {
+    std::vector<BatchRange> moving;  ///< ranges of batches, ascending
+    std::vector<BatchRange> still;
+    NodalVectors forces;  ///< of the batches in `still`, N; no columns: nothing is still
+
+    void startForces(NodalVectors& all) const {
+      if (forces.cols() == 0) {
+        all.setZero();
+      } else {
+        all = forces;
+      }
+    }
+  };
+  Held nothingHeld() const { return {{{0, batches.size()}}, {}, {}}; }
+
+  /// Sorts the batches by whether all nodes of their elements are in `still`; `forces` are left to the model.
+  void split(const std::vector<bool>& still, Held& held) const;
+
   std::vector<TetElement> elements;
   std::vector<ElementBatch> batches;           ///< the same elements, laid out for the force kernels
   LameParameters material;                     ///< of all elements, if batch_materials is empty

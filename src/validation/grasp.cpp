@@ -270,8 +270,9 @@ void openAndComeToRest(Grasp& grasp, const std::string& name, Report& report) {
   report.near(name + "open: force", "N", 0.0, simulator.wrench(0).force.norm(), 0.0, "no contact");
   report.near(name + "open: moment", "N m", 0.0, simulator.wrench(0).torque.norm(), 0.0, "no contact");
   const NodalVectors moved = simulator.positions(0) - simulator.tissues()[0].restPositions();
-  // 3 s after it went, well damped.
-  report.atMost(name + "open: flap off its rest shape", "m", 1e-9, moved.colwise().norm().maxCoeff(),
+  // 3 s after it went, well damped and asleep: what holds it there would move one node by at most a thousandth of an edge
+  // of 1 mm.
+  report.atMost(name + "open: flap off its rest shape", "m", 1e-6, moved.colwise().norm().maxCoeff(),
                 "elastic: nothing remains");
 }
 

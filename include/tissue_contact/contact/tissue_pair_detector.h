@@ -34,8 +34,12 @@ class TissuePairDetector {
   /// What is appended is sorted by key. Deterministic: depends on the arguments alone. No allocation once vectors have
   /// grown. Not thread-safe. Non-finite positions give no contact. Which pairs count: src/contact/vertex_face.h and
   /// edge_edge.h. @throws std::invalid_argument for sizes that differ from the construction's and a margin that is not
-  /// finite or < 0.
-  void detect(const std::vector<NodalVectors>& positions, double margin_m, std::vector<Contact>& contacts);
+  /// finite or < 0. @param apart per pair: known not to touch and left out; empty: none is.
+  void detect(const std::vector<NodalVectors>& positions, double margin_m, const std::vector<bool>& apart,
+              std::vector<Contact>& contacts);
+  void detect(const std::vector<NodalVectors>& positions, double margin_m, std::vector<Contact>& contacts) {
+    detect(positions, margin_m, {}, contacts);
+  }
 
  private:
   struct Implementation;

@@ -244,6 +244,16 @@ SolverMethod solverMethodByName(const std::string& name);
 const char* relaxationName(RelaxationKind relaxation);
 RelaxationKind relaxationByName(const std::string& name);
 
+/// Which simplifications the simulator may choose for itself, where the scene allows them.
+struct AdvisorDescription {
+  bool sleep = true;             ///< nodes at rest away from contacts are left out
+  double sleep_error = 0.001;    ///< what holds them may sum up to this share of the contact force
+  bool adapt_rotations = false;  ///< corotational bodies are linear while nothing in them turns far
+  bool skip_folds = true;        ///< folds of convex bodies are not looked for while they are impossible
+  bool general_friction =
+      false;  ///< isotropic friction and none take the path of directional laws: to measure its cost
+};
+
 /// Rates are of simulated (message) time; 0 switches a topic off.
 struct PublishDescription {
   double mesh_rate_hz = 30.0;
@@ -263,6 +273,7 @@ struct Scene {
   std::vector<FrictionDescription> friction;
   StepDescription step;
   SolverDescription solver;
+  AdvisorDescription advisor;
   PublishDescription publish;
 };
 

@@ -33,7 +33,9 @@ struct StepReport {
   bool discarded = false;  ///< a step gave no finite answer: tissues were stopped where they were
   int iterations = 0;      ///< solver iterations of its last step
   StopReason stop = StopReason::kTolerance;
-  Residuals residuals;  ///< of its last step, computed after the last sweep
+  Residuals residuals;        ///< of its last step, computed after the last sweep
+  int sleeping_nodes = 0;     ///< left out of the last step, since they are at rest (see tissue_sleep.h)
+  double held_force_n = 0.0;  ///< sum of the forces that holding them still takes, N: bounds the error it makes
   int open_contacts = 0;
   int static_contacts = 0;
   int kinetic_contacts = 0;
@@ -50,6 +52,9 @@ class Simulator {
   const Scene& scene() const;
   const std::vector<Instrument>& instruments() const;
   const std::vector<Tissue>& tissues() const;
+
+  /// Which models were chosen for the scene and why, a line for each choice; for a log.
+  std::vector<std::string> advice() const;
 
   /// Everything back to the start: tissues undeformed and at rest, instruments at their initial joint positions, no
   /// contact history, step count 0.

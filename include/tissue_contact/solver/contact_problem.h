@@ -20,11 +20,14 @@ namespace tissue_contact {
 struct BodySystem {
   const BlockMatrix* K = nullptr;  ///< N/m
   const BlockMatrix* D = nullptr;  ///< N s/m, added as dt * D; null: damping is all in stiffness_scale and mass
-  const std::vector<bool>* fixed = nullptr;  ///< per node: its velocity is 0
-  double stiffness_scale = 0.0;              ///< s^2
-  double damping_scale = 0.0;                ///< s: dt where there is a D
-  VectorX mass;                              ///< kg, per node
-  NodalVectors b;                            ///< N s
+  const std::vector<bool>* fixed = nullptr;  ///< per node: its velocity is 0; may differ from step to step
+  /// All nodes rest in this step: b = 0, v = 0 is the answer, the rest of this may be old. For solvers that carry
+  /// something from step to step; the others may go by `fixed` alone.
+  bool asleep = false;
+  double stiffness_scale = 0.0;  ///< s^2
+  double damping_scale = 0.0;    ///< s: dt where there is a D
+  VectorX mass;                  ///< kg, per node
+  NodalVectors b;                ///< N s
 };
 
 /// A node a contact acts on.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "tissue_contact/core/block_matrix.h"
 #include "tissue_contact/core/types.h"
@@ -18,6 +19,8 @@ class Elasticity {
     virtual ~State() = default;
     BlockMatrix stiffness;  ///< K, N/m, symmetric; rows of fixed nodes hold nothing
     BlockMatrix damping;    ///< D, N s/m, where materials damp differently by region; else no rows
+    /// Set by the caller: the model may leave out rotations while they are small, where it says that it can.
+    bool adapt_rotations = false;
   };
   virtual ~Elasticity() = default;
 
@@ -26,6 +29,11 @@ class Elasticity {
 
   /// Elastic forces (N, overwritten) at positions x (m), and the matrices brought up to date. No allocation.
   virtual void update(const NodalVectors& x, State& state, NodalVectors& forces) const = 0;
+
+  /// From now on update() need not evaluate elements all of whose nodes are in `still`: as long as those nodes stay where
+  /// they are in x, the forces of such elements are what they are now. Models that cannot tell evaluate all elements.
+  /// @param still per node; none set: evaluate everything again. Allocates when first used.
+  virtual void holdStill(const std::vector<bool>& /*still*/, const NodalVectors& /*x*/, State& /*state*/) const {}
 
   /// Elastic energy (J), 0 undeformed. For tests and energy reports.
   virtual double energy(const NodalVectors& x) const = 0;

@@ -28,6 +28,7 @@ class MeanDilatation : public TetElasticity {
 
   std::unique_ptr<State> makeState() const override;
   void update(const NodalVectors& x, State& state, NodalVectors& forces) const override;
+  void holdStill(const std::vector<bool>& still, const NodalVectors& x, State& state) const override;
   double energy(const NodalVectors& x) const override;
 
  private:
@@ -38,6 +39,8 @@ class MeanDilatation : public TetElasticity {
   static double dilatation(const Patch& patch, const Vector3* gradients, const NodalVectors& x);
   void addStiffness(const Patch& patch, const Vector3* gradients, double sign, State& state) const;
   bool turned(const Patch& patch, const RotationState& state) const;
+  void follow(const Patch& patch, PatchState& state) const;
+  static void addForces(const Patch& patch, const NodalVectors& x, const PatchState& state, NodalVectors& forces);
 
   bool corotational_;
   std::vector<Patch> patches_;

@@ -16,7 +16,6 @@
 /// Source: Smith, de Goes, Kim, "Stable Neo-Hookean Flesh Simulation", ACM TOG 37(2), 2018, eq. 14 and what follows.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -26,19 +25,13 @@
 
 namespace tissue_contact {
 
+struct BatchRange;
 struct TetElement;
 struct TetElements;
 
 /// Model: const after construction. Thread-safe for different states.
 class NeoHookean : public Elasticity {
  public:
-  /// Deformation gradients are kept four elements at a time, column-major.
-  struct DeformationState : State {
-    std::vector<std::array<std::array<double, 4>, 9>> deformations;  ///< scratch: of each element at the last update
-    std::vector<std::array<std::array<double, 4>, 9>> tangent_deformations;  ///< those `stiffness` was computed with
-    std::vector<unsigned char> changed;  ///< scratch: elements to refresh, a bit each
-  };
-
   /// @param rest 3 x n, m. @throws std::invalid_argument for a material out of range.
   NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
              const ElementMaterials& materials);
@@ -50,6 +43,8 @@ class NeoHookean : public Elasticity {
   /// forces are always exact.
   void update(const NodalVectors& x, State& state, NodalVectors& forces) const override;
 
+  void holdStill(const std::vector<bool>& still, const NodalVectors& x, State& state) const override;
+
   double energy(const NodalVectors& x) const override;
 
   /// Frobenius norm of the change of F: a turn of 0.4 degrees or a strain of 1 %. As for TetElasticity, this is below
@@ -57,8 +52,14 @@ class NeoHookean : public Elasticity {
   static constexpr double kTangentChange = 0.01;
 
  private:
+  struct DeformationState;
+
+  void evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, DeformationState& state,
+                NodalVectors& forces) const;
+  template <typename Call>
+  void forEachChanged(const std::vector<BatchRange>& ranges, const DeformationState& state, const Call& call) const;
   void rebuildStiffness(DeformationState& state) const;
-  void refreshStiffness(DeformationState& state) const;
+  void refreshStiffness(const std::vector<BatchRange>& ranges, DeformationState& state) const;
 
   std::unique_ptr<const TetElements> tets_;
 };

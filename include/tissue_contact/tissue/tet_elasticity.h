@@ -8,9 +8,13 @@
 /// the stiffness-warping tangent, which leaves out dR/dx and is therefore symmetric positive semidefinite.
 /// Source: Mueller & Gross, "Interactive Virtual Materials", GI 2004, eq. 10-13; the rotation is the polar factor of F
 /// (Etzmuss, Keckeisen, Strasser, PG 2003).
+///
+/// With State::adapt_rotations a corotational body is linear, R = I, while no element of it has turned by kTurnOn, and
+/// again once all have been below kTurnOff for kCalmUpdates updates. R passes between I and the nearest rotation in
+/// kBlendUpdates equal parts of the angle, so that forces and energy go over smoothly. What R = I neglects at a turn theta:
+/// a spurious strain of theta^2 / 2, and the turn of the stress by theta.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -20,19 +24,13 @@
 
 namespace tissue_contact {
 
+struct BatchRange;
 struct TetElement;
 struct TetElements;
 
 /// Model: const after construction. Thread-safe for different states.
 class TetElasticity : public Elasticity {
  public:
-  /// Rotations are kept four elements at a time, as (w, x, y, z) of any length.
-  struct RotationState : State {
-    std::vector<std::array<std::array<double, 4>, 4>> rotations;          ///< of each element at the last update
-    std::vector<std::array<std::array<double, 4>, 4>> tangent_rotations;  ///< those `stiffness` was computed with
-    std::vector<unsigned char> turned;                                    ///< scratch: elements to refresh, a bit each
-  };
-
   /// @param rest 3 x n, m. @throws std::invalid_argument for a material out of range.
   TetElasticity(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
                 const ElementMaterials& materials);
@@ -44,6 +42,8 @@ class TetElasticity : public Elasticity {
   /// are always exact.
   void update(const NodalVectors& x, State& state, NodalVectors& forces) const override;
 
+  void holdStill(const std::vector<bool>& still, const NodalVectors& x, State& state) const override;
+
   /// sum V (mu e:e + lambda/2 tr(e)^2).
   double energy(const NodalVectors& x) const override;
 
@@ -51,19 +51,31 @@ class TetElasticity : public Elasticity {
   /// the implicit Euler step itself.
   static constexpr double kTangentAngle = 0.01;
 
+  static constexpr double kTurnOn = 0.02;  ///< rad: a spurious strain of 2e-4
+  static constexpr double kTurnOff = 0.01;
+  static constexpr int kCalmUpdates = 200;
+  static constexpr int kBlendUpdates = 20;
+
  protected:
-  /// For models that add to this one: with their own parameters in the place of Lame's, and more couplings.
+  struct RotationState;
+
+  /// For models that add to this one: with their own parameters in the place of Lame's, and more couplings. They follow
+  /// rotations always.
   TetElasticity(bool corotational, std::unique_ptr<const TetElements> tets);
 
   const TetElements& tets() const { return *tets_; }
   void prepare(RotationState& state) const;
 
  private:
+  void evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, RotationState& state,
+                NodalVectors& forces) const;
   template <bool kDamps>
   static void addStiffness(const TetElement& element, const Quaternion& rotation, double sign, State& state);
   void refreshStiffness(std::size_t batch, RotationState& state) const;
+  void adaptRotations(const NodalVectors& x, RotationState& state) const;
 
   bool corotational_;
+  bool adapts_;  ///< may be linear for a while
   std::unique_ptr<const TetElements> tets_;
 };
 

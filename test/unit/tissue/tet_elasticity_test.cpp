@@ -4,10 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
+#include <memory>
 #include <random>
 
-#include "validation/elasticity_helpers.h"
 #include "tissue_contact/tissue/tet_mesh.h"
+#include "validation/elasticity_helpers.h"
 
 namespace tissue_contact {
 namespace {
@@ -33,6 +34,100 @@ TEST(Corotational, TangentFollowsRotationAndLagsByItsThreshold) {
   EXPECT_EQ(dense(state->stiffness), K_rest);
   const Eigen::MatrixXd expected = turned(0.7);
   EXPECT_LE((dense(state->stiffness) - expected).cwiseAbs().maxCoeff(), 1e-12 * K_rest.cwiseAbs().maxCoeff());
+}
+
+/// A block bent more and more, to `turn` rad at its end, and back: what adapting rotations make of it.
+class AdaptedRotations : public testing::Test {
+ protected:
+  AdaptedRotations() {
+    BlockDescription block;
+    block.size_m = Vector3(0.02, 0.02, 0.06);
+    block.cells = {2, 2, 6};
+    mesh_ = makeBlockMesh(block);
+    fixed_.assign(mesh_.positions.cols(), false);
+    elasticity_ = std::make_unique<TetElasticity>(mesh_.positions, mesh_.tetrahedra, fixed_,
+                                                  MaterialDescription{ElasticModel::kCorotational, 5e3, 0.4, 1000.0});
+    adapted_ = elasticity_->makeState();
+    adapted_->adapt_rotations = true;
+    full_ = elasticity_->makeState();
+  }
+
+  NodalVectors bent(double turn) const {
+    NodalVectors x = mesh_.positions;
+    for (Eigen::Index i = 0; i < x.cols(); ++i) {
+      const double angle = turn * x(2, i) / 0.06;
+      x.col(i) = Eigen::AngleAxisd(angle, Vector3::UnitY()) * Vector3(1.02 * x(0, i), x(1, i), x(2, i));
+    }
+    return x;
+  }
+
+  NodalVectors forces(double turn, Elasticity::State& state) const {
+    NodalVectors f(3, mesh_.positions.cols());
+    elasticity_->update(bent(turn), state, f);
+    return f;
+  }
+
+  /// Largest difference of the forces to those with full rotations, over the largest of these.
+  double difference(double turn) {
+    const NodalVectors full = forces(turn, *full_);
+    return (forces(turn, *adapted_) - full).cwiseAbs().maxCoeff() / full.cwiseAbs().maxCoeff();
+  }
+
+  void becomeLinear() {
+    for (int k = 0; k <= TetElasticity::kCalmUpdates + 2 * TetElasticity::kBlendUpdates; ++k) forces(0.0, *adapted_);
+  }
+
+  TetMesh mesh_;
+  std::vector<bool> fixed_;
+  std::unique_ptr<TetElasticity> elasticity_;
+  std::unique_ptr<Elasticity::State> adapted_, full_;
+};
+
+TEST_F(AdaptedRotations, AreLinearAfterACalmAndWithinTheErrorStated) {
+  EXPECT_EQ(difference(0.004), 0.0);  // nothing is calm at the start
+  becomeLinear();
+  for (const double turn : {0.002, 0.005, 0.01}) {
+    const double here = difference(turn);
+    EXPECT_GT(here, 0.0) << turn;
+    // A strain of 2 % is there: its stress turned by theta, and the spurious strain theta^2 / 2 beside it. Twice that for
+    // the elements at the end, whose turn is above `turn` where the block is sheared.
+    EXPECT_LE(here, 2.0 * (turn + 0.5 * turn * turn / 0.02)) << turn;
+  }
+}
+
+TEST_F(AdaptedRotations, ComeAndGoWithoutAJumpOfForce) {
+  becomeLinear();
+  const double scale = forces(0.0, *full_).cwiseAbs().maxCoeff();
+  const auto largestStep = [&](double from, double to, Elasticity::State& state) {
+    constexpr int kUpdates = 600;
+    NodalVectors before = forces(from, state);
+    double largest = 0.0;
+    for (int k = 1; k <= kUpdates; ++k) {
+      const NodalVectors now = forces(from + (to - from) * k / kUpdates, state);
+      largest = std::max(largest, (now - before).cwiseAbs().maxCoeff() / scale);
+      before = now;
+    }
+    return largest;
+  };
+  // What a sudden change of model would be: R = I against the full rotation where the change begins.
+  TetElasticity linear(mesh_.positions, mesh_.tetrahedra, fixed_,
+                       MaterialDescription{ElasticModel::kLinear, 5e3, 0.4, 1000.0});
+  const auto linear_state = linear.makeState();
+  NodalVectors f(3, mesh_.positions.cols());
+  linear.update(bent(TetElasticity::kTurnOn), *linear_state, f);
+  const double jump = (f - forces(TetElasticity::kTurnOn, *full_)).cwiseAbs().maxCoeff() / scale;
+  const double plain = largestStep(0.0, 0.06, *full_);
+  EXPECT_LE(largestStep(0.0, 0.06, *adapted_), plain + 2.0 * jump / TetElasticity::kBlendUpdates);
+  EXPECT_EQ(difference(0.06), 0.0);  // all of the rotation counts by now
+  EXPECT_LE(largestStep(0.06, 0.0, *adapted_), plain + 2.0 * jump / TetElasticity::kBlendUpdates);
+  becomeLinear();
+  EXPECT_GT(difference(0.005), 0.0);  // linear again
+}
+
+TEST_F(AdaptedRotations, SuddenTurnsAreFollowed) {
+  becomeLinear();
+  for (int k = 0; k <= TetElasticity::kBlendUpdates + 1; ++k) forces(1.0, *adapted_);
+  EXPECT_LE(difference(1.0), 1e-12);  // rotations were found from another guess
 }
 
 TEST(NearestRotation, IsThePolarFactorForAnyGuess) {

@@ -1,0 +1,94 @@
+#include "tissue_contact/simulation/advisor.h"
+
+#include <sstream>
+
+#include "tissue_contact/tissue/element_materials.h"
+#include "tissue_contact/tissue/make_elasticity.h"
+#include "tissue_contact/tissue/tet_elasticity.h"
+
+namespace tissue_contact {
+namespace {
+
+std::string quoted(const std::string& name) { return "'" + name + "'"; }
+
+std::string sleepLine(const Scene& scene) {
+  if (!scene.advisor.sleep) return "sleep: never, as advisor.sleep asks; every node is solved for in every step";
+  if (!advisedSleep(scene)) {
+    return std::string("sleep: never, since solver.method ") + solverMethodName(scene.solver.method) +
+           " is for comparisons";
+  }
+  std::ostringstream line;
+  line << "sleep: nodes at rest away from contacts are left out while holding them takes at most "
+       << 100.0 * scene.advisor.sleep_error << " % of the contact force in all";
+  if (!advisedSleepByParts(scene)) line << "; each tissue as a whole, since parts would cost the Cholesky factor";
+  return line.str();
+}
+
+bool averages(const TissueDescription& tissue) {
+  ElementMaterials materials(tissue.material);
+  for (const TissueRegion& region : tissue.regions) materials.materials.push_back(region.material);
+  return averagesDilatation(materials);
+}
+
+std::string modelLine(const Scene& scene, const TissueDescription& tissue) {
+  std::ostringstream line;
+  line << "tissue " << quoted(tissue.name) << ": " << elasticModelName(tissue.material.model);
+  if (tissue.material.model != ElasticModel::kCorotational) {
+    line << ", as the scene says";
+  } else if (scene.advisor.adapt_rotations && averages(tissue)) {
+    line << " always: changes of volume are averaged over patches, which follow rotations";
+  } else if (scene.advisor.adapt_rotations) {
+    line << ", linear while no element turns by " << TetElasticity::kTurnOn << " rad (spurious strain below "
+         << 0.5 * TetElasticity::kTurnOn * TetElasticity::kTurnOn << ")";
+  } else {
+    line << " always: rotations cost little beside the solver";
+  }
+  return line.str();
+}
+
+std::string pairLine(const Scene& scene, std::size_t pair, const FoldWatch& folds) {
+  const TissuePair& names = scene.tissue_pairs[pair];
+  if (names.tissue != names.other) {
+    return "tissues " + quoted(names.tissue) + " and " + quoted(names.other) + ": looked at in every step";
+  }
+  const std::string start = "folds of tissue " + quoted(names.tissue) + ": ";
+  if (!scene.advisor.skip_folds) return start + "looked for in every step, as advisor.self_contact asks";
+  if (!folds.watches(pair)) return start + "looked for in every step: it is not convex at rest";
+  std::ostringstream line;
+  line << start << "convex at rest, so looked for only once some |F - I| reaches " << ConvexBody::kMostStrain;
+  return line.str();
+}
+
+std::string frictionLine(const Scene& scene, const FrictionDescription& pair) {
+  std::string line = pair.instrument.empty() ? "tissue " + quoted(pair.other_tissue) : quoted(pair.instrument);
+  if (!pair.link.empty()) line += " (" + pair.link + ")";
+  line += " on " + quoted(pair.tissue);
+  if (!pair.region.empty()) line += " (" + pair.region + ")";
+  line += ": ";
+  if (pair.law.kind != FrictionLawDescription::Kind::kIsotropic) return line + "friction depends on direction";
+  if (scene.advisor.general_friction) return line + "solved as if it depended on direction, as friction_path asks";
+  if (pair.law.static_coefficients.at(0) == 0.0) return line + "no friction, nothing tangential is computed";
+  return line + "isotropic friction, one coefficient for all directions";
+}
+
+}  // namespace
+
+bool advisedSleep(const Scene& scene) {
+  return scene.advisor.sleep && scene.solver.method == SolverMethod::kPredictorCorrector;
+}
+
+bool advisedSleepByParts(const Scene& scene) {
+  return advisedSleep(scene) && scene.solver.relaxation == RelaxationKind::kGaussSeidel;
+}
+
+std::vector<std::string> adviceLines(const Scene& scene, const FoldWatch& folds) {
+  std::vector<std::string> lines = {sleepLine(scene)};
+  for (const TissueDescription& tissue : scene.tissues) lines.push_back(modelLine(scene, tissue));
+  for (std::size_t p = 0; p < scene.tissue_pairs.size(); ++p) lines.push_back(pairLine(scene, p, folds));
+  for (const FrictionDescription& pair : scene.friction) lines.push_back(frictionLine(scene, pair));
+  lines.emplace_back(scene.friction.empty() ? "friction: none is listed, so nothing tangential is computed"
+                                            : "all other pairs: no friction, nothing tangential is computed");
+  return lines;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,111 @@
+#include <algorithm>
+
+#include "simulation/simulator_implementation.h"
+
+namespace tissue_contact {
+namespace {
+
+/// A deep contact is pushed out by at most this share of the shape's smallest half extent per step: an instrument that
+/// starts inside the tissue is then freed over some steps instead of by an explosion.
+constexpr double kRecoveryPerStep = 0.1;
+
+/// More of a static contact's slip than this share of an edge is no error of the solver any more and is let go.
+constexpr double kMostSlipPerEdge = 0.01;
+
+}  // namespace
+
+void Simulator::Implementation::assembleContacts(double dt) {
+  memory.recall(contacts, motion.longestTravel() + mean_edge, answers);
+  problem.contacts.resize(contacts.size());
+  solution.impulses.resize(contacts.size());
+  solution.states.resize(contacts.size());
+  taken_back.resize(contacts.size());
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const Contact& contact = contacts[c];
+    const ContactMemory::Inherited& before = answers[c];
+    ContactRow& row = problem.contacts[c];
+    placeRow(contact, dt, row);
+    row.was_sliding = before.state == ContactState::kKinetic;
+    const double speed = row.was_sliding && last_dt > 0.0 ? before.slip_W.norm() / last_dt : 0.0;
+    row.law = friction.at(contact, x, motion.startPoses(), speed);
+    taken_back[c].setZero();
+    if (before.state == ContactState::kStatic) {
+      // Not faster than it came: a short step after a long one could not hold it.
+      taken_back[c] = contact.R_WC.rightCols<2>().transpose() * before.slip_W / std::max(dt, last_dt);
+      row.u_tool.tail<2>() -= taken_back[c];
+    }
+    solution.impulses[c] = dt * (contact.R_WC.transpose() * before.force_W);
+    solution.states[c] = before.state;
+  }
+}
+
+/// Nodes, frame, gap and tool velocity of a contact.
+void Simulator::Implementation::placeRow(const Contact& contact, double dt, ContactRow& row) const {
+  const ContactKey& key = contact.key;
+  row.node_count = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (contact.weights[i] != 0.0) row.nodes[row.node_count++] = {key.tissue, contact.nodes[i], contact.weights[i]};
+  }
+  row.R_WC = contact.R_WC;
+  row.gap_m = contact.gap_m;
+  double recovery = 0.0;
+  if (key.instrument >= 0) {
+    const double to_shape = contact.gap_m + 0.5 * tissues[key.tissue].thickness();
+    const Vector3 p_tool = contact.p_WC - to_shape * contact.R_WC.col(0);
+    row.u_tool = contact.R_WC.transpose() * motion.pointVelocity(key.instrument, key.link, p_tool, dt);
+    recovery = kRecoveryPerStep * motion.smallestHalfExtent(key.instrument, key.link, key.shape);
+  } else {
+    for (int i = 0; i < 3; ++i) {
+      if (contact.other_weights[i] == 0.0) continue;
+      row.nodes[row.node_count++] = {key.other_tissue, contact.other_nodes[i], -contact.other_weights[i]};
+    }
+    row.u_tool.setZero();
+    recovery = kRecoveryPerStep * mean_edge;
+  }
+  row.required_u_n = std::min(-contact.gap_m, recovery) / dt;
+}
+
+void Simulator::Implementation::recordContacts(double dt) {
+  solved.resize(contacts.size());
+  report.open_contacts = report.static_contacts = report.kinetic_contacts = 0;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    Contact& contact = contacts[c];
+    const NodalVectors& nodes = x[contact.key.tissue];
+    contact.p_WC = contact.weights[0] * nodes.col(contact.nodes[0]) + contact.weights[1] * nodes.col(contact.nodes[1]) +
+                   contact.weights[2] * nodes.col(contact.nodes[2]);
+    answers[c].state = solution.states[c];
+    answers[c].force_W = contact.R_WC * solution.impulses[c] / dt;
+    answers[c].slip_W = slipOf(c, dt);
+    solved[c] = {contact, answers[c].state, answers[c].force_W};
+    report.open_contacts += answers[c].state == ContactState::kOpen;
+    report.static_contacts += answers[c].state == ContactState::kStatic;
+    report.kinetic_contacts += answers[c].state == ContactState::kKinetic;
+  }
+  memory.remember(contacts, answers);
+}
+
+/// Tangential way of a contact in this step, m, world frame; of a static one with what earlier steps have left.
+Vector3 Simulator::Implementation::slipOf(std::size_t c, double dt) const {
+  const Contact& contact = contacts[c];
+  const Vector2 true_velocity = relativeVelocity(problem.contacts[c], solution.v).tail<2>() - taken_back[c];
+  Vector3 slip = dt * (contact.R_WC.rightCols<2>() * true_velocity);
+  if (solution.states[c] != ContactState::kStatic) return slip;
+  slip += contact.R_WC.rightCols<2>() * taken_back[c] * std::max(dt, last_dt);
+  const double most = kMostSlipPerEdge * mean_edge;
+  return slip.norm() > most ? Vector3(slip * (most / slip.norm())) : slip;
+}
+
+void Simulator::Implementation::sumWrenches() {
+  wrenches.assign(instruments.size(), Wrench());
+  for (const SolvedContact& contact : solved) {
+    const ContactKey& key = contact.contact.key;
+    if (key.instrument < 0) continue;
+    const Pose& X_WTip = motion.startPoses()[key.instrument][instruments[key.instrument].tipLink()];
+    const Vector3 force_W = -contact.force_on_tissue_n;
+    Wrench& wrench = wrenches[key.instrument];
+    wrench.force += X_WTip.linear().transpose() * force_W;
+    wrench.torque += X_WTip.linear().transpose() * (contact.contact.p_WC - X_WTip.translation()).cross(force_W);
+  }
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,61 @@
+#include "tissue_contact/tissue/convex_body.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace tissue_contact {
+
+bool isConvex(const NodalVectors& x, const std::vector<Triangle>& surface) {
+  constexpr double kRounding = 1e-9;
+  std::vector<bool> on_surface(x.cols(), false);
+  for (const Triangle& t : surface) {
+    for (const int node : t) on_surface[node] = true;
+  }
+  const Vector3 size = x.rowwise().maxCoeff() - x.rowwise().minCoeff();
+  for (const Triangle& t : surface) {
+    const Vector3 n = (x.col(t[1]) - x.col(t[0])).cross(x.col(t[2]) - x.col(t[0])).normalized();
+    const double most = n.dot(x.col(t[0])) + kRounding * size.norm();
+    for (Eigen::Index i = 0; i < x.cols(); ++i) {
+      if (on_surface[i] && !(n.dot(x.col(i)) <= most)) return false;
+    }
+  }
+  return !surface.empty();
+}
+
+ConvexBody::ConvexBody(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra) : looked_at_(rest) {
+  for (const Tetrahedron& nodes : tetrahedra) {
+    Matrix3 D;
+    for (int i = 0; i < 3; ++i) D.col(i) = rest.col(nodes[i + 1]) - rest.col(nodes[0]);
+    const Matrix3 inverse = D.inverse();
+    elements_.push_back({nodes, inverse});
+    // F changes by the sum of dx_i grad N_i' over the nodes; grad N_1..N_3 are the rows of D^-1, grad N_0 is minus their sum.
+    steepest_ = std::max(steepest_, inverse.rowwise().norm().sum() + inverse.colwise().sum().norm());
+  }
+}
+
+double ConvexBody::strain(const Element& element, const NodalVectors& x) const {
+  Matrix3 D;
+  for (int i = 0; i < 3; ++i) D.col(i) = x.col(element.nodes[i + 1]) - x.col(element.nodes[0]);
+  return (D * element.rest_inverse - Matrix3::Identity()).norm();
+}
+
+bool ConvexBody::cannotFold(const NodalVectors& x) {
+  if (elements_.empty() || !(strain(elements_[worst_], x) < kMostStrain)) return false;
+  const double moved = std::sqrt((x - looked_at_).colwise().squaredNorm().maxCoeff());
+  if (strain_ + steepest_ * moved < kMostStrain) return true;
+  double largest = 0.0;
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const double here = strain(elements_[e], x);
+    if (!(here < kMostStrain)) {
+      worst_ = e;
+      return false;
+    }
+    largest = std::max(largest, here);
+  }
+  looked_at_ = x;
+  strain_ = largest;
+  return true;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,26 @@
+/// @file
+/// Room `tissue`, private: what TetElasticity, and models that add to it, keep of each element.
+#pragma once
+
+#include <vector>
+
+#include "element_kernel.h"
+#include "tet_elements.h"
+#include "tissue_contact/tissue/tet_elasticity.h"
+
+namespace tissue_contact {
+
+/// Rotations are kept four elements at a time, as (w, x, y, z) of any length.
+struct TetElasticity::RotationState : State {
+  std::vector<RotationBatch> rotations;          ///< of each element at the last update
+  std::vector<RotationBatch> tangent_rotations;  ///< those `stiffness` was computed with
+  std::vector<unsigned char> turned;             ///< scratch: elements to refresh, a bit each
+  TetElements::Held held;
+  int blend = kBlendUpdates;  ///< of kBlendUpdates parts: how much of each rotation counts
+  int blend_to = kBlendUpdates;
+  int updates = 0;            ///< since rotations were last looked at
+  int calm = 0;               ///< updates for which no element has been turned far
+  double turn_squared = 0.0;  ///< largest at the last update, while linear; rad^2
+};
+
+}  // namespace tissue_contact

@@ -1,0 +1,113 @@
+/// What the advisor says about a scene, and that its exact choices change nothing: folds of convex bodies, paths of
+/// friction.
+#include "tissue_contact/simulation/advisor.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "validation/text_scene.h"
+
+namespace tissue_contact {
+namespace {
+
+/// A soft slab, its folds looked for, under a ball of 5 mm; the left end is held.
+std::string slabYaml(const std::string& advisor, const std::string& friction = "static: 0.5, kinetic: 0.4") {
+  return "tissues:\n  - name: slab\n    block: {size_m: [0.08, 0.03, 0.01], cells: [12, 4, 2]}\n"
+         "    material: {youngs_modulus_pa: 3000, poissons_ratio: 0.2, density_kg_per_m3: 1000}\n"
+         "    damping: {stiffness_s: 0.01}\n"
+         "    fixed: [{box: {min_m: [-0.05, -1, -1], max_m: [-0.0001, 1, 1]}}]\n"
+         "tissue_pairs: [{tissue: slab, other: slab}]\n"
+         "instruments:\n  - name: probe\n    robot_description: probe\n    tip_link: tip\n"
+         "    joint_state_topics: [/joint_states]\n    base_pose: {position_m: [0.03, 0.001, -0.0051]}\n"
+         "    contact_links: [tip]\n"
+         "friction:\n  - {instrument: probe, tissue: slab, " +
+         friction + "}\nadvisor: {" + advisor + "}\n";
+}
+
+Simulator makeSlab(const std::string& advisor, const std::string& friction = "static: 0.5, kinetic: 0.4") {
+  return makeSimulator(slabYaml(advisor, friction), {{"probe", probeUrdf(0.005)}});
+}
+
+/// Up, and then back over the held part: folds the free end over.
+Vector3 foldAt(int step) {
+  const double way = 1e-4 * step;
+  return {-std::min(std::max(way - 0.03, 0.0), 0.04), 0.0, std::min(way, 0.03)};
+}
+
+int folds(const Simulator& simulator) {
+  int count = 0;
+  for (const SolvedContact& contact : simulator.contacts()) {
+    count += static_cast<int>(contact.contact.key.instrument < 0 && contact.force_on_tissue_n.norm() > 0.0);
+  }
+  return count;
+}
+
+TEST(Advisor, FoldsOfConvexBodiesAreFoundAllTheSame) {
+  Simulator skipping = makeSlab("sleep: never");
+  Simulator looking = makeSlab("sleep: never, self_contact: always");
+  int most = 0;
+  for (int k = 1; k <= 900; ++k) {
+    for (Simulator* simulator : {&skipping, &looking}) simulator->advance(0.001, {foldAt(k)});
+    ASSERT_EQ(skipping.positions(0), looking.positions(0)) << k;  // what cannot touch has no force
+    most = std::max(most, folds(looking));
+  }
+  EXPECT_GT(most, 0) << "the slab did not fold";
+}
+
+TEST(Advisor, GeneralPathOfFrictionGivesTheSameAnswer) {
+  for (const char* friction : {"static: 0", "static: 0.5, kinetic: 0.4"}) {
+    // Solved nearly to the end: when the iteration stops may differ by one.
+    const std::string solver = "solver: {iterations: 1000, tolerance: 1.0e-11}\n";
+    const std::map<std::string, std::string> urdfs = {{"probe", probeUrdf(0.005)}};
+    Simulator plain = makeSimulator(slabYaml("sleep: never", friction) + solver, urdfs);
+    Simulator general = makeSimulator(slabYaml("sleep: never, friction_path: general", friction) + solver, urdfs);
+    double largest = 0.0;
+    double difference = 0.0;
+    for (int k = 1; k <= 100; ++k) {
+      for (Simulator* simulator : {&plain, &general}) simulator->advance(0.001, {foldAt(k)});
+      largest = std::max(largest, plain.wrench(0).force.norm());
+      difference = std::max(difference, (plain.wrench(0).force - general.wrench(0).force).norm());
+    }
+    EXPECT_GT(largest, 0.001);
+    EXPECT_LE(difference, 1e-8 * largest) << friction;  // tolerance of a step times the steps, rounded up
+  }
+}
+
+TEST(Advisor, SaysWhatItHasChosen) {
+  const auto has = [](const Simulator& simulator, const std::string& part) {
+    for (const std::string& line : simulator.advice()) {
+      if (line.find(part) != std::string::npos) return true;
+    }
+    return false;
+  };
+  const Simulator plain = makeSlab("sleep: auto");
+  EXPECT_EQ(plain.advice().size(), 5U);
+  EXPECT_TRUE(
+      has(plain, "sleep: nodes at rest away from contacts are left out while holding them takes at most 0.1 %"));
+  EXPECT_TRUE(has(plain, "'slab': corotational always"));
+  EXPECT_TRUE(has(plain, "folds of tissue 'slab': convex at rest"));
+  EXPECT_TRUE(has(plain, "'probe' on 'slab': isotropic friction"));
+  EXPECT_TRUE(has(plain, "all other pairs: no friction"));
+  const Simulator other =
+      makeSlab("sleep: never, rotations: auto, self_contact: always, friction_path: general", "static: 0");
+  EXPECT_TRUE(has(other, "sleep: never, as advisor.sleep asks"));
+  EXPECT_TRUE(has(other, "linear while no element turns by 0.02 rad"));
+  EXPECT_TRUE(has(other, "looked for in every step, as advisor.self_contact asks"));
+  EXPECT_TRUE(has(other, "solved as if it depended on direction"));
+  EXPECT_TRUE(has(makeSlab("sleep: auto", "static: 0"), "nothing tangential is computed"));
+}
+
+TEST(Advisor, RefusesWhatDoesNotGoTogether) {
+  EXPECT_THROW(
+      makeSimulator(slabYaml("friction_path: general") + "solver: {method: cone4}\n", {{"probe", probeUrdf(0.005)}}),
+      std::invalid_argument);
+  Scene scene = parseScene(slabYaml("sleep: auto"), "scene", nullptr);
+  scene.advisor.sleep_error = std::numeric_limits<double>::quiet_NaN();
+  SceneEnvironment environment;
+  environment.urdf_text = [](const std::string&) { return probeUrdf(0.005); };
+  EXPECT_THROW(Simulator(scene, environment), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tissue_contact

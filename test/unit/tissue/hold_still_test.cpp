@@ -1,0 +1,120 @@
+/// Elements whose nodes are still need no evaluation: forces and stiffness are those of a full one.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tissue_contact/tissue/make_elasticity.h"
+#include "tissue_contact/tissue/tet_mesh.h"
+#include "validation/elasticity_helpers.h"
+
+namespace tissue_contact {
+namespace {
+
+struct Body {
+  TetMesh mesh;
+  std::vector<bool> fixed, still;
+  ElementMaterials materials;
+};
+
+using Model = std::pair<ElasticModel, Dilatation>;
+
+/// Two regions of different stiffness and damping along x; the lower half along z is still.
+Body makeBody(const Model& model) {
+  BlockDescription block;
+  block.size_m = Vector3(0.06, 0.03, 0.04);
+  block.cells = {6, 3, 4};
+  Body body{makeBlockMesh(block), {}, {}, {}};
+  for (Eigen::Index i = 0; i < body.mesh.positions.cols(); ++i) {
+    body.fixed.push_back(body.mesh.positions(2, i) == 0.0);
+    body.still.push_back(body.mesh.positions(2, i) < 0.025);
+  }
+  MaterialDescription soft;
+  soft.model = model.first;
+  soft.dilatation = model.second;
+  soft.youngs_modulus_pa = 5e3;
+  soft.poissons_ratio = 0.4;
+  soft.density_kg_per_m3 = 1000.0;
+  MaterialDescription stiff = soft;
+  stiff.youngs_modulus_pa = 2e4;
+  stiff.poissons_ratio = 0.3;
+  body.materials.materials = {soft, stiff};
+  body.materials.damping_s = {0.001, 0.004};
+  for (const Tetrahedron& nodes : body.mesh.tetrahedra) {
+    body.materials.of_element.push_back(body.mesh.positions(0, nodes[0]) > 0.0 ? 1 : 0);
+  }
+  return body;
+}
+
+/// Bends the block and shears what is not still by `more`.
+NodalVectors deformed(const Body& body, double more) {
+  NodalVectors x = body.mesh.positions;
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    const double z = x(2, i);
+    x(0, i) += 6.0 * z * z;
+    x(1, i) += 0.2 * z * x(0, i) / 0.06;
+    if (!body.still[i]) x(0, i) += more * z;
+  }
+  return x;
+}
+
+class HoldStill : public testing::TestWithParam<Model> {};
+
+TEST_P(HoldStill, ForcesAndMatricesAreThoseOfAFullEvaluation) {
+  const Body body = makeBody(GetParam());
+  const auto model = makeVolumeElasticity(body.mesh.positions, body.mesh.tetrahedra, body.fixed, body.materials, 5);
+  const auto held = model->makeState();
+  const auto full = model->makeState();
+  NodalVectors f_held(3, body.mesh.positions.cols());
+  NodalVectors f_full = f_held;
+  model->update(deformed(body, 0.0), *held, f_held);
+  model->update(deformed(body, 0.0), *full, f_full);
+  model->holdStill(body.still, deformed(body, 0.0), *held);
+  for (const double more : {0.0, 0.1, 0.3}) {
+    model->update(deformed(body, more), *held, f_held);
+    model->update(deformed(body, more), *full, f_full);
+    // The same element forces, summed in another order.
+    EXPECT_LE((f_held - f_full).cwiseAbs().maxCoeff(), 1e-13 * f_full.cwiseAbs().maxCoeff()) << more;
+    EXPECT_LE((dense(held->stiffness) - dense(full->stiffness)).cwiseAbs().maxCoeff(),
+              1e-12 * dense(full->stiffness).cwiseAbs().maxCoeff());
+    EXPECT_LE((dense(held->damping) - dense(full->damping)).cwiseAbs().maxCoeff(),
+              1e-12 * dense(full->damping).cwiseAbs().maxCoeff());
+  }
+  // All awake again, and moving where they were still.
+  model->holdStill(body.fixed, deformed(body, 0.3), *held);
+  const NodalVectors x = 1.01 * deformed(body, 0.3);
+  model->update(x, *held, f_held);
+  model->update(x, *full, f_full);
+  EXPECT_LE((f_held - f_full).cwiseAbs().maxCoeff(), 1e-13 * f_full.cwiseAbs().maxCoeff());
+}
+
+TEST_P(HoldStill, ElementsOfStillNodesAreNotLookedAt) {
+  if (GetParam().first == ElasticModel::kMassSpring) GTEST_SKIP() << "evaluates all of them";
+  const Body body = makeBody(GetParam());
+  const auto model = makeVolumeElasticity(body.mesh.positions, body.mesh.tetrahedra, body.fixed, body.materials, 5);
+  const auto state = model->makeState();
+  NodalVectors before(3, body.mesh.positions.cols());
+  NodalVectors after = before;
+  model->holdStill(body.still, body.mesh.positions, *state);
+  model->update(body.mesh.positions, *state, before);
+  NodalVectors x = body.mesh.positions;
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    if (x(2, i) < 0.005) x(0, i) += 0.001;  // against the contract: in the bottom layer, whose elements are all still
+  }
+  model->update(x, *state, after);
+  EXPECT_EQ(before, after);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, HoldStill,
+                         testing::Values(Model{ElasticModel::kLinear, Dilatation::kElement},
+                                         Model{ElasticModel::kLinear, Dilatation::kPatch},
+                                         Model{ElasticModel::kCorotational, Dilatation::kElement},
+                                         Model{ElasticModel::kCorotational, Dilatation::kPatch},
+                                         Model{ElasticModel::kNeoHookean, Dilatation::kAuto},
+                                         Model{ElasticModel::kMassSpring, Dilatation::kAuto}),
+                         [](const auto& model) {
+                           const bool patches = model.param.second == Dilatation::kPatch;
+                           return std::string(elasticModelName(model.param.first)) + (patches ? "_of_patches" : "");
+                         });
+
+}  // namespace
+}  // namespace tissue_contact
