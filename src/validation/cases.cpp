@@ -24,6 +24,22 @@ const std::vector<ValidationCase>& validationCases() {
       {"grasp", "jaws close on a flap, lift, hold, pull until it slips, open; mu_s >> mu_k too", validateGrasp},
       {"invariances", "units, directions and the order of lists do not matter", validateInvariances},
       {"ploughing", "friction in contact frames, a slow press at any step, impulses over dt", validatePloughing},
+      {"hard-incompressible", "nu .49 at default settings; .495, .499 with cholesky", validateHardIncompressible},
+      {"hard-stiffness-contrast", "1000:1: soft on stiff; with cholesky stiff on soft, a stone",
+       validateHardStiffnessContrast},
+      {"hard-time-steps", ".1, 1, 5 ms at default settings; 10, 33 ms with cholesky", validateHardTimeSteps},
+      {"hard-friction", "mu 0, .01, 1 and 2, and 1 to stick but .1 to slide", validateHardFriction},
+      {"hard-sharp-tip", "a cone and a .2 mm ball on a vertex, an edge and a face", validateHardSharpTip},
+      {"hard-bad-elements", "slivers, needles 1:1000 run with cholesky; flat, inverted: refused",
+       validateHardBadElements},
+      {"hard-inversion", "elements turned inside out under load recover", validateHardInversion},
+      {"hard-fast-entry", "0.5 m/s at 1 ms, and at 10 ms with cholesky: no tunnelling", validateHardFastEntry},
+      {"hard-placement", "an instrument starts inside the tissue, teleports into and out of it", validateHardPlacement},
+      {"hard-many-contacts", "2048 contacts at once, and 1 to 300 as a ball settles", validateHardManyContacts},
+      {"hard-pinch", "tissue pinched between two instruments", validateHardPinch},
+      {"hard-long-hold", "held for 10 min, 10 ms steps with cholesky: no creep, no drift", validateHardLongHold},
+      {"hard-cycles", "1000 cycles of press, drag and lift return to rest", validateHardCycles},
+      {"hard-joint-states", "joint states with gaps, duplicates, NaN, time running backwards", validateHardJointStates},
   };
   return cases;
 }
