@@ -1,5 +1,5 @@
 /// Prints the memory a scene takes: bytes per node and per contact, measured on the heap (glibc's mallinfo2), and how many
-/// of those per contact are there for friction. Press-and-drag of press_drag_bench.cpp, both relaxations.
+/// of those per contact are there for friction. Press-and-drag, both relaxations.
 /// usage: memory
 #include <malloc.h>
 

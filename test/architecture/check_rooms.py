@@ -2,8 +2,8 @@
 """Checks the rules that keep the rooms apart; exits 1 and prints one line per violation.
 
 1. A room includes itself, `core` and rooms above it in ROOMS, never below.
-2. Only `ros` may include ROS; the other rooms include the standard library, Eigen and, in sources and private headers
-   only (src/), PRIVATE_LIBRARIES and OPERATING_SYSTEM.
+2. Only `ros` and `benchmark` may include ROS (and any other library); the other rooms include the standard library,
+   Eigen and, in sources and private headers only (src/), PRIVATE_LIBRARIES and OPERATING_SYSTEM.
 3. The core library links nothing but LINKED: ROS headers and libraries lie in the system's own directories, so the
    compiler and linker would not object.
 """
@@ -14,7 +14,9 @@ import re
 import subprocess
 import sys
 
-ROOMS = ["core", "scene", "instrument", "tissue", "contact", "friction", "solver", "simulation", "validation", "tools", "ros"]
+ROOMS = ["core", "scene", "instrument", "tissue", "contact", "friction", "solver", "simulation", "validation", "tools",
+         "ros", "benchmark"]
+ROS_ROOMS = {"ros", "benchmark"}
 PRIVATE_LIBRARIES = {"fcl", "urdf_model", "urdf_parser", "urdf_world", "console_bridge", "assimp", "yaml-cpp"}
 OPERATING_SYSTEM = {"fcntl.h", "sys", "unistd.h"}
 LINKED = re.compile(r"^(lib(fcl|urdfdom_model|console_bridge|assimp|yaml-cpp|stdc\+\+|gcc_s|m|c)|ld-linux.*)\.so(\.[0-9.]+)?$")
@@ -39,12 +41,12 @@ def include_violation(room, is_public, quote, target):
     if parts[0] == "tissue_contact":
         if len(parts) > 2:
             return room_violation(room, parts[1])
-        return None if room == "ros" else "generated messages belong to the ros room"
+        return None if room in ROS_ROOMS else "generated messages belong to the ros room"
     if quote == '"':  # a private header: of this room ("x.h") or by room ("tissue/x.h")
         if is_public:
             return "a public header includes public headers only, as tissue_contact/<room>/<file>"
         return room_violation(room, parts[0]) if len(parts) > 1 else None
-    if room == "ros" or parts[0] in ("Eigen", "unsupported"):
+    if room in ROS_ROOMS or parts[0] in ("Eigen", "unsupported"):
         return None
     if len(parts) == 1 and "." not in target:
         return None  # standard library

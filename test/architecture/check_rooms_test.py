@@ -37,6 +37,13 @@ class CheckRoomsTest(unittest.TestCase):
         text = '#include <ros/ros.h>\n#include <tissue_contact/Status.h>\n#include "tissue_contact/simulation/a.h"\n'
         self.assertEqual(self.violations("src/ros/node.cpp", text), [])
 
+    def test_clean_benchmark_source(self):
+        text = '#include <ros/package.h>\n#include "tissue_contact/ros/a.h"\n#include "validation/a.h"\n'
+        self.assertEqual(self.violations("src/benchmark/a.cpp", text), [])
+
+    def test_ros_must_not_include_benchmark(self):
+        self.assert_one("src/ros/a.cpp", '#include "benchmark/a.h"\n', "'benchmark'")
+
     def test_comment_is_no_include(self):
         self.assertEqual(self.violations("src/core/a.cpp", "// #include <ros/ros.h>\n"), [])
 

@@ -1,0 +1,213 @@
+#!/usr/bin/python3
+"""Regenerates doc/validation.md and its pictures: runs every validation case and the speed-against-error benchmark.
+
+usage, after scripts/build:   . scripts/env.bash; scripts/make_validation_doc.py [--robot-bag FILE] [--out DIR] [--reuse]
+  --robot-bag FILE  recorded dVRK joint states for config/psm_dvrk.yaml (default: dvrk/psm2_classic_motion.bag of
+                    TISSUE_CONTACT_SHARED_DATA or ../shared/data, where it is there)
+  --out DIR         where raw results go (default: validation, in the build directory); an advisor.csv in it goes into the
+                    document as well
+  --reuse           do not run again what has its results in DIR
+Takes about half an hour. Nothing else should run meanwhile: times are wall times.
+"""
+import argparse
+import csv
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+
+PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
+SCENES = {
+    "press-drag": "Press and drag",
+    "grasp": "Grasp with PSM jaws",
+    "partial-slip": "Partial slip under a sphere",
+    "robot": "Recorded dVRK PSM over a slab",
+}
+
+
+def fail(message):
+    sys.exit("make_validation_doc.py: " + message)
+
+
+def output(*command):
+    try:
+        return subprocess.run(command, cwd=PACKAGE, check=True, capture_output=True, text=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError) as error:
+        fail("%s: %s" % (" ".join(command), getattr(error, "stderr", "") or error))
+
+
+def program(build, name):
+    file = os.path.join(build, "devel", "lib", "tissue_contact", name)
+    if not os.access(file, os.X_OK):
+        fail("%s is not built; run scripts/build" % file)
+    return file
+
+
+def machine(build):
+    """(what, value) of what the figures were made with."""
+    model, flags = "unknown", {}
+    with open("/proc/cpuinfo", encoding="utf-8") as stream:
+        for line in stream:
+            if line.startswith("model name"):
+                model = line.split(":", 1)[1].strip()
+    with open(os.path.join(build, "CMakeCache.txt"), encoding="utf-8") as stream:
+        for line in stream:
+            name, _, value = line.strip().partition("=")
+            flags[name.split(":")[0]] = value
+    compiler = output(flags["CMAKE_CXX_COMPILER"], "--version").splitlines()[0]
+    build_type = flags.get("CMAKE_BUILD_TYPE", "")
+    options = flags.get("CMAKE_CXX_FLAGS_" + build_type.upper(), "")
+    changed = " with uncommitted changes" if output("git", "status", "--porcelain", "--untracked-files=no") else ""
+    return [
+        ("commit", output("git", "log", "-1", "--format=%h of %cs") + changed),
+        ("processor", "%s, %d cores (one is used)" % (model, os.cpu_count())),
+        ("compiler", "%s, %s (%s)" % (compiler, build_type, options)),
+    ]
+
+
+def number(value, digits=4):
+    return "" if value is None or math.isnan(value) else "%.*g" % (digits, value)
+
+
+def cell(text):
+    return str(text).replace("|", "\\|")
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(cell(c) for c in row) + " |" for row in rows])
+
+
+def check_row(check):
+    near = check["kind"] == "near"
+    sign = {"near": "", "at_most": "\u2264 ", "at_least": "\u2265 "}[check["kind"]]
+    error = check["got"] - check["expected"] if near and check["got"] is not None else None
+    return [check["quantity"], check["unit"], sign + number(check["expected"]), number(check["got"]), number(error, 2),
+            number(check["tolerance"], 2) if near else "", "pass" if check["passed"] else "**FAIL**", check["source"]]
+
+
+def study_text(study):
+    levels = ", ".join("%s: %s" % (number(size, 3), number(value)) for size, value in study["levels"])
+    return "%s over %s (limit %s %s): %s. Observed order %s." % (
+        study["quantity"], study["parameter"], number(study["limit"]), study["unit"], levels,
+        number(study["observed_order"], 2) or "none")
+
+
+def validation_section(results):
+    cases = results["cases"]
+    passed = sum(case["passed"] for case in cases)
+    parts = ["## Closed forms and hard cases", "%d of %d cases pass, %d checks." % (
+        passed, len(cases), sum(len(case["checks"]) for case in cases))]
+    for case in cases:
+        parts.append("### `%s`: %s" % (case["name"], case["title"]))
+        if case["failure"]:
+            parts.append("**Stopped:** " + case["failure"])
+        if case["checks"]:
+            head = ["quantity", "unit", "expected", "got", "error", "tolerance", "", "source"]
+            parts.append(table(head, [check_row(check) for check in case["checks"]]))
+        for text in [study_text(study) for study in case["studies"]] + case["notes"]:
+            parts.append("- " + text)
+    return parts
+
+
+def read_rows(file):
+    with open(file, newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def percent(text):
+    return "%.3g" % (100.0 * float(text)) if text else ""
+
+
+def speed_row(row):
+    settings = "tolerance %g, at most %s" % (float(row["tolerance"]), row["iterations"]) if row["tolerance"] not in (
+        "", "0") else (row["iterations"] + " iterations" if row["iterations"] else "")
+    name = " ".join(filter(None, [row["method"], row["relaxation"]]))
+    return ["**%s**" % name if row["shipped"] == "1" else name, settings, row["nodes"],
+            "%g" % (1e3 * float(row["dt_s"])), "%.3g" % float(row["median_ms"]), "%.3g" % float(row["p99_ms"]),
+            "%.3g" % float(row["max_ms"]), "%.0f" % float(row["steps_per_s"]), "%.2g" % float(row["realtime_factor"]),
+            percent(row["solver_error"]), percent(row["total_error"]), percent(row["met_tolerance"])]
+
+
+SPEED_HEAD = ["solver", "stops at", "nodes", "dt, ms", "median, ms", "p99", "max", "steps/s", "\u00d7 real time",
+              "solver error, %", "total error, %", "steps that met it, %"]
+
+
+def speed_section(folder):
+    parts = ["## Speed against error",
+             "Time per step on one core against the RMS error of the wrench over the run, in per cent of its RMS. *Solver "
+             "error*: against the same mesh and step solved to convergence. *Total error*: against a finer mesh or the "
+             "closed form. Bold: as shipped. Made by `tissue_contact_benchmark`; errors are the same in every run, times "
+             "are this machine's."]
+    with open(os.path.join(folder, "summary.txt"), encoding="utf-8") as stream:
+        parts.append("```\n" + stream.read().strip("\n") + "\n```")
+    for scene, title in SCENES.items():
+        file = os.path.join(folder, scene + ".csv")
+        if not os.path.exists(file):
+            parts.append("### %s\n\nNot run: no recording was given." % title)
+            continue
+        parts.append("### " + title)
+        if os.path.exists(os.path.join(folder, scene + ".png")):
+            parts.append("![%s: time per step against solver and total error](%s.png)" % (title, scene))
+        parts.append(table(SPEED_HEAD, [speed_row(row) for row in read_rows(file)]))
+    if os.path.exists(os.path.join(folder, "growth.png")):
+        parts.append("### Growth with the mesh\n\n![Time and error of press and drag over nodes](growth.png)")
+    return parts
+
+
+def advisor_section(file):
+    if not os.path.exists(file):
+        return []
+    rows = read_rows(file)
+    head = list(rows[0]) if rows else []
+    return ["## What a scene does not need", "Time saved and error added by leaving it out, per scene and feature.",
+            table([name.replace("_", " ") for name in head], [[row[name] for name in head] for row in rows])]
+
+
+def run(command, result, reuse, may_fail=False):
+    if reuse and os.path.exists(result):
+        return
+    print(" ".join(command), flush=True)
+    code = subprocess.run(command, check=False).returncode
+    if code != 0 and not (may_fail and code == 1):
+        fail("%s ended with exit code %d" % (command[0], code))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    data = os.environ.get("TISSUE_CONTACT_SHARED_DATA") or os.path.join(PACKAGE, "..", "shared", "data")
+    parser.add_argument("--robot-bag", default=os.path.join(data, "dvrk", "psm2_classic_motion.bag"))
+    parser.add_argument("--out")
+    parser.add_argument("--reuse", action="store_true")
+    arguments = parser.parse_args()
+
+    build = output(os.path.join(PACKAGE, "scripts", "build"), "--where")
+    out = arguments.out or os.path.join(build, "validation")
+    os.makedirs(out, exist_ok=True)
+    results_file = os.path.join(out, "validation.json")
+    # A case that fails is a result as well, exit code 1; the document says so.
+    run([program(build, "tissue_contact_validate"), "--json", results_file], results_file, arguments.reuse, True)
+    robot = ["--robot-bag", arguments.robot_bag] if os.path.exists(arguments.robot_bag) else []
+    run([program(build, "tissue_contact_benchmark"), "--out", out] + robot, os.path.join(out, "summary.txt"),
+        arguments.reuse)
+
+    with open(results_file, encoding="utf-8") as stream:
+        results = json.load(stream)
+    parts = ["# Validation, measured", "Generated by `scripts/make_validation_doc.py`; do not edit.",
+             table(["", ""], machine(build))]
+    parts += validation_section(results) + speed_section(out) + advisor_section(os.path.join(out, "advisor.csv"))
+    doc = os.path.join(PACKAGE, "doc")
+    with open(os.path.join(doc, "validation.md"), "w", encoding="utf-8") as stream:
+        stream.write("\n\n".join(parts) + "\n")
+    for name in list(SCENES) + ["growth"]:
+        picture = os.path.join(out, name + ".png")
+        if os.path.exists(picture):
+            shutil.copy(picture, doc)
+    print("written: doc/validation.md")
+    return 0 if results["passed"] else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

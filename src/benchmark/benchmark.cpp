@@ -1,0 +1,133 @@
+#include "benchmark/benchmark.h"
+
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "benchmark/progress.h"
+#include "benchmark/sweep.h"
+#include "benchmark/table.h"
+#include "validation/package_directory.h"
+
+extern char** environ;
+
+namespace tissue_contact {
+namespace {
+
+constexpr const char* kUsage =
+    "usage: tissue_contact_benchmark [--out DIR] [--only SCENE] [--quick] [--robot-bag FILE] [--no-plot]\n"
+    "       tissue_contact_benchmark --scene SCENE.yaml --bag IN.bag [--urdf ROBOT.urdf] [--from S] [--duration S]\n"
+    "\n"
+    "The first runs press-drag, grasp, partial-slip and robot over solvers, relaxations, iterations, steps and meshes "
+    "on\n"
+    "one core, and writes a CSV file and a picture per scene: time per step against solver error (same scene, solved "
+    "to\n"
+    "convergence) and against total error (finer mesh, or closed form).\n"
+    "  --out DIR         where to (default: benchmark)\n"
+    "  --only SCENE      press-drag, grasp, partial-slip or robot\n"
+    "  --quick           a coarse grid, about a minute\n"
+    "  --robot-bag FILE  recorded joint states of a dVRK PSM for config/psm_dvrk.yaml; without it no robot scene\n"
+    "  --no-plot         no pictures\n"
+    "The second tells the wrench error of your own scene on your own recording, what dominates it (solver, step or "
+    "mesh)\n"
+    "and which setting to change.\n"
+    "  --urdf FILE       text for the robot_description parameter that the scene takes its URDF from\n"
+    "  --from S, --duration S  this part of the bag, s from its first joint state\n"
+    "Exit code: 0 done, 1 failed or no contact, 2 wrong arguments.\n";
+
+std::vector<ScenePlan> plansFor(const BenchmarkOptions& options, std::ostream& out) {
+  const auto wanted = [&](const char* name) { return options.only.empty() || options.only == name; };
+  std::vector<ScenePlan> plans;
+  if (wanted("press-drag")) plans.push_back(pressDragPlan(options.scenes));
+  if (wanted("grasp")) plans.push_back(graspPlan(options.scenes));
+  if (wanted("partial-slip")) plans.push_back(partialSlipPlan(options.scenes));
+  if (wanted("robot")) {
+    if (options.scenes.robot_bag.empty()) {
+      out << "robot: skipped, since no recording is given (--robot-bag FILE)\n";
+    } else {
+      plans.push_back(robotPlan(options.scenes));
+    }
+  }
+  return plans;
+}
+
+/// Beside the program where it is installed, in scripts/ where it is built.
+std::string plotScript() {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / "plot_benchmark.py";
+  return !error && fs::exists(beside, error) ? beside.string() : packageDirectory() + "/scripts/plot_benchmark.py";
+}
+
+void plot(const std::string& directory, std::ostream& out) {
+  const std::string script = plotScript();
+  std::string arguments[] = {"/usr/bin/python3", script, directory};
+  char* argv[] = {arguments[0].data(), arguments[1].data(), arguments[2].data(), nullptr};
+  pid_t child = 0;
+  int status = -1;
+  out << std::flush;
+  const bool ran =
+      posix_spawn(&child, argv[0], nullptr, nullptr, argv, environ) == 0 && waitpid(child, &status, 0) == child;
+  if (ran && WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  out << "no pictures; to make them: python3 " << script << " " << directory << "\n";
+}
+
+void write(const SceneResult& result, const std::string& directory) {
+  const std::string name = directory + "/" + result.scene + ".csv";
+  std::ofstream csv(name);
+  writeCsv(result, csv);
+  if (!csv.flush()) throw std::runtime_error("cannot write '" + name + "'");
+}
+
+void runScenes(const BenchmarkOptions& options, std::ostream& out, std::ostream* bar) {
+  std::error_code error;
+  std::filesystem::create_directories(options.out_directory, error);
+  if (error) throw std::runtime_error("--out: cannot make '" + options.out_directory + "': " + error.message());
+  const std::vector<ScenePlan> plans = plansFor(options, out);
+  double work = 0.0;
+  for (const ScenePlan& plan : plans) work += sweepWork(plan, options.scenes);
+  Progress progress(bar, work);
+  std::ofstream summary(options.out_directory + "/summary.txt");
+  for (const ScenePlan& plan : plans) {
+    const SceneResult result = sweep(plan, options.scenes, progress);
+    write(result, options.out_directory);
+    progress.clear();
+    printSummary(result, out);
+    printSummary(result, summary);
+    out << std::flush;
+  }
+  if (!summary.flush()) throw std::runtime_error("cannot write '" + options.out_directory + "/summary.txt'");
+  out << "\ntables: " << options.out_directory << "\n";
+  if (options.plot) plot(options.out_directory, out);
+}
+
+}  // namespace
+
+int runBenchmark(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& messages, bool show_bar) {
+  BenchmarkOptions options;
+  try {
+    options = parseBenchmarkOptions(arguments);
+  } catch (const std::invalid_argument& error) {
+    messages << "tissue_contact_benchmark: " << error.what() << '\n' << kUsage;
+    return 2;
+  }
+  if (options.help) {
+    out << kUsage;
+    return 0;
+  }
+  std::ostream* const bar = show_bar ? &messages : nullptr;
+  try {
+    if (!options.own.scene_file.empty()) return reportOwnScene(options.own, out, bar) ? 0 : 1;
+    runScenes(options, out, bar);
+    return 0;
+  } catch (const std::exception& error) {
+    messages << "tissue_contact_benchmark: " << error.what() << '\n';
+    return 1;
+  }
+}
+
+}  // namespace tissue_contact

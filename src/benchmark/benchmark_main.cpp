@@ -1,0 +1,12 @@
+/// @file
+/// Executable tissue_contact_benchmark: see benchmark/benchmark.h.
+#include <unistd.h>
+
+#include <iostream>
+
+#include "benchmark/benchmark.h"
+
+int main(int argc, char** argv) {
+  return tissue_contact::runBenchmark(std::vector<std::string>(argv + 1, argv + argc), std::cout, std::cerr,
+                                      isatty(STDERR_FILENO) == 1);
+}

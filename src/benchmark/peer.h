@@ -1,0 +1,26 @@
+/// @file
+/// Room `benchmark`: press and drag by another engine, as a run like any other.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "benchmark/scenes.h"
+
+namespace tissue_contact {
+
+bool hasPeer();  ///< whether this build has one
+
+struct PeerResult {
+  Run run;
+  std::string name;
+  std::string how;
+};
+
+/// Same mesh, motion, step and friction as ours with these settings. Only in builds with a peer.
+PeerResult runPeer(const BenchmarkScene& scene, const Settings& settings, const PressDragMotion& motion);
+
+/// The meshes and steps the peer is run at: the shipped one, and in a full run the next finer mesh.
+std::vector<Settings> peerSizes(const ScenePlan& plan, const SceneOptions& options);
+
+}  // namespace tissue_contact

@@ -1,0 +1,89 @@
+#!/usr/bin/python3
+"""Runs tissue_contact_benchmark as a user would: the quick grid, a scene of one's own, and bad input.
+
+usage: benchmark_test.py PROGRAM PACKAGE
+"""
+import csv
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, PACKAGE = "", ""
+
+
+def run(*arguments):
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=800)
+
+
+class BenchmarkTest(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.directory = directory.name
+        self.scene = os.path.join(PACKAGE, "config", "press_drag.yaml")
+        self.bag = os.path.join(PACKAGE, "config", "press_drag.bag")
+
+    def test_quick_grid(self):
+        out = os.path.join(self.directory, "out")
+        done = run("--quick", "--out", out)
+        self.assertEqual(done.returncode, 0, done)
+        self.assertIn("robot: skipped", done.stdout)
+        for scene in ["press-drag", "grasp", "partial-slip"]:
+            with open(os.path.join(out, scene + ".csv"), newline="", encoding="ascii") as stream:
+                rows = list(csv.DictReader(stream))
+            self.assertEqual(sum(row["shipped"] == "1" for row in rows), 1, scene)
+            ours = [row for row in rows if row["method"] != "bullet"]
+            for row in ours:
+                for column in ["median_ms", "p99_ms", "max_ms", "steps_per_s", "solver_error", "total_error"]:
+                    self.assertTrue(math.isfinite(float(row[column])), row)
+                self.assertGreater(float(row["median_ms"]), 0.0)
+                self.assertLessEqual(float(row["median_ms"]), float(row["max_ms"]))
+            # More iterations of the same method, less error: else the errors mean nothing.
+            fixed = {int(row["iterations"]): float(row["solver_error"]) for row in ours
+                     if row["tolerance"] == "0" and row["at_shipped_size"] == "1"
+                     and (row["method"], row["relaxation"]) == ("predictor_corrector", "gauss_seidel")}
+            self.assertLess(fixed[max(fixed)], fixed[min(fixed)], scene)
+            self.assertTrue(os.path.getsize(os.path.join(out, scene + ".png")) > 10000, done)
+
+    def test_own_scene(self):
+        done = run("--scene", self.scene, "--bag", self.bag, "--from", "0.2", "--duration", "0.5")
+        self.assertEqual(done.returncode, 0, done)
+        for words in ["solver (to convergence)", "step (half of it)", "mesh (1.5 times the cells)", "probe"]:
+            self.assertIn(words, done.stdout)
+        self.assertRegex(done.stdout.splitlines()[-1], "dominates|keep the settings")
+
+    def test_no_contact_is_said(self):
+        done = run("--scene", self.scene, "--bag", self.bag, "--duration", "0.05")
+        self.assertEqual(done.returncode, 1, done)
+        self.assertIn("No contact", done.stdout)
+
+    def assert_refused(self, code, arguments, *words):
+        done = run(*arguments)
+        self.assertEqual(done.returncode, code, done)
+        for word in words:
+            self.assertIn(word, done.stderr)
+
+    def test_bad_files(self):
+        broken = os.path.join(self.directory, "broken.bag")
+        with open(broken, "w", encoding="ascii") as stream:
+            stream.write("no bag")
+        self.assert_refused(1, ["--scene", self.scene, "--bag", "/nowhere.bag"], "/nowhere.bag")
+        self.assert_refused(1, ["--scene", self.scene, "--bag", broken], broken)
+        self.assert_refused(1, ["--scene", "/nowhere.yaml", "--bag", self.bag], "/nowhere.yaml")
+        self.assert_refused(1, ["--scene", os.path.join(PACKAGE, "config", "grasp.yaml"), "--bag", self.bag],
+                            "/PSM1/joint_states", "/probe/joint_states")
+        self.assert_refused(1, ["--scene", self.scene, "--bag", self.bag, "--from", "100"], "3.45", "long")
+        self.assert_refused(1, ["--quick", "--out", os.path.join(broken, "below")], broken)
+
+    def test_bad_arguments(self):
+        self.assert_refused(2, ["--oops"], "--oops", "usage")
+        self.assert_refused(2, ["--only", "all"], "press-drag")
+        self.assert_refused(2, ["--scene", self.scene], "--bag")
+
+
+if __name__ == "__main__":
+    PROGRAM, PACKAGE = sys.argv[1:3]
+    unittest.main(argv=sys.argv[:1], verbosity=2)
