@@ -55,9 +55,33 @@ int nextFor(const std::vector<int>& patch, const std::vector<std::array<int, 4>>
   return best;
 }
 
-}  // namespace
+/// Corners of a tetrahedron in ascending order of x, y, z: exact, so that no rounding decides an order.
+std::array<std::array<double, 3>, 4> placeOf(const NodalVectors& rest, const Tetrahedron& tetrahedron) {
+  std::array<std::array<double, 3>, 4> corners;
+  for (int i = 0; i < 4; ++i) {
+    const Vector3 p = rest.col(tetrahedron[i]);
+    corners[i] = {p.x(), p.y(), p.z()};
+  }
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
 
-std::vector<int> patchesByFaces(const std::vector<Tetrahedron>& tetrahedra) {
+/// Indices of the tetrahedra in the order of their places.
+std::vector<int> orderByPlace(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra) {
+  std::vector<std::pair<std::array<std::array<double, 3>, 4>, int>> places;
+  places.reserve(tetrahedra.size());
+  for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
+    places.emplace_back(placeOf(rest, tetrahedra[e]), static_cast<int>(e));
+  }
+  std::sort(places.begin(), places.end());
+  std::vector<int> order;
+  order.reserve(places.size());
+  for (const auto& place : places) order.push_back(place.second);
+  return order;
+}
+
+/// Patches of tetrahedra in the order in which they are to be grown.
+std::vector<int> growPatches(const std::vector<Tetrahedron>& tetrahedra) {
   const std::vector<std::array<int, 4>> neighbours = neighboursThroughFaces(tetrahedra);
   std::vector<int> patch_of(tetrahedra.size(), -1);
   int patches = 0;
@@ -70,14 +94,29 @@ std::vector<int> patchesByFaces(const std::vector<Tetrahedron>& tetrahedra) {
       next = nextFor(patch, neighbours, patch_of);
     }
     // What is left between others would be stiff on its own: it joins a neighbour.
-    const auto joined = std::find_if(neighbours[first].begin(), neighbours[first].end(),
-                                     [&](int other) { return other >= 0 && patch_of[other] != patches; });
-    if (2 * patch.size() < kPatchSize && joined != neighbours[first].end()) {
-      for (const int member : patch) patch_of[member] = patch_of[*joined];
+    int joined = -1;
+    for (const int other : neighbours[first]) {
+      if (other >= 0 && patch_of[other] != patches && (joined < 0 || other < joined)) joined = other;
+    }
+    if (2 * patch.size() < kPatchSize && joined >= 0) {
+      for (const int member : patch) patch_of[member] = patch_of[joined];
     } else {
       ++patches;
     }
   }
+  return patch_of;
+}
+
+}  // namespace
+
+std::vector<int> patchesByFaces(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra) {
+  const std::vector<int> order = orderByPlace(rest, tetrahedra);
+  std::vector<Tetrahedron> sorted;
+  sorted.reserve(order.size());
+  for (const int e : order) sorted.push_back(tetrahedra[e]);
+  const std::vector<int> patch_of_sorted = growPatches(sorted);
+  std::vector<int> patch_of(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) patch_of[order[k]] = patch_of_sorted[k];
   return patch_of;
 }
 

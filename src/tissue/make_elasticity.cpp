@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "element_patches.h"
 #include "tissue_contact/tissue/mass_spring.h"
 #include "tissue_contact/tissue/mean_dilatation.h"
 #include "tissue_contact/tissue/neo_hookean.h"
@@ -28,7 +27,8 @@ bool averagesDilatation(const ElementMaterials& materials) {
 std::unique_ptr<const Elasticity> makeVolumeElasticity(const NodalVectors& rest,
                                                        const std::vector<Tetrahedron>& tetrahedra,
                                                        const std::vector<bool>& fixed,
-                                                       const ElementMaterials& materials, int cell_size) {
+                                                       const ElementMaterials& materials,
+                                                       const std::vector<int>& patch_of) {
   const MaterialDescription& first = materials.materials.at(0);
   if (first.dilatation == Dilatation::kPatch && !hasPatches(first.model)) {
     throw std::invalid_argument("dilatation 'patch' is for models linear and corotational, not " +
@@ -38,9 +38,7 @@ std::unique_ptr<const Elasticity> makeVolumeElasticity(const NodalVectors& rest,
     case ElasticModel::kLinear:
     case ElasticModel::kCorotational:
       if (averagesDilatation(materials)) {
-        return std::make_unique<MeanDilatation>(
-            rest, tetrahedra, fixed, materials,
-            cell_size > 0 ? patchesByCells(tetrahedra.size(), cell_size) : patchesByFaces(tetrahedra));
+        return std::make_unique<MeanDilatation>(rest, tetrahedra, fixed, materials, patch_of);
       }
       return std::make_unique<TetElasticity>(rest, tetrahedra, fixed, materials);
     case ElasticModel::kNeoHookean:

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "element_patches.h"
 #include "region.h"
 #include "tissue_contact/tissue/element_materials.h"
 #include "tissue_contact/tissue/sheet_mesh.h"
@@ -35,9 +36,10 @@ void setGeometry(const TissueDescription& description, const std::string& source
   const auto inFile = [&](const std::string& file) { return source + ", mesh file '" + file + "'"; };
   if (const auto* block = std::get_if<BlockDescription>(&description.geometry)) {
     setVolume(makeBlockMesh(*block), source, placed);
-    placed.cell_size = kTetrahedraPerCell;
+    placed.patch_of = patchesByCells(placed.tetrahedra.size(), kTetrahedraPerCell);
   } else if (const auto* mesh = std::get_if<MeshDescription>(&description.geometry)) {
     setVolume(loadTetMesh(*mesh), inFile(mesh->file), placed);
+    placed.patch_of = patchesByFaces(placed.rest, placed.tetrahedra);
   } else if (const auto* sheet = std::get_if<SheetDescription>(&description.geometry)) {
     setSheet(makeSheetMesh(*sheet), sheet->thickness_m, source, placed);
   } else {

@@ -15,8 +15,8 @@ struct PlacedMesh {
   NodalVectors rest;                    ///< m, in the world
   std::vector<Tetrahedron> tetrahedra;  ///< the elements of a volume; none: the surface triangles are the elements
   std::vector<Triangle> surface;
-  double thickness = 0.0;  ///< m; 0: a volume
-  int cell_size = 0;       ///< tetrahedra per cell, where they come cell by cell
+  double thickness = 0.0;     ///< m; 0: a volume
+  std::vector<int> patch_of;  ///< of each tetrahedron: see MeanDilatation
   std::vector<bool> fixed;
   std::vector<int> element_regions;  ///< per element, -1: none; empty: the description has no regions
   std::vector<int> surface_regions;  ///< likewise per surface triangle

@@ -95,7 +95,7 @@ Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
   damping_.stiffness_s = takeUniformDamping(placed.elementCount(), materials);
   masses_ = lumpedMasses(placed, materials);
   if (placed.isVolume()) {
-    elasticity_ = makeVolumeElasticity(placed.rest, placed.tetrahedra, placed.fixed, materials, placed.cell_size);
+    elasticity_ = makeVolumeElasticity(placed.rest, placed.tetrahedra, placed.fixed, materials, placed.patch_of);
   } else {
     elasticity_ = std::make_unique<Membrane>(placed.rest, placed.surface, placed.fixed, placed.thickness, materials);
   }

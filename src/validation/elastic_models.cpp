@@ -30,7 +30,7 @@ TissueDescription bar(ElasticModel model, double nu, const Vector3& size, const 
   block.size_m = size;
   block.cells = cells;
   description.geometry = block;
-  description.material = {model, kYoung, nu, 1000.0};
+  description.material = {model, kYoung, nu, 1000.0, -1.0, Dilatation::kElement};
   return description;
 }
 

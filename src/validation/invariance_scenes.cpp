@@ -1,11 +1,6 @@
 #include "validation/invariance_scenes.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <stdexcept>
 
@@ -144,17 +139,6 @@ std::string tetrahedronStl() {
   }
   return stl + "endsolid tetrahedron\n";
 }
-
-TemporaryFile::TemporaryFile(const std::string& content, const std::string& ending) {
-  path_ = (std::filesystem::temp_directory_path() / "tissue_contact_XXXXXX").string() + ending;
-  const int descriptor = mkstemps(path_.data(), static_cast<int>(ending.size()));
-  if (descriptor < 0) throw std::runtime_error("cannot create a temporary file '" + path_ + "'");
-  close(descriptor);
-  std::ofstream file(path_);
-  if (!(file << content).flush()) throw std::runtime_error("cannot write '" + path_ + "'; is the disk full?");
-}
-
-TemporaryFile::~TemporaryFile() { std::remove(path_.c_str()); }
 
 Run run(const Scene& scene, const RunOptions& options) {
   SceneEnvironment environment;

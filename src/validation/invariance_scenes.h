@@ -20,21 +20,6 @@ Scene sheetOnBlockScene();
 /// The tetrahedron of sharpToolsScene(), ASCII STL.
 std::string tetrahedronStl();
 
-/// A file with this content, removed with the object.
-class TemporaryFile {
- public:
-  /// @param ending with its dot. @throws std::runtime_error when it cannot be written.
-  TemporaryFile(const std::string& content, const std::string& ending);
-  ~TemporaryFile();
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
 struct RunOptions {
   Units units;                      ///< that the scene is in
   Matrix3 R = Matrix3::Identity();  ///< by which it is turned

@@ -9,6 +9,7 @@
 #include "validation/closed_forms.h"
 #include "validation/invariance_scenes.h"
 #include "validation/report.h"
+#include "validation/temporary_file.h"
 
 namespace tissue_contact {
 namespace {
@@ -143,7 +144,7 @@ void otherOrder(const std::string& stl_file, Report& report) {
       if (one.name != "two tools") continue;
       Run runs[2];
       for (const bool shuffle : {false, true}) {
-        const TemporaryFile file(blockFile(scene, shuffle), ".vtk");
+        const TemporaryFile file(shuffle ? "shuffled.vtk" : "block.vtk", blockFile(scene, shuffle));
         Scene from_file = scene;
         MeshDescription mesh;
         mesh.file = file.path();
@@ -160,7 +161,7 @@ void otherOrder(const std::string& stl_file, Report& report) {
 }  // namespace
 
 void validateInvariances(Report& report) {
-  const TemporaryFile stl(tetrahedronStl(), ".stl");
+  const TemporaryFile stl("tetrahedron.stl", tetrahedronStl());
   const std::vector<NamedScene> scenes = allScenes(stl.path());
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const Run plain = run(scenes[i].scene);

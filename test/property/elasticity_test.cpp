@@ -12,6 +12,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "tissue/element_patches.h"
 #include "tissue_contact/tissue/make_elasticity.h"
 #include "tissue_contact/tissue/membrane.h"
 #include "tissue_contact/tissue/sheet_mesh.h"
@@ -68,7 +69,8 @@ Body makeBlock(const ElementMaterials& materials, int fixed_nodes) {
   block.cells = {2, 2, 2};
   TetMesh mesh = makeBlockMesh(block);
   auto elasticity =
-      makeVolumeElasticity(mesh.positions, mesh.tetrahedra, firstFixed(fixed_nodes, mesh.positions.cols()), materials);
+      makeVolumeElasticity(mesh.positions, mesh.tetrahedra, firstFixed(fixed_nodes, mesh.positions.cols()), materials,
+                           patchesByFaces(mesh.positions, mesh.tetrahedra));
   return {std::move(mesh.positions), std::move(elasticity)};
 }
 

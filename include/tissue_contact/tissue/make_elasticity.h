@@ -18,13 +18,14 @@ constexpr double kAveragedPoissonsRatio = 0.3;
 /// Whether volume changes of these materials are averaged over patches: what they ask for, or what kAuto chooses.
 bool averagesDilatation(const ElementMaterials& materials);
 
-/// @param rest 3 x n, m. @param materials all of the model and dilatation of the first. @param cell_size tetrahedra per
-///   cell where they come cell by cell (a generated block); 0: patches, where the material wants them, are found by faces.
+/// @param rest 3 x n, m. @param materials all of the model and dilatation of the first. @param patch_of of each
+///   tetrahedron, for materials that average their dilatation (see MeanDilatation); not looked at for others.
 /// @throws std::invalid_argument for a material out of range, a membrane (see membrane.h), which a volume cannot be, or
 ///   patches for a model without them.
 std::unique_ptr<const Elasticity> makeVolumeElasticity(const NodalVectors& rest,
                                                        const std::vector<Tetrahedron>& tetrahedra,
                                                        const std::vector<bool>& fixed,
-                                                       const ElementMaterials& materials, int cell_size = 0);
+                                                       const ElementMaterials& materials,
+                                                       const std::vector<int>& patch_of);
 
 }  // namespace tissue_contact
