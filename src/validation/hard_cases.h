@@ -1,6 +1,6 @@
 /// @file
-/// Room `validation`: cases that break simulators: extreme materials, steps, friction, geometry and motion. Each states the
-/// band its force must stay in.
+/// Room `validation`: cases that break simulators: extreme materials, steps, friction, geometry and motion. Each states
+/// the band its force must stay in.
 #pragma once
 
 namespace tissue_contact {

@@ -13,8 +13,8 @@ std::string boxUrdf(const std::string& size) {
   return urdf.replace(from, urdf.find("/>", from) + 2 - from, "<box size='" + size + "'/>");
 }
 
-/// A free plate of 31 x 31 cells, 60 x 60 x 4 mm, on a table and under one: up to 2048 nodes touch. nu = 0, so that it does
-/// not spread and the stress is E delta / h everywhere, whatever the friction.
+/// A free plate of 31 x 31 cells, 60 x 60 x 4 mm, on a table and under one: up to 2048 nodes touch. nu = 0, so that it
+/// does not spread and the stress is E delta / h everywhere, whatever the friction.
 Simulator makePlate() {
   std::ostringstream yaml;
   yaml << "tissues:\n  - name: plate\n    block: {size_m: [0.06, 0.06, 0.004], cells: [31, 31, 1]}\n"

@@ -1,5 +1,5 @@
-/// Hard cases of geometry: tips sharper than the mesh on a face, an edge and a vertex; slivers, needles and elements that
-/// are no elements; elements turned inside out under load.
+/// Hard cases of geometry: tips sharper than the mesh on a face, an edge and a vertex; slivers, needles and elements
+/// that are no elements; elements turned inside out under load.
 #include <unistd.h>
 
 #include <filesystem>
@@ -65,8 +65,8 @@ std::string tipUrdf(const std::string& geometry) {
   return urdf.replace(from, urdf.find("/>", from) + 2 - from, geometry);
 }
 
-/// Block whose grid lines pair up at a thousandth of the cell size in the middle of each axis: cells between two pairs are
-/// flat (1000 x 1000 x 1), long (1000 x 1 x 1) and regular; in legacy VTK text. `spoil` may change the mesh first.
+/// Block whose grid lines pair up at a thousandth of the cell size in the middle of each axis: cells between two pairs
+/// are flat (1000 x 1000 x 1), long (1000 x 1 x 1) and regular; in legacy VTK text. `spoil` may change the mesh first.
 std::string sliverVtk(const std::function<void(TetMesh&)>& spoil = {}) {
   BlockDescription block;
   block.size_m = Vector3(7.0, 7.0, 5.0);

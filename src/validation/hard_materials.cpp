@@ -41,8 +41,8 @@ void validateHardIncompressible(Report& report) {
   runPad("nu .499", scene, {}, {}, report, 0.6, 1.0);
 }
 
-/// Gauss-Seidel carries a force over one cell per sweep, so parts in which sound crosses several cells per step (here 22 m/s x
-/// 1 ms = 3 cells) take more iterations than there are: stiff parts want Cholesky.
+/// Gauss-Seidel carries a force over one cell per sweep, so parts in which sound crosses several cells per step (here
+/// 22 m/s x 1 ms = 3 cells) take more iterations than there are: stiff parts want Cholesky.
 void validateHardStiffnessContrast(Report& report) {
   const auto layer = [](double pascal) {
     return "[{name: layer, where: [plane: {point_m: [0, 0, 0.0225], normal: [0, 0, -1]}], material: "

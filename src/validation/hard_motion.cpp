@@ -1,5 +1,5 @@
-/// Hard cases of motion: fast entry, starting inside the tissue, teleporting, and joint states with gaps, duplicates and time
-/// that runs backwards.
+/// Hard cases of motion: fast entry, starting inside the tissue, teleporting, and joint states with gaps, duplicates
+/// and time that runs backwards.
 #include <limits>
 
 #include "tissue_contact/simulation/joint_state_player.h"

@@ -1,6 +1,6 @@
 /// @file
-/// Room `validation`: a scene run through its hard case. Every step's energy, work, residuals and penetration in, and every
-/// so many steps the exact answer to the same step; what the worst of them was out.
+/// Room `validation`: a scene run through its hard case. Every step's energy, work, residuals and penetration in, and
+/// every so many steps the exact answer to the same step; what the worst of them was out.
 #pragma once
 
 #include <string>
@@ -13,13 +13,14 @@ namespace tissue_contact {
 
 /// What a run must keep to.
 struct HardBands {
-  /// Of the force of a step against the exact answer to the same step; RMS over RMS. The default settings leave 0.06 % to 0.2 %
-  /// on ordinary scenes (doc/scene.md); a hard case may have twice that. Where contacts stick and slip, one that is
-  /// within the tolerance of letting go may do so a step early or late, and that step is off by mu_s / mu_k - 1: kStickSlip.
+  /// Of the force of a step against the exact answer to the same step; RMS over RMS. The default settings leave 0.06 %
+  /// to 0.2 % on ordinary scenes (doc/scene.md); a hard case may have 0.5 %. Where contacts stick and slip, one
+  /// that is within the tolerance of letting go may do so a step early or late, and that step is off by mu_s / mu_k -
+  /// 1: kStickSlip.
   double force = 0.005;
 
-  /// How deep tissue may be inside a shape, over the mean edge of its surface. A ball of 10 mm on cells of 7.5 mm cannot
-  /// be followed better than edge / (8 R) = 0.09 edges anyway: half of that.
+  /// How deep tissue may be inside a shape, over the mean edge of its surface. A ball of 10 mm on cells of 7.5 mm
+  /// cannot be followed better than edge / (8 R) = 0.09 edges anyway: half of that.
   double penetration_edges = 0.05;
 
   /// Energy that appears without work over the work that was done: what a force with that error could do.

@@ -1,5 +1,6 @@
 /// @file
-/// Room `validation`: the scene most hard cases vary: a pad with its base fixed and a probe that presses, drags and lifts.
+/// Room `validation`: the scene most hard cases vary: a pad with its base fixed and a probe that presses, drags and
+/// lifts.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,5 @@
-/// Hard cases of the step: lengths from 0.1 to 33 ms, and friction from none to mu = 2 and from 1.0 down to 0.1 at the slip.
+/// Hard cases of the step: lengths from 0.1 to 33 ms, and friction from none to mu = 2 and from 1.0 down to 0.1 at the
+/// slip.
 #include "validation/hard_cases.h"
 #include "validation/hard_scene.h"
 
