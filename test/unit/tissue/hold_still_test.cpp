@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "tissue/element_patches.h"
 #include "tissue_contact/tissue/make_elasticity.h"
 #include "tissue_contact/tissue/tet_mesh.h"
 #include "validation/elasticity_helpers.h"
@@ -61,7 +62,8 @@ class HoldStill : public testing::TestWithParam<Model> {};
 
 TEST_P(HoldStill, ForcesAndMatricesAreThoseOfAFullEvaluation) {
   const Body body = makeBody(GetParam());
-  const auto model = makeVolumeElasticity(body.mesh.positions, body.mesh.tetrahedra, body.fixed, body.materials, 5);
+  const auto model = makeVolumeElasticity(body.mesh.positions, body.mesh.tetrahedra, body.fixed, body.materials,
+                                          patchesByCells(body.mesh.tetrahedra.size(), kTetrahedraPerCell));
   const auto held = model->makeState();
   const auto full = model->makeState();
   NodalVectors f_held(3, body.mesh.positions.cols());
@@ -90,7 +92,8 @@ TEST_P(HoldStill, ForcesAndMatricesAreThoseOfAFullEvaluation) {
 TEST_P(HoldStill, ElementsOfStillNodesAreNotLookedAt) {
   if (GetParam().first == ElasticModel::kMassSpring) GTEST_SKIP() << "evaluates all of them";
   const Body body = makeBody(GetParam());
-  const auto model = makeVolumeElasticity(body.mesh.positions, body.mesh.tetrahedra, body.fixed, body.materials, 5);
+  const auto model = makeVolumeElasticity(body.mesh.positions, body.mesh.tetrahedra, body.fixed, body.materials,
+                                          patchesByCells(body.mesh.tetrahedra.size(), kTetrahedraPerCell));
   const auto state = model->makeState();
   NodalVectors before(3, body.mesh.positions.cols());
   NodalVectors after = before;
