@@ -28,7 +28,7 @@ const std::vector<ValidationCase>& validationCases() {
       {"hard-stiffness-contrast", "1000:1: soft on stiff; with cholesky stiff on soft, a stone",
        validateHardStiffnessContrast},
       {"hard-time-steps", ".1, 1, 5 ms at default settings; 10, 33 ms with cholesky", validateHardTimeSteps},
-      {"hard-friction", "mu 0, .01, 1 and 2, and 1 to stick but .1 to slide", validateHardFriction},
+      {"hard-friction", "mu 0, .01, 1, 2; 1 to stick but .1 to slide, with cholesky too", validateHardFriction},
       {"hard-sharp-tip", "a cone and a .2 mm ball on a vertex, an edge and a face", validateHardSharpTip},
       {"hard-bad-elements", "slivers, needles 1:1000 run with cholesky; flat, inverted: refused",
        validateHardBadElements},

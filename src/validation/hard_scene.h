@@ -25,6 +25,7 @@ struct PadScene {
   double step_s = 0.001;
   std::string solver = "{}";  ///< the defaults
   double radius_m = 0.01;
+  std::string more;      ///< further lines of the scene
   std::string urdf;      ///< instead of a sphere's
   double start_m = 0.0;  ///< of joint z: where the probe is before the first step
 };
@@ -43,7 +44,8 @@ inline Simulator makePad(const PadScene& scene) {
        << "}, base_pose: {position_m: [0, 0, " << 0.03 + scene.radius_m << "]}}\n"
        << "friction:\n  - {instrument: probe, tissue: pad, static: " << scene.mu_static
        << ", kinetic: " << scene.mu_kinetic << "}\n"
-       << "step: {max_step_s: " << scene.step_s << "}\nsolver: " << scene.solver << "\n";
+       << "step: {max_step_s: " << scene.step_s << "}\nsolver: " << scene.solver << "\n"
+       << scene.more;
   return makeSimulator(yaml.str(), {{"probe", scene.urdf.empty() ? probeUrdf(scene.radius_m) : scene.urdf}});
 }
 
@@ -74,10 +76,10 @@ inline void runCycles(Simulator& simulator, const PressDrag& path, double step_s
 
 /// 2000 steps of a pad under such cycles, reported under `name`; `from` to `to` is its share of the case.
 inline void runPad(const std::string& name, const PadScene& scene, const PressDrag& path, const HardBands& bands,
-                   Report& report, double from = 0.0, double to = 1.0) {
+                   Report& report, double from = 0.0, double to = 1.0, int reference_every = 41) {
   Simulator simulator = makePad(scene);
   simulator.placeInstrument(0, path.at(0.0));
-  HardRun run(simulator, 41);
+  HardRun run(simulator, reference_every);
   runCycles(simulator, path, scene.step_s, 2000, report, from, to);
   run.report(name, bands, report);
 }

@@ -25,22 +25,26 @@ void validateHardTimeSteps(Report& report) {
   runPad("33 ms", scene, path, {}, report, 0.8, 1.0);
 }
 
+/// With mu_s / mu_k = 10 a contact that lets go throws its load on its neighbours, which let go in turn within the same
+/// step. 30 Gauss-Seidel iterations do not see all of that through: a known limit, 5 % RMS, nearly all of it in the 3 %
+/// of the steps in which it happens; the band is twice that. With Cholesky a contact may let go a step late: 0.7 %.
 void validateHardFriction(Report& report) {
   PadScene scene;
-  const struct {
-    const char* name;
-    double mu_static;
-    double mu_kinetic;
-  } kinds[] = {{"mu 0", 0, 0}, {"mu .01", .01, .01}, {"mu 1", 1, 1}, {"mu 2", 2, 2}, {"mu 1 / .1", 1.0, 0.1}};
+  const std::pair<const char*, double> kinds[] = {{"mu 0", 0.0}, {"mu .01", 0.01}, {"mu 1", 1.0}, {"mu 2", 2.0}};
   double done = 0.0;
-  for (const auto& kind : kinds) {
-    scene.mu_static = kind.mu_static;
-    scene.mu_kinetic = kind.mu_kinetic;
-    HardBands bands;
-    if (kind.mu_static > kind.mu_kinetic) bands.force = kStickSlip;
-    runPad(kind.name, scene, {}, bands, report, done, done + 0.2);
-    done += 0.2;
+  for (const auto& [name, mu] : kinds) {
+    scene.mu_static = scene.mu_kinetic = mu;
+    runPad(name, scene, {}, {}, report, done, done + 0.15);
+    done += 0.15;
   }
+  scene.mu_static = 1.0;
+  scene.mu_kinetic = 0.1;
+  HardBands bands;
+  bands.force = 0.1;
+  runPad("mu 1 / .1", scene, {}, bands, report, 0.6, 0.8, 11);
+  scene.solver = "{relaxation: cholesky}";
+  bands.force = kStickSlip;
+  runPad("mu 1 / .1, cholesky", scene, {}, bands, report, 0.8, 1.0, 11);
 }
 
 }  // namespace tissue_contact
