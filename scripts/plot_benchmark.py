@@ -60,7 +60,7 @@ def read(file):
         for line in csv.DictReader(stream):
             row = dict(line)
             for key in line:
-                if key not in ("scene", "method", "relaxation"):
+                if key not in ("scene", "method", "relaxation", "error_of"):
                     row[key] = number(line[key])
             kind = row["method"]
             if kind == "predictor_corrector":
@@ -147,8 +147,9 @@ def plot_scene(rows, folder, scene):
                        va="bottom", ha="right", color="#555555")
             right.set_xlim(left=low)
     left.set_ylabel("wall time per step, ms")
-    left.set_xlabel("solver error of the wrench, % RMS\n(same mesh and step, solved to convergence)")
-    right.set_xlabel("total error of the wrench, % RMS\n(finer mesh, or closed form)")
+    of = rows[0]["error_of"]
+    left.set_xlabel("solver error of the %s, %% RMS\n(same mesh and step, solved to convergence)" % of)
+    right.set_xlabel("total error of the %s, %% RMS\n(finer mesh, or closed form)" % of)
     for axis in (left.xaxis, right.xaxis, left.yaxis):
         percent(axis)
     figure.suptitle("%s: %g nodes, %g ms steps as shipped; one core" % (
@@ -180,7 +181,7 @@ def plot_growth(rows, folder):
                   label="Bullet (deformable)")
         right.plot([r["nodes"] for r in peers], [100 * r["total_error"] for r in peers], "*--", color="#E69F00",
                    markersize=13, label="Bullet, total error")
-    for axes, what in ((left, "wall time per step, ms"), (right, "error of the wrench, % RMS")):
+    for axes, what in ((left, "wall time per step, ms"), (right, "error of the %s, %% RMS" % shipped["error_of"])):
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_xlabel("nodes")

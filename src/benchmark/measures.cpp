@@ -13,8 +13,8 @@ namespace tissue_contact {
 WrenchError wrenchError(const Run& run, const Run& reference, int instrument) {
   const std::size_t samples = std::min(run.times_s.size(), reference.times_s.size());
   const double per_lever = reference.lever_m > 0.0 ? 1.0 / reference.lever_m : 0.0;
-  double difference2 = 0.0;
-  double size2 = 0.0;
+  double torque_difference2 = 0.0;
+  double torque2 = 0.0;
   double force_difference2 = 0.0;
   double force2 = 0.0;
   for (std::size_t k = 0; k < samples; ++k) {
@@ -29,18 +29,20 @@ WrenchError wrenchError(const Run& run, const Run& reference, int instrument) {
       const Wrench& w_ref = reference.wrenches[k][i];
       force_difference2 += (w.force - w_ref.force).squaredNorm();
       force2 += w_ref.force.squaredNorm();
-      difference2 += (per_lever * (w.torque - w_ref.torque)).squaredNorm();
-      size2 += (per_lever * w_ref.torque).squaredNorm();
+      torque_difference2 += (w.torque - w_ref.torque).squaredNorm();
+      torque2 += w_ref.torque.squaredNorm();
     }
   }
   const auto count = static_cast<double>(std::max<std::size_t>(samples, 1));
-  const double size = std::sqrt(size2 + force2);
+  const double difference = std::sqrt(force_difference2 + per_lever * per_lever * torque_difference2);
+  const double size = std::sqrt(force2 + per_lever * per_lever * torque2);
   const double nothing = std::numeric_limits<double>::quiet_NaN();
-  return {size > 0.0 ? std::sqrt(difference2 + force_difference2) / size : nothing,
-          std::sqrt(force_difference2 / count), std::sqrt(force2 / count)};
+  return {size > 0.0 ? difference / size : nothing, std::sqrt(force_difference2 / count),
+          std::sqrt(torque_difference2 / count), std::sqrt(force2 / count)};
 }
 
 StepTimes stepTimes(std::vector<double> step_s) {
+  step_s.erase(std::remove_if(step_s.begin(), step_s.end(), [](double t) { return !std::isfinite(t); }), step_s.end());
   if (step_s.empty()) return {};
   std::sort(step_s.begin(), step_s.end());
   return {step_s[step_s.size() / 2], step_s[step_s.size() * 99 / 100], step_s.back()};

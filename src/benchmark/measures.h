@@ -11,15 +11,16 @@ namespace tissue_contact {
 /// Of a wrench w = (force, torque / lever), with the reference run's lever (0: of the force alone), over the samples that
 /// both runs have.
 struct WrenchError {
-  double relative = 0.0;     ///< RMS of |w - w_ref| over RMS of |w_ref|; NaN when w_ref is 0 throughout
-  double newtons = 0.0;      ///< RMS of |force - force_ref|, N
-  double reference_n = 0.0;  ///< RMS of |force_ref|, N
+  double relative = 0.0;       ///< RMS of |w - w_ref| over RMS of |w_ref|; NaN when w_ref is 0 throughout
+  double newtons = 0.0;        ///< RMS of |force - force_ref|, N
+  double newton_metres = 0.0;  ///< RMS of |torque - torque_ref|, N m
+  double reference_n = 0.0;    ///< RMS of |force_ref|, N
 };
 
 /// @param instrument -1: all of them. @throws std::invalid_argument when the runs were sampled at different times.
 WrenchError wrenchError(const Run& run, const Run& reference, int instrument = -1);
 
-/// Of one implicit step, s.
+/// Of one implicit step, s. Times that are not finite (a peer that went astray) are left out.
 struct StepTimes {
   double median = 0.0;
   double p99 = 0.0;

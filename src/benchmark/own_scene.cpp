@@ -151,13 +151,16 @@ class OwnScene {
         100.0 * now.met_tolerance);
     progress_.clear();
     out_ << text;
+    for (const std::string& line : now.advice) out_ << "advisor: " << line << "\n";
   }
 
   void printErrors() {
     progress_.clear();
+    out_ << "Wrench error: RMS over RMS; a moment counts as a force at the mean distance of the contacts from the "
+            "tip.\n";
     char text[240];
-    std::snprintf(text, sizeof text, "%-28s %-16s %10s %12s %12s %12s\n", "changed", "instrument", "change %",
-                  "of force N", "force RMS N", "estimate %");
+    std::snprintf(text, sizeof text, "%-28s %-16s %10s %10s %12s %12s %12s\n", "changed", "instrument", "change %",
+                  "in all %", "force, N", "moment, N m", "RMS force N");
     out_ << text;
     for (std::size_t k = 0; k < comparisons_.size(); ++k) {
       const Comparison& one = comparisons_[k];
@@ -168,8 +171,9 @@ class OwnScene {
         if (!(error.reference_n > 0.0)) {
           std::snprintf(text, sizeof text, "%-28s %-16s  never touches\n", one.what.c_str(), name);
         } else {
-          std::snprintf(text, sizeof text, "%-28s %-16s %10.3f %12.5f %12.5f %12.3f\n", one.what.c_str(), name,
-                        100.0 * error.relative, error.newtons, error.reference_n, 100.0 * left * error.relative);
+          std::snprintf(text, sizeof text, "%-28s %-16s %10.3f %10.3f %12.5f %12.3g %12.5f\n", one.what.c_str(), name,
+                        100.0 * error.relative, 100.0 * left * error.relative, error.newtons, error.newton_metres,
+                        error.reference_n);
         }
         out_ << text;
       }

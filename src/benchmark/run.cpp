@@ -15,6 +15,7 @@ class Recorder {
  public:
   explicit Recorder(Simulator& simulator) : simulator_(simulator) {
     for (const Tissue& tissue : simulator.tissues()) run_.nodes += tissue.nodeCount();
+    run_.advice = simulator.advice();
     simulator_.setStepObserver([this] { step(); });
     last_ = Clock::now();
   }
@@ -93,6 +94,7 @@ Scene withSettings(const Scene& scene, const Settings& settings) {
   changed.solver = settings.solver;
   if (settings.fixedIterations()) changed.solver.tolerance = 1e-300;
   changed.step.max_step_s = settings.dt_s;
+  if (!settings.simplified) changed.advisor.sleep = changed.advisor.adapt_rotations = false;
   if (settings.cells == std::array<int, 3>{0, 0, 0}) return changed;
   auto* const block = std::get_if<BlockDescription>(&changed.tissues.at(0).geometry);
   if (block == nullptr) throw std::invalid_argument("tissue '" + changed.tissues[0].name + "' is no generated block");
@@ -128,6 +130,7 @@ Settings convergedSettings(Settings settings) {
   settings.solver.relaxation = relaxation;
   settings.solver.iterations = relaxation == RelaxationKind::kCholesky || nodes > kManyNodes ? 200 : 500;
   settings.solver.tolerance = 1e-10;
+  settings.simplified = false;
   return settings;
 }
 

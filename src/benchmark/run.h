@@ -33,6 +33,7 @@ struct Settings {
   SolverDescription solver;
   double dt_s = 0.001;
   std::array<int, 3> cells = {0, 0, 0};  ///< of the first tissue's block; 0: as the scene has them
+  bool simplified = true;                ///< the scene's advisor may leave out what it bounds the error of
 
   bool fixedIterations() const { return solver.tolerance == 0.0; }
 };
@@ -49,9 +50,10 @@ struct Run {
   std::vector<double> step_s;                 ///< wall time of each implicit step
   double simulated_s = 0.0;
   double mean_iterations = 0.0;
-  double met_tolerance = 0.0;  ///< share of the steps
-  long discarded = 0;          ///< steps without a finite answer
-  int nodes = 0;               ///< of all tissues
+  double met_tolerance = 0.0;       ///< share of the steps
+  long discarded = 0;               ///< steps without a finite answer
+  int nodes = 0;                    ///< of all tissues
+  std::vector<std::string> advice;  ///< what the advisor chose
 
   double wall_s() const;
 };

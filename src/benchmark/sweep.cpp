@@ -118,6 +118,7 @@ class Sweep {
   Sweep(const ScenePlan& plan, Progress& progress)
       : plan_(plan), progress_(progress), shipped_(shippedSettings(plan.scene)) {
     result_.scene = plan.scene.name;
+    result_.of = plan.has_peer ? "force" : "wrench";
   }
 
   /// Converged run of a mesh and step, once.
@@ -218,6 +219,12 @@ class Sweep {
     Run run = runScene(
         plan_.scene, settings, [&](double share) { progress_.at(share); }, plan_.duration_s);
     progress_.end();
+    return run;
+  }
+
+  Run finished(Run run) {
+    progress_.end();
+    if (plan_.has_peer) run.lever_m = 0.0;  // the peer gives no moment: errors are of the force alone
     return run;
   }
 

@@ -40,6 +40,7 @@ struct BenchmarkRow {
 
 struct SceneResult {
   std::string scene;
+  std::string of;            ///< what the errors are of: "force" or "wrench"
   std::string truth;         ///< what total errors are measured against
   double truth_error = 0.0;  ///< its own, estimated or published, relative
   double step_error = 0.0;   ///< of the shipped step against half of it, both converged, relative; NaN: not measured

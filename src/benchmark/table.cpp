@@ -147,12 +147,13 @@ void writeCsv(const SceneResult& result, std::ostream& out) {
         << number(1e3 * row.times.max) << ',' << number(row.steps_per_s) << ',' << number(row.realtime_factor) << ','
         << number(row.solver_error) << ',' << number(row.total_error) << ',' << number(row.same_mesh_error) << ','
         << number(row.mean_iterations) << ',' << number(row.met_tolerance) << ',' << row.shipped << ','
-        << row.at_shipped_size << ',' << row.shipped_solver << ',' << number(result.truth_error) << '\n';
+        << row.at_shipped_size << ',' << row.shipped_solver << ',' << number(result.truth_error) << ',' << result.of
+        << '\n';
   }
 }
 
 void printSummary(const SceneResult& result, std::ostream& out) {
-  out << "\n" << result.scene << ": " << result.rows.size() << " runs\n";
+  out << "\n" << result.scene << ": " << result.rows.size() << " runs, errors of the " << result.of << "\n";
   out << "  total error against: " << result.truth << text("; its own error about %.1f %%", 100.0 * result.truth_error);
   if (std::isfinite(result.step_error)) {
     out << text("; half the shipped step changes the answer by %.2f %%", 100.0 * result.step_error);

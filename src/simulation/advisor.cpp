@@ -78,7 +78,9 @@ bool advisedSleep(const Scene& scene) {
 }
 
 bool advisedSleepByParts(const Scene& scene) {
-  return advisedSleep(scene) && scene.solver.relaxation == RelaxationKind::kGaussSeidel;
+  // Waking parts solves the step again, which a time budget has no room for.
+  return advisedSleep(scene) && scene.solver.relaxation == RelaxationKind::kGaussSeidel &&
+         !(scene.solver.time_budget_s > 0.0);
 }
 
 std::vector<std::string> adviceLines(const Scene& scene, const FoldWatch& folds) {

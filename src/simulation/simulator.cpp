@@ -18,12 +18,22 @@ constexpr double kMarginPerEdge = 0.01;
 /// Tissues are looked for this many edges from each other at most: pairs of features grow with the square of it.
 constexpr double kMostPairEdges = 2.0;
 
+double sumOfEdges(const Tissue& tissue) {
+  const NodalVectors& x = tissue.restPositions();
+  double sum = 0.0;
+  for (const Triangle& t : tissue.surface()) sum += (x.col(t[0]) - x.col(t[1])).norm();
+  return sum;
+}
+
+double meanSurfaceEdge(const Tissue& tissue) {
+  return sumOfEdges(tissue) / static_cast<double>(tissue.surface().size());
+}
+
 double meanSurfaceEdge(const std::vector<Tissue>& tissues) {
   double sum = 0.0;
   double count = 0.0;
   for (const Tissue& tissue : tissues) {
-    const NodalVectors& x = tissue.restPositions();
-    for (const Triangle& t : tissue.surface()) sum += (x.col(t[0]) - x.col(t[1])).norm();
+    sum += sumOfEdges(tissue);
     count += static_cast<double>(tissue.surface().size());
   }
   return count > 0.0 ? sum / count : 0.0;
@@ -68,7 +78,8 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
   makeElasticStates();
   if (advisedSleep(scene)) {
     for (std::size_t t = 0; t < tissues.size(); ++t) {
-      sleep.emplace_back(tissues[t].fixed(), problem.bodies[t], mean_edge, advisedSleepByParts(scene));
+      sleep.emplace_back(tissues[t].fixed(), problem.bodies[t], meanSurfaceEdge(tissues[t]),
+                         advisedSleepByParts(scene));
     }
   }
   reset();
@@ -93,13 +104,13 @@ void Simulator::Implementation::reset() {
 
 /// One implicit step: the rooms in order.
 void Simulator::Implementation::step(double dt) {
+  restTissues(last_dt);
   detectContacts(dt);
   wakeTouched();
   assembleTissues(dt);
   assembleContacts(dt);
   solveContacts(dt);
   moveTissues(dt);
-  restTissues(dt);
   motion.finishStep();
   ++step_count;
   recordContacts(dt);
@@ -119,7 +130,7 @@ void Simulator::Implementation::detectContacts(double dt) {
   detector.detect(x, motion.startPoses(), margin, contacts);
   if (pair_detector) {
     const double pair_margin = std::min(margin + kMarginFactor * tissue_travel, kMostPairEdges * mean_edge);
-    pair_detector->detect(x, pair_margin, folds.apart(x), contacts);
+    pair_detector->detect(x, pair_margin, folds.apart(x, margin), contacts);
     std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) { return a.key < b.key; });
   }
   memory.addKeptPoints(detector, x, motion.startPoses(), margin, contacts);

@@ -108,6 +108,7 @@ bool TissueSleep::looks(double dt) {
 
 bool TissueSleep::rest(const NodalVectors& x, const NodalVectors& loads, double allowed_n,
                        const std::vector<int>& touched) {
+  if (free_nodes_ == static_cast<int>(fixed_.size())) return false;
   look(x);
   if (!by_parts_ && !touched.empty()) return false;
   findReady(loads, allowed_n, touched);

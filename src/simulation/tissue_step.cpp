@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "simulation/simulator_implementation.h"
 
@@ -95,13 +96,28 @@ bool Simulator::Implementation::wakeHeld(double dt, int repeats) {
 
 /// What the sleepers of a tissue may be held by in all, N.
 double Simulator::Implementation::allowedHeldForce(std::size_t tissue, double dt) const {
-  double pressing = 0.0;
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const ContactKey& key = contacts[c].key;
-    const bool acts = key.tissue == static_cast<int>(tissue) || key.other_tissue == static_cast<int>(tissue);
-    if (acts) pressing += solution.impulses[c].norm() / dt;
+  // The weakest of the net forces of instruments and of other tissues counts: none of them may be off by more.
+  double weakest = std::numeric_limits<double>::infinity();
+  bool pressed = false;
+  const int partners = static_cast<int>(instruments.size() + tissues.size());
+  for (int partner = 0; partner < partners; ++partner) {
+    const int other = partner - static_cast<int>(instruments.size());
+    Vector3 net = Vector3::Zero();
+    bool acts = false;
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+      const ContactKey& key = contacts[c].key;
+      const bool here = key.tissue == static_cast<int>(tissue) || key.other_tissue == static_cast<int>(tissue);
+      const bool by = other < 0 ? key.instrument == partner
+                                : key.instrument < 0 && (key.tissue == other || key.other_tissue == other);
+      if (!here || !by || solution.impulses[c].isZero(0.0)) continue;
+      acts = true;
+      net += contacts[c].R_WC * solution.impulses[c];
+    }
+    if (!acts || other == static_cast<int>(tissue)) continue;
+    pressed = true;
+    weakest = std::min(weakest, net.norm() / dt);
   }
-  return scene.advisor.sleep_error * (pressing > 0.0 ? pressing : sleep[tissue].ownForce());
+  return scene.advisor.sleep_error * (pressed ? weakest : sleep[tissue].ownForce());
 }
 
 void Simulator::Implementation::moveTissues(double dt) {
@@ -119,13 +135,17 @@ void Simulator::Implementation::moveTissues(double dt) {
   report.discarded = true;
   report.stop = StopReason::kIterations;
   report.residuals = Residuals();
+  report.sleeping_nodes = 0;
+  report.held_force_n = 0.0;
   makeElasticStates();  // what is not finite may have got into tangents and factors
   for (NodalVectors& v : solution.v) v.setZero();
   for (Vector3& impulse : solution.impulses) impulse.setZero();
   std::fill(solution.states.begin(), solution.states.end(), ContactState::kOpen);
 }
 
+/// Lets tissues sleep on what the step before has left, of `dt` (0: there was none).
 void Simulator::Implementation::restTissues(double dt) {
+  if (!(dt > 0.0)) return;
   for (std::size_t t = 0; t < sleep.size(); ++t) {
     if (!sleep[t].looks(dt)) continue;
     touched_nodes.clear();

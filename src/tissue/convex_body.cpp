@@ -40,10 +40,12 @@ double ConvexBody::strain(const Element& element, const NodalVectors& x) const {
   return (D * element.rest_inverse - Matrix3::Identity()).norm();
 }
 
-bool ConvexBody::cannotFold(const NodalVectors& x) {
+bool ConvexBody::cannotFold(const NodalVectors& x, double travel_m) {
+  const double on_the_way = steepest_ * travel_m;
   if (elements_.empty() || !(strain(elements_[worst_], x) < kMostStrain)) return false;
   const double moved = std::sqrt((x - looked_at_).colwise().squaredNorm().maxCoeff());
-  if (strain_ + steepest_ * moved < kMostStrain) return true;
+  const double bound = strain_ + steepest_ * moved;
+  if (bound < kMostStrain && bound + on_the_way < 1.0) return true;
   double largest = 0.0;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const double here = strain(elements_[e], x);
@@ -55,7 +57,7 @@ bool ConvexBody::cannotFold(const NodalVectors& x) {
   }
   looked_at_ = x;
   strain_ = largest;
-  return true;
+  return largest + on_the_way < 1.0;
 }
 
 }  // namespace tissue_contact

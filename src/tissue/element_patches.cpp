@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 
 namespace tissue_contact {
@@ -118,6 +119,17 @@ std::vector<int> patchesByFaces(const NodalVectors& rest, const std::vector<Tetr
   std::vector<int> patch_of(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) patch_of[order[k]] = patch_of_sorted[k];
   return patch_of;
+}
+
+std::vector<int> cutAtRegions(const std::vector<int>& patch_of, const std::vector<int>& regions) {
+  if (regions.empty()) return patch_of;
+  std::map<std::pair<int, int>, int> numbers;
+  std::vector<int> cut;
+  cut.reserve(patch_of.size());
+  for (std::size_t e = 0; e < patch_of.size(); ++e) {
+    cut.push_back(numbers.emplace(std::pair(patch_of[e], regions[e]), static_cast<int>(numbers.size())).first->second);
+  }
+  return cut;
 }
 
 std::vector<int> patchesByCells(std::size_t tetrahedra, int cell_size) {

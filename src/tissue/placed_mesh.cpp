@@ -137,6 +137,7 @@ PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT) {
   setGeometry(description, source, placed);
   placed.fixed = fixedNodes(placed.rest, description.fixed, source);
   setRegions(description, source, placed);
+  placed.patch_of = cutAtRegions(placed.patch_of, placed.element_regions);
   setFibres(description, source, placed);
   placed.rest = (X_WT.linear() * placed.rest).colwise() + X_WT.translation();
   return placed;

@@ -12,15 +12,16 @@
 
 namespace tissue_contact {
 
-/// Folds of a volume that is convex at rest, while it is not deformed far enough (see convex_body.h). Exact: no contact is
-/// missed.
+/// Folds of a volume that is convex at rest, while it is not deformed far enough (see convex_body.h). No contact is
+/// missed in a step in which no node moves farther than the travel that is given.
 class FoldWatch {
  public:
   FoldWatch() = default;
   FoldWatch(const std::vector<TouchingTissues>& pairs, const std::vector<Tissue>& tissues);
 
   /// Per pair, whether it can be left out; empty if none ever can. No allocation.
-  const std::vector<bool>& apart(const std::vector<NodalVectors>& positions);
+  /// @param travel_m the way any node may go in the coming step.
+  const std::vector<bool>& apart(const std::vector<NodalVectors>& positions, double travel_m);
 
   bool watches(std::size_t pair) const { return !bodies_.empty() && bodies_[pair].has_value(); }
 

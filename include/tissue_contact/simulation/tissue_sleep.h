@@ -5,14 +5,16 @@
 ///
 /// A node falls asleep when it has stayed within kStillPerEdge of an edge for kStillTime, no contact is within a ring of
 /// elements, and the force on it is below its share of half the allowed sum. Without a contact on the tissue, all its
-/// nodes fall asleep together or none does.
+/// nodes fall asleep together or none does; a tissue without a fixed node never sleeps, for it may drift.
 /// While nodes sleep, the force that holding each of them takes is known exactly, as what its equation of motion leaves
 /// with v = 0; the sum of their magnitudes never exceeds `allowed`: before it would, within the same step, those that are
 /// held by more than their share wake, with the ring around them, and the step is solved again.
 ///
 /// Error bound: a held force h at a node changes the force on a tool by h . (displacement of the node per displacement of
-/// the tool), by reciprocity of the linearised elastic body. That displacement ratio is at most about 1, and falls with
-/// distance; so the error of the wrench is at most about `allowed`, and far smaller for nodes far away.
+/// the tool), by reciprocity of the linearised elastic body. In a body that is held at its base that ratio is at most about
+/// 1 and falls with distance, so the error of a force is at most about `allowed`. Where the tool sits near the root of a
+/// lever, the far end moves more than the tool, and the bound grows by that ratio. Positions of sleepers are within
+/// kStillPerEdge of an edge of where they were last seen to stay.
 #pragma once
 
 #include <vector>
@@ -26,7 +28,7 @@ namespace tissue_contact {
 class TissueSleep {
  public:
   static constexpr double kStillPerEdge = 1e-3;
-  static constexpr double kStillTime = 0.1;  ///< s: half a swing at 5 Hz
+  static constexpr double kStillTime = 0.5;  ///< s: half a swing at 1 Hz
   static constexpr double kLookTime = 0.02;  ///< s, between two looks at who may sleep
   /// Share of the free nodes that must be ready before any falls asleep: each time the elements to evaluate change.
   static constexpr double kWorthwhile = 0.1;

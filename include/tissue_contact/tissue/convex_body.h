@@ -19,16 +19,16 @@ bool isConvex(const NodalVectors& x, const std::vector<Triangle>& surface);
 /// Holds a cache: not thread-safe.
 class ConvexBody {
  public:
-  /// k at which the body is said to be able to fold: half of what it takes, so that none of it can be crossed in a step.
+  /// k at which the body is said to be able to fold: half of what it takes.
   static constexpr double kMostStrain = 0.5;
 
   /// @param rest 3 x n, m, of a convex body.
   ConvexBody(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra);
 
-  /// Whether k < kMostStrain, with Frobenius's norm, which is never less than the spectral one. The answer depends on x
+  /// Whether k < kMostStrain, and k < 1 even after all nodes have moved by up to `travel_m`, with Frobenius's norm, which is never less than the spectral one. The answer depends on x
   /// alone; elements are looked at only when nodes have moved far enough since they were last to make a difference.
   /// No allocation.
-  bool cannotFold(const NodalVectors& x);
+  bool cannotFold(const NodalVectors& x, double travel_m = 0.0);
 
  private:
   struct Element {

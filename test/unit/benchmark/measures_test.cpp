@@ -43,6 +43,7 @@ TEST(WrenchErrorTest, MomentsCountOverTheReferencesLever) {
   EXPECT_EQ(wrenchError(run, reference).relative, 0.0);  // no lever: forces alone
   reference.lever_m = 0.01;
   EXPECT_DOUBLE_EQ(wrenchError(run, reference).relative, std::sqrt(0.5));
+  EXPECT_DOUBLE_EQ(wrenchError(run, reference).newton_metres, 0.01);
 }
 
 TEST(WrenchErrorTest, TellsInstrumentsApart) {

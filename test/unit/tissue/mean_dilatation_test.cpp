@@ -73,6 +73,11 @@ TEST(Patches, OrderOfNodesAndElementsDoesNotMatter) {
   EXPECT_EQ(again, patch_of);
 }
 
+TEST(Patches, AreCutWhereRegionsMeet) {
+  EXPECT_EQ(cutAtRegions({0, 0, 0, 1, 1}, {-1, 2, -1, 2, 2}), (std::vector<int>{0, 1, 0, 2, 2}));
+  EXPECT_EQ(cutAtRegions({0, 0, 1}, {}), (std::vector<int>{0, 0, 1}));
+}
+
 TEST(Patches, WrongNumbersAreRefused) {
   const TetMesh mesh = block(Vector3(0.01, 0.01, 0.01), {1, 1, 1});
   const std::vector<bool> fixed(8, false);
