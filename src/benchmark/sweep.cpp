@@ -205,38 +205,27 @@ class Sweep {
     return settings;
   }
 
-  Run runLevel(const BenchmarkScene& level) {
-    const Settings settings = shippedSettings(level);
-    progress_.begin(plan_.scene.name + ": truth, " + describe(settings), workOf(plan_, settings));
-    Run run = runScene(
-        level, settings, [&](double share) { progress_.at(share); }, plan_.duration_s);
-    progress_.end();
-    return run;
-  }
+  Run runLevel(const BenchmarkScene& level) { return play(level, shippedSettings(level), "truth, "); }
 
   Run run(const Settings& settings, const std::string& what) {
-    progress_.begin(plan_.scene.name + ": " + what + describe(settings), workOf(plan_, settings));
-    Run run = runScene(
-        plan_.scene, settings, [&](double share) { progress_.at(share); }, plan_.duration_s);
-    progress_.end();
-    return run;
-  }
-
-  Run finished(Run run) {
-    progress_.end();
-    if (plan_.has_peer) run.lever_m = 0.0;  // the peer gives no moment: errors are of the force alone
-    return run;
+    BenchmarkScene scene = plan_.scene;
+    if (nodesOf(settings) > kLargeMesh && plan_.short_motion) scene.motion = plan_.short_motion;
+    return play(scene, settings, what);
   }
 
   /// Our converged answer with the peer's elements, each with a change of volume of its own.
   Run sameModel(const Settings& settings) {
     BenchmarkScene scene = plan_.scene;
     for (TissueDescription& tissue : scene.scene.tissues) tissue.material.dilatation = Dilatation::kElement;
-    const Settings converged = convergedSettings(settings);
-    progress_.begin(plan_.scene.name + ": converged, elements as the peer's", workOf(plan_, converged));
-    Run run = runScene(
-        scene, converged, [&](double share) { progress_.at(share); }, plan_.duration_s);
+    return play(scene, convergedSettings(settings), "converged, elements as the peer's, ");
+  }
+
+  Run play(const BenchmarkScene& scene, const Settings& settings, const std::string& what) {
+    progress_.begin(plan_.scene.name + ": " + what + describe(settings), workOf(plan_, settings));
+    const RunProgress progress = [this](double share) { progress_.at(share); };
+    Run run = runScene(scene, settings, progress, plan_.duration_s);
     progress_.end();
+    if (plan_.has_peer) run.lever_m = 0.0;  // the peer gives no moment: errors are of the force alone
     return run;
   }
 
