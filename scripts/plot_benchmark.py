@@ -108,8 +108,14 @@ def draw(axes, rows, error, markers):
     axes.grid(True, which="minor", alpha=0.08)
 
 
-def percent(axis):
-    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda v, _: "%g" % v))
+def plain(axis):
+    """Numbers without powers; over less than a decade and a half also between the powers of ten."""
+    low, high = axis.get_view_interval()
+    name = matplotlib.ticker.FuncFormatter(lambda v, _: "%g" % v)
+    axis.set_major_formatter(name)
+    axis.set_minor_formatter(name if high < 30 * low else matplotlib.ticker.NullFormatter())
+    if high < 30 * low:
+        axis.set_minor_locator(matplotlib.ticker.LogLocator(subs=(2, 3, 5)))
 
 
 def legend(figure, rows, markers):
@@ -143,15 +149,15 @@ def plot_scene(rows, folder, scene):
         low = right.get_xlim()[0]
         if 100 * truth_error > low:
             right.axvspan(low, 100 * truth_error, color="#888888", alpha=0.12, linewidth=0)
-            right.text(100 * truth_error, right.get_ylim()[0], " the truth's own error", rotation=90, fontsize=8,
-                       va="bottom", ha="right", color="#555555")
+            right.text(100 * truth_error, right.get_ylim()[1], "the truth's own error ", rotation=90, fontsize=8,
+                       va="top", ha="right", color="#555555")
             right.set_xlim(left=low)
     left.set_ylabel("wall time per step, ms")
     of = rows[0]["error_of"]
     left.set_xlabel("solver error of the %s, %% RMS\n(same mesh and step, solved to convergence)" % of)
     right.set_xlabel("total error of the %s, %% RMS\n(finer mesh, or closed form)" % of)
     for axis in (left.xaxis, right.xaxis, left.yaxis):
-        percent(axis)
+        plain(axis)
     figure.suptitle("%s: %g nodes, %g ms steps as shipped; one core" % (
         TITLES.get(scene, scene), next(r["nodes"] for r in rows if r["shipped"]),
         1e3 * next(r["dt_s"] for r in rows if r["shipped"])), fontsize=12)
@@ -188,10 +194,10 @@ def plot_growth(rows, folder):
         axes.set_ylabel(what)
         axes.set_xticks(nodes)
         axes.set_xticklabels(["%d" % n for n in nodes])
-        axes.minorticks_off()
+        axes.xaxis.set_minor_locator(matplotlib.ticker.NullLocator())
         axes.grid(True, alpha=0.3)
         axes.legend(fontsize=9)
-        percent(axes.yaxis)
+        plain(axes.yaxis)
     figure.suptitle("Press and drag, shipped solver, %g ms steps, one core" % (1e3 * shipped["dt_s"]), fontsize=12)
     figure.tight_layout()
     figure.savefig(os.path.join(folder, "growth.png"), dpi=100)

@@ -137,9 +137,8 @@ PeerVerdict judgePeer(const SceneResult& result, const BenchmarkRow& peer, bool 
 
 void writeCsv(const SceneResult& result, std::ostream& out) {
   out << "scene,method,relaxation,iterations,tolerance,dt_s,nodes,median_ms,p99_ms,max_ms,steps_per_s,realtime_factor,"
-         "solver_error,total_error,same_mesh_error,mean_iterations,met_tolerance,shipped,at_shipped_size,shipped_"
-         "solver,"
-         "truth_error\n";
+         "solver_error,total_error,same_mesh_error,mean_iterations,met_tolerance,shipped,at_shipped_size,"
+         "shipped_solver,truth_error,error_of\n";
   for (const BenchmarkRow& row : result.rows) {
     out << result.scene << ',' << row.method << ',' << row.relaxation << ','
         << (row.peer ? "" : std::to_string(row.iterations)) << ',' << number(row.tolerance) << ',' << number(row.dt_s)
