@@ -62,7 +62,7 @@ Vector3 TissueSleep::heldBy(int node, const NodalVectors& loads, const NodalVect
 bool TissueSleep::wakeHeld(const NodalVectors& loads, const NodalVectors& v, double dt, double allowed_n, int repeats,
                            std::vector<int>& woken) {
   woken.clear();
-  if (sleepers_.empty() || allAsleep()) return false;
+  if (allAsleep()) return false;
   held_.resize(sleepers_.size());
   for (std::size_t s = 0; s < sleepers_.size(); ++s) {
     const int node = sleepers_[s];

@@ -82,7 +82,6 @@ bool Simulator::Implementation::wakeHeld(double dt, int repeats) {
   report.sleeping_nodes = 0;
   report.held_force_n = 0.0;
   for (std::size_t t = 0; t < sleep.size(); ++t) {
-    if (sleep[t].sleepers() == 0) continue;
     BodySystem& body = problem.bodies[t];
     if (sleep[t].wakeHeld(loads[t], solution.v[t], dt, allowedHeldForce(t, dt), repeats, touched_nodes)) {
       for (const int node : touched_nodes) body.b.col(node) = dt * loads[t].col(node);  // they were at rest

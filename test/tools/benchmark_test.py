@@ -37,8 +37,11 @@ class BenchmarkTest(unittest.TestCase):
             self.assertEqual(sum(row["shipped"] == "1" for row in rows), 1, scene)
             ours = [row for row in rows if row["method"] != "bullet"]
             for row in ours:
-                for column in ["median_ms", "p99_ms", "max_ms", "steps_per_s", "solver_error", "total_error"]:
+                for column in ["median_ms", "p99_ms", "max_ms", "steps_per_s", "solver_error"]:
                     self.assertTrue(math.isfinite(float(row[column])), row)
+                # The finest mesh is what total errors are measured against: it has none itself.
+                self.assertTrue(row["total_error"] == "" or math.isfinite(float(row["total_error"])), row)
+                self.assertTrue(row["total_error"] != "" or row["shipped"] == "0", row)
                 self.assertGreater(float(row["median_ms"]), 0.0)
                 self.assertLessEqual(float(row["median_ms"]), float(row["max_ms"]))
             # More iterations of the same method, less error: else the errors mean nothing.
@@ -49,7 +52,7 @@ class BenchmarkTest(unittest.TestCase):
             self.assertTrue(os.path.getsize(os.path.join(out, scene + ".png")) > 10000, done)
 
     def test_own_scene(self):
-        done = run("--scene", self.scene, "--bag", self.bag, "--from", "0.2", "--duration", "0.5")
+        done = run("--scene", self.scene, "--bag", self.bag, "--from", "0.6", "--duration", "0.5")
         self.assertEqual(done.returncode, 0, done)
         for words in ["solver (to convergence)", "step (half of it)", "mesh (1.5 times the cells)", "probe"]:
             self.assertIn(words, done.stdout)

@@ -59,7 +59,7 @@ Vector3 probeAt(int step) {
   const double z = t < 1.4 ? -std::min(0.02 * t, 0.0031) : std::min(-0.0031 + 0.02 * (t - 1.4), 0.01);
   return {0.02 * std::min(std::max(t - 0.8, 0.0), 0.2), 0.0, z};
 }
-constexpr int kSteps = 2600;
+constexpr int kSteps = 3400;
 
 class SleepOfModels : public testing::TestWithParam<Variant> {};
 
@@ -126,7 +126,7 @@ TEST(TissueSleep, WakesInTheStepThatTouches) {
   for (const Variant& variant : {kPlain, kCholesky}) {
     Simulator sleeping = makeScene(variant, "sleep: auto");
     Simulator awake = makeScene(variant, "sleep: never");
-    for (Simulator* simulator : {&sleeping, &awake}) simulator->advance(0.5, {Vector3(0.0, 0.0, 0.001)});
+    for (Simulator* simulator : {&sleeping, &awake}) simulator->advance(1.0, {Vector3(0.0, 0.0, 0.001)});
     ASSERT_EQ(sleeping.report().sleeping_nodes, freeNodes(sleeping));
     for (int k = 1; k <= 70; ++k) {
       for (Simulator* simulator : {&sleeping, &awake}) simulator->advance(0.001, {Vector3(0.0, 0.0, 0.001 - 5e-5 * k)});
