@@ -37,7 +37,7 @@ struct Run {
   std::function<VectorX(int step)> joints;
 };
 
-/// A ball over a corotational block of 0.1 x 0.1 x 0.04 m, as in press_drag_bench.cpp.
+/// A ball over a corotational block of 0.1 x 0.1 x 0.04 m.
 Scene ballOnBlock(int across, int high, const std::string& extra) {
   const std::string cells = std::to_string(across);
   const std::string yaml =

@@ -20,9 +20,8 @@ constexpr std::pair<const char*, ElasticModel> kModels[] = {{"linear", ElasticMo
                                                             {"mass_spring", ElasticModel::kMassSpring},
                                                             {"membrane", ElasticModel::kMembrane}};
 
-constexpr std::pair<const char*, Dilatation> kDilatations[] = {{"auto", Dilatation::kAuto},
-                                                               {"element", Dilatation::kElement},
-                                                               {"patch", Dilatation::kPatch}};
+constexpr std::pair<const char*, Dilatation> kDilatations[] = {
+    {"auto", Dilatation::kAuto}, {"element", Dilatation::kElement}, {"patch", Dilatation::kPatch}};
 
 ElasticModel parseModel(const YamlCursor& cursor, bool is_membrane) {
   const ElasticModel model = cursor.choice(kModels);

@@ -1,38 +1,15 @@
 /// Hard cases of geometry: tips sharper than the mesh on a face, an edge and a vertex; slivers, needles and elements
 /// that are no elements; elements turned inside out under load.
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
+#include <sstream>
 
 #include "tissue_contact/tissue/tet_mesh.h"
 #include "validation/hard_cases.h"
 #include "validation/hard_scene.h"
+#include "validation/temporary_file.h"
 
 namespace tissue_contact {
 namespace {
-
-/// A file in the system's temporary directory that lives as long as this object.
-class TemporaryText {
- public:
-  TemporaryText(const std::string& ending, const std::string& text)
-      : path_((std::filesystem::temp_directory_path() / ("tissue_contact_hard_" + std::to_string(getpid()) + ending))
-                  .string()) {
-    std::ofstream file(path_);
-    file << text;
-    if (!file.flush()) throw std::runtime_error("cannot write " + path_);
-  }
-  ~TemporaryText() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  TemporaryText(const TemporaryText&) = delete;
-  TemporaryText& operator=(const TemporaryText&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 void facet(std::ostream& stl, const Vector3& a, const Vector3& b, const Vector3& c) {
   stl << "facet normal 0 0 0\nouter loop\n";
@@ -100,7 +77,7 @@ std::string sliverVtk(const std::function<void(TetMesh&)>& spoil = {}) {
 /// Building the pad from this mesh must fail with a message that holds all of these words.
 void mustBeRefused(const std::string& statement, const std::function<void(TetMesh&)>& spoil,
                    std::initializer_list<const char*> words, Report& report) {
-  const TemporaryText file(".vtk", sliverVtk(spoil));
+  const TemporaryFile file("refused.vtk", sliverVtk(spoil));
   PadScene scene;
   scene.tissue = "mesh: {file: " + file.path() + "}";
   std::string message;
@@ -157,7 +134,7 @@ void invertAndRecover(const std::string& model, Report& report, double from, dou
 }  // namespace
 
 void validateHardSharpTip(Report& report) {
-  const TemporaryText cone(".stl", coneStl());
+  const TemporaryFile cone("cone.stl", coneStl());
   // Cells of 7.5 mm: (0, 0) is a vertex; the edges beside it run along x and y, the diagonals at 45 degrees.
   const std::pair<const char*, Vector3> places[] = {
       {"vertex", {0.0, 0.0, 0.0}}, {"edge", {0.00375, 0.0, 0.0}}, {"face", {0.00375, 0.0015, 0.0}}};
@@ -184,7 +161,7 @@ void validateHardSharpTip(Report& report) {
 }
 
 void validateHardBadElements(Report& report) {
-  const TemporaryText file(".vtk", sliverVtk());
+  const TemporaryFile file("slivers.vtk", sliverVtk());
   PadScene scene;
   scene.tissue = "mesh: {file: " + file.path() + "}";
   scene.radius_m = 0.02;

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "validation/text_scene.h"
 #include "tissue_contact/instrument/parse_urdf.h"
+#include "validation/text_scene.h"
 
 namespace tissue_contact {
 namespace {

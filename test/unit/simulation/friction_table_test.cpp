@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "validation/text_scene.h"
 #include "tissue_contact/simulation/build_scene.h"
+#include "validation/text_scene.h"
 
 namespace tissue_contact {
 namespace {

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <string>
 
-#include "validation/text_scene.h"
 #include "tissue_contact/solver/delassus.h"
+#include "validation/text_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -14,28 +14,27 @@ namespace {
 /// A soft block lying on a fixed-base one of another grid, under gravity tilted by `angle` about y.
 Simulator makeStack(double friction, double angle) {
   const std::string g = std::to_string(-9.81 * std::sin(angle)) + ", 0, " + std::to_string(-9.81 * std::cos(angle));
-  return makeSimulator(
-      "gravity_m_per_s2: [" + g +
-          "]\n"
-          "tissues:\n"
-          "  - name: bed\n"
-          "    block: {size_m: [0.08, 0.06, 0.02], cells: [5, 4, 2]}\n"
-          "    material: {youngs_modulus_pa: 20000, poissons_ratio: 0.3, density_kg_per_m3: 1000}\n"
-          "    damping: {stiffness_s: 0.01}\n"
-          "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
-          "  - name: top\n"
-          "    block: {size_m: [0.03, 0.03, 0.015], cells: [3, 3, 2]}\n"
-          "    pose: {position_m: [0.003, 0.002, 0.02]}\n"
-          "    material: {youngs_modulus_pa: 20000, poissons_ratio: 0.3, density_kg_per_m3: 1000}\n"
-          "    damping: {stiffness_s: 0.01}\n"
-          "instruments: []\n"
-          "tissue_pairs: [{tissue: bed, other: top}]\n"
-          "friction: [{tissue: bed, other_tissue: top, static: " +
-          std::to_string(friction) +
-          "}]\n"
-          "step: {max_step_s: 0.002}\n"
-          "solver: {iterations: 200, tolerance: 1.0e-8}\n",
-      {});
+  return makeSimulator("gravity_m_per_s2: [" + g +
+                           "]\n"
+                           "tissues:\n"
+                           "  - name: bed\n"
+                           "    block: {size_m: [0.08, 0.06, 0.02], cells: [5, 4, 2]}\n"
+                           "    material: {youngs_modulus_pa: 20000, poissons_ratio: 0.3, density_kg_per_m3: 1000}\n"
+                           "    damping: {stiffness_s: 0.01}\n"
+                           "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
+                           "  - name: top\n"
+                           "    block: {size_m: [0.03, 0.03, 0.015], cells: [3, 3, 2]}\n"
+                           "    pose: {position_m: [0.003, 0.002, 0.02]}\n"
+                           "    material: {youngs_modulus_pa: 20000, poissons_ratio: 0.3, density_kg_per_m3: 1000}\n"
+                           "    damping: {stiffness_s: 0.01}\n"
+                           "instruments: []\n"
+                           "tissue_pairs: [{tissue: bed, other: top}]\n"
+                           "friction: [{tissue: bed, other_tissue: top, static: " +
+                           std::to_string(friction) +
+                           "}]\n"
+                           "step: {max_step_s: 0.002}\n"
+                           "solver: {iterations: 200, tolerance: 1.0e-8}\n",
+                       {});
 }
 
 /// What `bed` bears, world frame, N.

@@ -7,9 +7,9 @@
 #include <limits>
 #include <random>
 
-#include "validation/elasticity_helpers.h"
 #include "tissue_contact/tissue/mass_spring.h"
 #include "tissue_contact/tissue/tet_mesh.h"
+#include "validation/elasticity_helpers.h"
 
 namespace tissue_contact {
 namespace {
