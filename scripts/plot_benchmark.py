@@ -35,6 +35,7 @@ COLOURS = {
     "impulse": "#CC79A7",
     "condensed_lcp": "#999999",
     "bullet": "#E69F00",
+    "bullet_undamped": "#F0E442",
 }
 NAMES = {
     "predictor_corrector gauss_seidel": "predictor\u2013corrector, Gauss\u2013Seidel",
@@ -45,7 +46,9 @@ NAMES = {
     "impulse": "friction impulses",
     "condensed_lcp": "condensed LCP",
     "bullet": "Bullet (deformable)",
+    "bullet_undamped": "Bullet, tissue undamped",
 }
+PEERS = ("bullet", "bullet_undamped")
 MARKERS = ["s", "^", "D", "v", "P", "X", "<", ">"]
 SMALLEST = 1e-6  # solver errors below are drawn here: the reference against itself
 
@@ -89,12 +92,12 @@ def draw(axes, rows, error, markers):
         if math.isnan(row[error]):
             continue
         colour = COLOURS[row["kind"]]
-        is_peer = row["kind"] == "bullet"
+        is_peer = row["kind"] in PEERS
         marker = "*" if is_peer else markers[size_name(row)]
         axes.plot([100 * value] * 2, [row["median_ms"], row["p99_ms"]], color=colour, alpha=0.18, linewidth=1, zorder=1)
         axes.plot(100 * value, row["median_ms"], marker=marker, color=colour, markersize=14 if is_peer else 6,
                   markeredgecolor="black" if is_peer else "white", markeredgewidth=0.6, linestyle="none", zorder=3)
-    candidates = [r for r in rows if r["kind"] != "bullet" and (error != "solver_error" or r["at_shipped_size"])]
+    candidates = [r for r in rows if r["kind"] not in PEERS and (error != "solver_error" or r["at_shipped_size"])]
     front = pareto(candidates, error)
     axes.plot([100 * max(r[error], SMALLEST) for r in front], [r["median_ms"] for r in front], color="black",
               linewidth=1.2, alpha=0.7, zorder=2)
@@ -122,7 +125,7 @@ def legend(figure, rows, markers):
     handles = []
     for kind in COLOURS:
         if any(r["kind"] == kind for r in rows):
-            marker = "*" if kind == "bullet" else "o"
+            marker = "*" if kind in PEERS else "o"
             handles.append(plt.Line2D([], [], color=COLOURS[kind], marker=marker, linestyle="none", markersize=9,
                                       label=NAMES[kind]))
     for size, marker in markers.items():
@@ -137,7 +140,7 @@ def legend(figure, rows, markers):
 
 def plot_scene(rows, folder, scene):
     shipped_first = sorted({size_name(r): (not r["at_shipped_size"], r["nodes"], r["dt_s"])
-                            for r in rows if r["kind"] != "bullet"}.items(), key=lambda item: item[1])
+                            for r in rows if r["kind"] not in PEERS}.items(), key=lambda item: item[1])
     markers = {}
     for k, (name, _) in enumerate(shipped_first):
         markers[name] = "o" if k == 0 else MARKERS[(k - 1) % len(MARKERS)]
@@ -181,12 +184,13 @@ def plot_growth(rows, folder):
               label="proportional to nodes")
     right.plot(nodes, [100 * r["total_error"] for r in grown], "s-", color="#D55E00", label="total error")
     right.plot(nodes, [100 * r["solver_error"] for r in grown], "o-", color="#0072B2", label="solver error")
-    peers = sorted((r for r in rows if r["kind"] == "bullet"), key=lambda r: r["nodes"])
-    if peers:
-        left.plot([r["nodes"] for r in peers], [r["median_ms"] for r in peers], "*--", color="#E69F00", markersize=13,
-                  label="Bullet (deformable)")
-        right.plot([r["nodes"] for r in peers], [100 * r["total_error"] for r in peers], "*--", color="#E69F00",
-                   markersize=13, label="Bullet, total error")
+    for kind in PEERS:
+        peers = sorted((r for r in rows if r["kind"] == kind and r["dt_s"] == shipped["dt_s"]), key=lambda r: r["nodes"])
+        if peers:
+            style = {"color": COLOURS[kind], "markersize": 13, "markeredgecolor": "black", "markeredgewidth": 0.6}
+            left.plot([r["nodes"] for r in peers], [r["median_ms"] for r in peers], "*--", label=NAMES[kind], **style)
+            right.plot([r["nodes"] for r in peers], [100 * r["total_error"] for r in peers], "*--",
+                       label=NAMES[kind] + ", total error", **style)
     for axes, what in ((left, "wall time per step, ms"), (right, "error of the %s, %% RMS" % shipped["error_of"])):
         axes.set_xscale("log")
         axes.set_yscale("log")

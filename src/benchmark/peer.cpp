@@ -8,7 +8,7 @@
 namespace tissue_contact {
 namespace {
 
-PeerScene peerScene(const BenchmarkScene& scene, const Settings& settings, const PressDragMotion& motion) {
+PeerScene peerScene(const BenchmarkScene& scene, const Settings& settings, const PressDragMotion& motion, bool damped) {
   const Simulator simulator(withSettings(scene.scene, settings), scene.environment);
   const Tissue& tissue = simulator.tissues().at(0);
   const TissueDescription& description = scene.scene.tissues.at(0);
@@ -20,7 +20,7 @@ PeerScene peerScene(const BenchmarkScene& scene, const Settings& settings, const
   peer.youngs_modulus_pa = description.material.youngs_modulus_pa;
   peer.poissons_ratio = description.material.poissons_ratio;
   peer.density = description.material.density_kg_per_m3;
-  peer.damping_s = description.damping.stiffness_s;
+  peer.damping_s = damped ? description.damping.stiffness_s : 0.0;
   peer.mu = kPressDragMu;
   peer.sphere_radius_m = kProbeRadius;
   peer.sphere_centre = [motion](double time_s) -> Vector3 { return pressDragBase() + motion.jointsAt(time_s); };
@@ -35,10 +35,10 @@ PeerScene peerScene(const BenchmarkScene& scene, const Settings& settings, const
 
 bool hasPeer() { return true; }
 
-PeerResult runPeer(const BenchmarkScene& scene, const Settings& settings, const PressDragMotion& motion) {
-  const PeerRun run = runBulletPeer(peerScene(scene, settings, motion));
+PeerResult runPeer(const BenchmarkScene& scene, const Settings& settings, const PressDragMotion& motion, bool damped) {
+  const PeerRun run = runBulletPeer(peerScene(scene, settings, motion, damped));
   PeerResult result;
-  result.name = "bullet";
+  result.name = damped ? "bullet" : "bullet_undamped";
   result.how = run.how;
   result.run.nodes = run.nodes;
   result.run.step_s = run.step_seconds;
@@ -58,7 +58,7 @@ PeerResult runPeer(const BenchmarkScene& scene, const Settings& settings, const 
 
 bool hasPeer() { return false; }
 
-PeerResult runPeer(const BenchmarkScene&, const Settings&, const PressDragMotion&) {
+PeerResult runPeer(const BenchmarkScene&, const Settings&, const PressDragMotion&, bool) {
   throw std::logic_error("this build has no peer");
 }
 
@@ -67,8 +67,11 @@ PeerResult runPeer(const BenchmarkScene&, const Settings&, const PressDragMotion
 std::vector<Settings> peerSizes(const ScenePlan& plan, const SceneOptions& options) {
   std::vector<Settings> sizes = {shippedSettings(plan.scene)};
   if (!options.quick && !plan.meshes.empty()) {
-    sizes.push_back(sizes.front());
-    sizes.back().cells = plan.meshes.front();
+    Settings longer = sizes.front();
+    longer.dt_s *= 2.0;
+    Settings finer = sizes.front();
+    finer.cells = plan.meshes.front();
+    sizes.insert(sizes.end(), {longer, finer});
   }
   return sizes;
 }

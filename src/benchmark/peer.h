@@ -18,9 +18,10 @@ struct PeerResult {
 };
 
 /// Same mesh, motion, step and friction as ours with these settings. Only in builds with a peer.
-PeerResult runPeer(const BenchmarkScene& scene, const Settings& settings, const PressDragMotion& motion);
+/// @param damped false: without the tissue's damping, which costs the peer most of its time and changes a slow press little.
+PeerResult runPeer(const BenchmarkScene& scene, const Settings& settings, const PressDragMotion& motion, bool damped);
 
-/// The meshes and steps the peer is run at: the shipped one, and in a full run the next finer mesh.
+/// The meshes and steps the peer is run at: the shipped one, and in a full run twice the step and the next finer mesh.
 std::vector<Settings> peerSizes(const ScenePlan& plan, const SceneOptions& options);
 
 }  // namespace tissue_contact

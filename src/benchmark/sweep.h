@@ -20,6 +20,7 @@ struct BenchmarkRow {
   std::string method;
   std::string relaxation;  ///< empty where there is none
   int iterations = 0;
+  int contact_passes = 0;
   double tolerance = 0.0;  ///< 0: the number of iterations is fixed
   double dt_s = 0.0;
   int nodes = 0;
@@ -32,6 +33,8 @@ struct BenchmarkRow {
       0.0;  ///< against the converged run of the same mesh, step and elements; ours: the solver error
   double mean_iterations = 0.0;
   double met_tolerance = 0.0;    ///< share of the steps
+  double reference_met = 0.0;    ///< share of the steps of the converged run that met 1e-10
+  long discarded = 0;            ///< steps without a finite answer
   bool shipped = false;          ///< the settings the scene ships with, on the mesh and step it ships with
   bool shipped_solver = false;   ///< the settings it ships with, on any mesh and step
   bool at_shipped_size = false;  ///< mesh and step are those it ships with

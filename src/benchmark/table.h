@@ -25,7 +25,8 @@ constexpr double kTimeNoise = 0.1;
 /// What the Pareto front says about the shipped settings.
 struct FrontVerdict {
   bool on_front = false;
-  std::size_t better = 0;  ///< index into the rows: the fastest with no more error; meaningful if !on_front
+  bool found_better = false;  ///< false although not on the front: its numbers are not finite
+  std::size_t better = 0;     ///< index into the rows: the fastest with no more error; meaningful if found_better
 };
 FrontVerdict judgeShipped(const SceneResult& result);
 

@@ -55,8 +55,14 @@ ErrorVerdict judgeErrors(const std::vector<ErrorSource>& sources) {
                   100.0 * kSmallError);
   } else {
     const ErrorSource& source = sources[static_cast<std::size_t>(verdict.dominating)];
-    std::snprintf(text, sizeof text, "The %s dominates: about %.1f %%. Change %s: costs %.1f times the time.",
-                  source.name.c_str(), 100.0 * source.estimate, source.remedy.c_str(), source.cost);
+    const double percent = 100.0 * source.estimate;
+    if (source.remedy.empty()) {
+      std::snprintf(text, sizeof text, "The %s dominates: about %.1f %%. None of the settings tried leaves less.",
+                    source.name.c_str(), percent);
+    } else {
+      std::snprintf(text, sizeof text, "The %s dominates: about %.1f %%. Change %s: costs %.1f times the time.",
+                    source.name.c_str(), percent, source.remedy.c_str(), source.cost);
+    }
   }
   verdict.summary = text;
   return verdict;

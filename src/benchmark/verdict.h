@@ -16,7 +16,7 @@ struct ErrorSource {
   std::string name;       ///< "solver", "step", "mesh"
   double change = 0.0;    ///< relative wrench difference that was measured
   double estimate = 0.0;  ///< of the whole error that comes from it
-  std::string remedy;     ///< the scene key and its new value
+  std::string remedy;     ///< the scene key and its new value; empty: none was found
   double cost = 0.0;      ///< wall time with the remedy over that without
 };
 

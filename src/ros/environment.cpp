@@ -30,8 +30,6 @@ double secondsSinceStart() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::string packagePath(const std::string& package) { return ros::package::getPath(package); }
-
 std::string urdfParameter(const ros::NodeHandle& private_node, const std::string& parameter) {
   const std::string tried_first = private_node.resolveName(parameter);
   std::string name = tried_first;
@@ -102,6 +100,8 @@ Pose frameInBag(const std::string& frame, const std::string& world_frame, const 
 }
 
 }  // namespace
+
+std::string packagePath(const std::string& package) { return ros::package::getPath(package); }
 
 SceneEnvironment nodeEnvironment(const ros::NodeHandle& private_node, const std::string& world_frame) {
   double timeout_s = 10.0;

@@ -3,7 +3,6 @@
 #include "tissue_contact/ros/node.h"
 
 #include <ros/init.h>
-#include <ros/package.h>
 
 #include <chrono>
 #include <exception>
@@ -30,7 +29,7 @@ Simulator makeSimulator(const ros::NodeHandle& private_node) {
         "or <param name=\"scene\" value=\"...\"/>");
   }
   try {
-    const Scene scene = loadScene(file, ros::package::getPath);
+    const Scene scene = loadScene(file, packagePath);
     return {scene, nodeEnvironment(private_node, scene.world_frame)};
   } catch (const std::exception& error) {
     throw std::invalid_argument("parameter '" + parameter + "' (" + file + "): " + error.what());

@@ -2,8 +2,6 @@
 /// Room `ros`: see replay.h.
 #include "tissue_contact/ros/replay.h"
 
-#include <ros/package.h>
-
 #include <chrono>
 #include <exception>
 #include <fstream>
@@ -50,7 +48,7 @@ class Replay {
  public:
   explicit Replay(const ReplayOptions& options)
       : options_(options),
-        scene_(loadScene(options.scene_file, ros::package::getPath)),
+        scene_(loadScene(options.scene_file, packagePath)),
         simulator_(scene_, bagEnvironment(options.bag_file, options.urdf_file, scene_.world_frame)),
         player_(simulator_) {
     for (const std::string& line : simulator_.advice()) std::cerr << "tissue_contact_replay: advisor: " << line << "\n";

@@ -6,7 +6,6 @@ namespace {
 constexpr int kMaxIterations = 10000;
 constexpr int kMaxContactPasses = 100;
 // A pass costs little beside a back-substitution, and the contacts see each other through all of the tissue.
-constexpr int kCholeskyContactPasses = 20;
 // Below the spacing of doubles near 1 a residual can never fall.
 constexpr Range kToleranceRange{1e-16, 0.1};
 constexpr Range kTimeBudgetRange{0.0, 10.0, "s", "give seconds: 1 ms is 0.001; 0 sets no budget"};
@@ -42,7 +41,6 @@ SolverDescription parseSolver(const YamlCursor& cursor) {
   if (const YamlCursor* value = map.find("method")) solver.method = parseMethod(*value);
   if (const YamlCursor* value = map.find("relaxation")) solver.relaxation = parseRelaxation(*value);
   if (const YamlCursor* value = map.find("iterations")) solver.iterations = value->integer(1, kMaxIterations);
-  if (solver.relaxation == RelaxationKind::kCholesky) solver.contact_passes = kCholeskyContactPasses;
   if (const YamlCursor* value = map.find("contact_passes")) {
     solver.contact_passes = value->integer(1, kMaxContactPasses);
   }

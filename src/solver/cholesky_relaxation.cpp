@@ -30,8 +30,6 @@ class CholeskyRelaxation : public Relaxation {
   void prepare(const ContactProblem& problem, ContactSolution& solution) override;
   double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                ContactSolution& solution) override;
-  double correctContacts(const ContactProblem& problem, int passes, double enough, ContactCorrector& corrector,
-                         ContactSolution& solution) override;
   void finish(const ContactProblem& problem, ContactSolution& solution) override;
   void reset() override { bodies_.clear(); }
   ContactSolver::Memory memory() const override;
@@ -47,7 +45,8 @@ class CholeskyRelaxation : public Relaxation {
   double relaxOnce(const ContactProblem& problem, ContactSolution& solution, double before);
   double relaxSafely(const ContactProblem& problem, ContactSolution& solution);
   void prepareContact(const ContactProblem& problem, std::size_t contact, ContactSolution& solution);
-  double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution);
+  void beginPasses(const ContactSolution& solution) override;
+  double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
   Vector3 trackedVelocity(const ContactRow& row, const Local& local) const;
   void addImpulse(const ContactRow& row, const Local& local, const Vector3& impulse_W);
 
@@ -205,13 +204,8 @@ double CholeskyRelaxation::contactPass(const ContactProblem& problem, ContactCor
   return std::sqrt(change);
 }
 
-double CholeskyRelaxation::correctContacts(const ContactProblem& problem, int passes, double enough,
-                                           ContactCorrector& corrector, ContactSolution& solution) {
+void CholeskyRelaxation::beginPasses(const ContactSolution& solution) {
   for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].gatherTouched(solution.v[k], tracked_[k]);
-  const double first = contactPass(problem, corrector, solution);
-  double last = first;
-  for (int pass = 1; pass < passes && last > enough; ++pass) last = contactPass(problem, corrector, solution);
-  return first;
 }
 
 void CholeskyRelaxation::finish(const ContactProblem& problem, ContactSolution& solution) {

@@ -11,8 +11,6 @@ class GaussSeidelRelaxation : public Relaxation {
   void prepare(const ContactProblem& problem, ContactSolution& solution) override;
   double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                ContactSolution& solution) override;
-  double correctContacts(const ContactProblem& problem, int passes, double enough, ContactCorrector& corrector,
-                         ContactSolution& solution) override;
   void finish(const ContactProblem& /*problem*/, ContactSolution& /*solution*/) override {}
   ContactSolver::Memory memory() const override;
 
@@ -26,7 +24,7 @@ class GaussSeidelRelaxation : public Relaxation {
   double sweep(const ContactProblem& problem, bool forward, std::vector<NodalVectors>& v) const;
   double sweepHolding(const ContactProblem& problem, bool forward, ContactCorrector& corrector,
                       ContactSolution& solution);
-  double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution);
+  double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
   double correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution);
   void apply(const ContactRow& row, const Vector3& impulse_W, std::vector<NodalVectors>& v);
 
@@ -234,13 +232,6 @@ double GaussSeidelRelaxation::contactPass(const ContactProblem& problem, Contact
     change += delta.squaredNorm();
   }
   return std::sqrt(change);
-}
-
-double GaussSeidelRelaxation::correctContacts(const ContactProblem& problem, int passes, double /*enough*/,
-                                              ContactCorrector& corrector, ContactSolution& solution) {
-  const double first = contactPass(problem, corrector, solution);
-  for (int pass = 1; pass < passes; ++pass) contactPass(problem, corrector, solution);
-  return first;
 }
 
 ContactSolver::Memory GaussSeidelRelaxation::memory() const {

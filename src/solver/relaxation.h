@@ -21,16 +21,22 @@ class Relaxation {
   virtual double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                        ContactSolution& solution) = 0;
 
-  /// At most `passes` passes over the contacts; may stop early when impulses change by less than `enough` (N s).
+  /// At most `passes` passes over the contacts, fewer once one changes impulses by no more than `enough` (N s).
   /// @return |change of the impulses| of the first pass, N s.
-  virtual double correctContacts(const ContactProblem& problem, int passes, double enough, ContactCorrector& corrector,
-                                 ContactSolution& solution) = 0;
+  double correctContacts(const ContactProblem& problem, int passes, double enough, ContactCorrector& corrector,
+                         ContactSolution& solution);
 
   /// Ends a step: brings v in line with the impulses.
   virtual void finish(const ContactProblem& problem, ContactSolution& solution) = 0;
 
   virtual void reset() {}
   virtual ContactSolver::Memory memory() const = 0;
+
+ private:
+  /// Called before the passes, with v relaxed.
+  virtual void beginPasses(const ContactSolution& /*solution*/) {}
+  /// Every contact once. @return |change of the impulses|, N s.
+  virtual double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) = 0;
 };
 
 /// P = block diagonal of A; one sweep per relaxation, alternating direction.

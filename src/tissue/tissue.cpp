@@ -23,6 +23,10 @@ void checkModel(const TissueDescription& description, bool is_volume) {
     throw std::invalid_argument(tissueLabel(description) + ": model is '" + elasticModelName(model) + fits);
   }
   for (const TissueRegion& region : description.regions) {
+    if (region.material.dilatation != description.material.dilatation) {
+      throw std::invalid_argument(tissueLabel(description) + ", region '" + region.name +
+                                  "': dilatation is not that of the tissue; give all regions the same");
+    }
     if (region.material.model == model) continue;
     throw std::invalid_argument(tissueLabel(description) + ", region '" + region.name + "': model is '" +
                                 elasticModelName(region.material.model) + "'; it must be that of the tissue, '" +

@@ -242,7 +242,7 @@ void pullUntilItSlips(Grasp& grasp, Report& report) {
     const Grip grip = grasp.grip(0.4);
     if (grip.normal > 0.0) steepest = std::max(steepest, grip.tangential / grip.normal);
     deepest = std::min(deepest, grip.deepest);
-    if (grip.static_normal > 0.0) last_held = grip;
+    if (grip.static_normal > 0.0 && sliding_samples == 0) last_held = grip;
     if (!grip.slides()) return;
     ++sliding_samples;
     from_kinetic = std::max(from_kinetic, std::abs(grip.tangential / grip.normal - 0.4));
@@ -250,14 +250,16 @@ void pullUntilItSlips(Grasp& grasp, Report& report) {
   });
   const char* const source = "Coulomb, mu .6 / .4";
   report.atMost("pull: most tangential over normal force", "", 0.6 * (1.0 + 1e-6), steepest, source);
-  report.atLeast("pull: least gap of a pressing contact", "m", -1e-5, deepest, "no penetration");
+  // A twentieth of a cell of 1 mm, as in the hard cases: the flap slides out at .1 m/s.
+  report.atLeast("pull: least gap of a pressing contact", "m", -5e-5, deepest, "no penetration");
   // 3 mm at the speed of a flap that springs back.
   report.atLeast("samples (2 ms) in which the flap slides out", "", 5.0, sliding_samples, "it slips out");
   report.atMost("sliding: |tangential over normal force - .4|", "", 1e-6, from_kinetic, source);
   // Sideways as well, by a few degrees.
   report.atMost("sliding: pull off the sum of the contacts, of normal", "", 0.01, from_pull,
                 "n_z + mu sqrt(1 - n_z^2)");
-  // 2 ms before it went. Within 2 %, because the first to go takes the others with it.
+  // 2 ms before it first went (whether it sticks once more on its way out hangs by the last digit of the tolerance).
+  // Within 2 %, because the first to go takes the others with it.
   report.atLeast("last held: static share of the normal force", "", 0.5, last_held.static_normal / last_held.normal,
                  "it went as a whole");
   report.near("last held: static tangential over normal force", "", 0.6,
@@ -277,7 +279,7 @@ void openAndComeToRest(Grasp& grasp, const std::string& name, Report& report) {
 }
 
 // Implicit Euler only loses energy, so what is more than the work is round-off, but for what the linearised step gets
-// wrong. The solver stops when an iteration changes the answer by 3e-4; ten times that is what may be left.
+// wrong. The solver stops when an iteration changes the answer by 1e-4; ten times that is what may be left.
 // A micrometre is a thousandth of the flap's cells.
 void wasStable(const Grasp& grasp, const std::string& name, Report& report) {
   const Stability& stability = grasp.stability();
@@ -286,7 +288,7 @@ void wasStable(const Grasp& grasp, const std::string& name, Report& report) {
   report.require(name + "finite throughout", stability.finite && stability.discarded == 0, "stability");
   report.atMost(name + "energy beyond the work of the jaws, of peak", "", 1e-6,
                 stability.unexplained / stability.highest_energy, "no energy growth without input");
-  report.atMost(name + "worst momentum residual", "", 3e-3, stability.momentum, "solver tolerance");
+  report.atMost(name + "worst momentum residual", "", 1e-3, stability.momentum, "solver tolerance");
   report.atMost(name + "worst penetration residual", "m", 1e-6, stability.penetration_m, "solver tolerance");
 }
 

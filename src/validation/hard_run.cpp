@@ -177,7 +177,7 @@ void HardRun::report(const std::string& name, const HardBands& bands, Report& re
                 driven_ / (total_work_ + total_pushed_), "friction dissipates");
   report.atMost(name + ": deepest penetration over edge", "", bands.penetration_edges, deepest_ / edge_,
                 "non-penetration");
-  if (references_ > 0) {
+  if (reference_every_ > 0) {
     // Where no exact answer was found nothing was compared: that must stay rare.
     report.atLeast(name + ": steps solved exactly, share", "", 0.9, static_cast<double>(references_met_) / references_,
                    "scaled natural map of 1e-5");

@@ -124,10 +124,10 @@ void validatePartialSlip(Report& report) {
   const Ring inside = drag.ring(0.0, 0.8 * held_radius);
   const Ring outside = drag.ring(1.2 * held_radius, 1.0);
   report.atLeast("share of the force held within 0.8 of that radius", "", 0.99, inside.held, kTheory);
-  report.atMost("slip there, of the sphere's speed", "", 0.01, inside.slip, kTheory);
+  report.atMost("slip within 0.8 of that radius, of the sphere's speed", "", 0.01, inside.slip, kTheory);
   report.atMost("share of the force held beyond 1.2 of it", "", 0.0, outside.held, kTheory);
-  report.atLeast("slip there, of the sphere's speed", "", 0.2, outside.slip, kTheory);
-  report.atMost("slip there, of the sphere's speed", "", 0.6, outside.slip, kTheory);
+  report.atLeast("slip beyond 1.2 of it, least, of the sphere's speed", "", 0.2, outside.slip, kTheory);
+  report.atMost("slip beyond 1.2 of it, most, of the sphere's speed", "", 0.6, outside.slip, kTheory);
   for (int k = kSteps * 2 / 5 + 1; k <= kSteps; ++k) {
     drag.step(k * kDragStep);
     report.progress(static_cast<double>(k) / kSteps);

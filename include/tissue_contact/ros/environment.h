@@ -10,6 +10,9 @@
 
 namespace tissue_contact {
 
+/// Directory of a package through rospack; empty where it is not found.
+std::string packagePath(const std::string& package);
+
 /// For a running node: packages through rospack, URDF text from the parameter server, frames through tf2.
 ///
 /// URDF parameters are looked up in the private namespace first, then in the node's namespace and upwards to the global

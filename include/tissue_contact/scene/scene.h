@@ -231,8 +231,8 @@ struct SolverDescription {
   SolverMethod method = SolverMethod::kPredictorCorrector;
   RelaxationKind relaxation = RelaxationKind::kGaussSeidel;
   int iterations = 30;         ///< upper bound on iterations (relaxation + contact passes) per step
-  int contact_passes = 2;      ///< predictor-corrector passes over the contacts per iteration
-  double tolerance = 3e-4;     ///< stop when one iteration changes momentum and impulses by less than this (relative)
+  int contact_passes = 20;     ///< upper bound on predictor-corrector passes over the contacts per iteration
+  double tolerance = 1e-4;     ///< stop when one iteration changes momentum and impulses by less than this (relative)
   double time_budget_s = 0.0;  ///< stop after this wall time per step; 0: none. Gives up bit-identical replay
   int cone_sides = 8;          ///< of the polyhedral rivals, even, 4 to 64
 };

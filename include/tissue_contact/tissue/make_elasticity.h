@@ -11,8 +11,8 @@
 
 namespace tissue_contact {
 
-/// From this Poisson's ratio on Dilatation::kAuto averages. Measured on 10 mm cells under a sphere of 5 mm radius: 80 % too
-/// stiff without and 28 % with it at 0.45, 50 % and 33 % at 0.3, for 1.5 to 1.9 times the time of a step.
+/// From this Poisson's ratio on Dilatation::kAuto averages: at 0.45 a seventh to a quarter of the error of a press on
+/// coarse cells is locking (validation case coarse-press), for 1.5 to 1.9 times the time of a step.
 constexpr double kAveragedPoissonsRatio = 0.3;
 
 /// Whether volume changes of these materials are averaged over patches: what they ask for, or what kAuto chooses.

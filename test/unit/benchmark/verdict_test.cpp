@@ -34,6 +34,11 @@ TEST(ErrorVerdictTest, NamesTheLargestEstimateItsRemedyAndCost) {
             "The mesh dominates: about 9.0 %. Change block: cells: [15, 15, 6]: costs 4.3 times the time.");
 }
 
+TEST(ErrorVerdictTest, SaysSoWhereNothingHelped) {
+  EXPECT_EQ(judgeErrors({{"solver", 0.05, 0.05, "", 0.0}}).summary,
+            "The solver dominates: about 5.0 %. None of the settings tried leaves less.");
+}
+
 TEST(ErrorVerdictTest, SmallErrorsNeedNoAdvice) {
   const ErrorVerdict verdict = judgeErrors({{"solver", 0.001, 0.001, "", 0.0}, {"step", 0.002, 0.01, "", 0.0}});
   EXPECT_EQ(verdict.dominating, -1);

@@ -192,14 +192,5 @@ TEST(ShippedScene, EachLoads) {
   EXPECT_GE(scenes, 3);
 }
 
-TEST_F(SceneTest, CholeskyRelaxationMakesMorePassesOverTheContactsByDefault) {
-  const auto passes = [&](const char* solver) {
-    return parse(replaced(kFullScene, "  contact_passes: 3", solver)).solver.contact_passes;
-  };
-  EXPECT_EQ(passes("  cone_sides: 8"), 2);
-  EXPECT_EQ(passes("  relaxation: cholesky"), 20);
-  EXPECT_EQ(passes("  relaxation: cholesky\n  contact_passes: 5"), 5);
-}
-
 }  // namespace
 }  // namespace tissue_contact
