@@ -1,10 +1,10 @@
 /// What the model advisor saves and what it costs in accuracy: each scene with each of its choices off and on. Prints
 /// CSV: scene, feature, ms per step off, on (processor time, least of the repeats), their ratio, error the feature adds to
 /// the wrench (RMS over the run, relative to its RMS; 0 where nothing is touched), and the bound stated for it. Where runs
-/// differ at all, the error is that of runs with a tighter solver: with 30 iterations on 3087 nodes the solver's own error,
-/// 0.3 %, hides it.
-/// usage: advisor [REPEATS [SCENE ...]]     REPEATS 1 by default; SCENE psm=FILE.csv: the arm of config/psm_dvrk.yaml along
-///   a table of times (s, from 0) and positions of the joints that its first line names, as grasp_path.csv
+/// differ at all, the error is that of runs with a tighter solver: the default solver's own error would hide
+/// it.
+/// usage: advisor [REPEATS [SCENE ...] [psm=FILE.csv]]     REPEATS 1 by default; no SCENE: all of them. FILE.csv: for the
+///   arm of config/psm_dvrk.yaml, times (s, from 0) and positions of the joints that its first line names, as grasp_path.csv
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -265,16 +265,21 @@ std::map<std::string, std::function<Run()>> scenes() {
 
 int main(int argc, char** argv) {
   const int repeats = argc > 1 ? std::max(1, std::atoi(argv[1])) : 1;
-  std::printf("scene,feature,ms_per_step_off,ms_per_step_on,ratio,wrench_error_added,bound\n");
-  for (const auto& [name, make] : scenes()) {
-    const bool wanted = argc <= 2 || std::find(argv + 2, argv + argc, name) != argv + argc;
-    if (wanted) compare(name, make(), repeats);
-  }
   const std::string prefix = "psm=";
+  std::vector<std::string> names;
+  std::string recording;
   for (int i = 2; i < argc; ++i) {
-    if (std::string(argv[i]).compare(0, prefix.size(), prefix) == 0) {
-      compare("psm_dvrk", recordedArm(argv[i] + prefix.size()), repeats);
+    const std::string argument = argv[i];
+    if (argument.compare(0, prefix.size(), prefix) == 0) {
+      recording = argument.substr(prefix.size());
+    } else {
+      names.push_back(argument);
     }
   }
+  std::printf("scene,feature,ms_per_step_off,ms_per_step_on,ratio,wrench_error_added,bound\n");
+  for (const auto& [name, make] : scenes()) {
+    if (names.empty() || std::find(names.begin(), names.end(), name) != names.end()) compare(name, make(), repeats);
+  }
+  if (!recording.empty()) compare("psm_dvrk", recordedArm(recording), repeats);
   return 0;
 }

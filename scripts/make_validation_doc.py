@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""Regenerates doc/validation.md and its pictures: runs every validation case and the speed-against-error benchmark.
+"""Regenerates doc/validation.md and its pictures: runs every validation case, the speed-against-error benchmark and the
+table of what the model advisor leaves out.
 
 usage, after scripts/build:   . scripts/env.bash; scripts/make_validation_doc.py [--robot-bag FILE] [--out DIR] [--quick] [--reuse]
   --robot-bag FILE  recorded dVRK joint states for config/psm_dvrk.yaml (default: dvrk/psm2_classic_motion.bag of
                     TISSUE_CONTACT_SHARED_DATA or ../shared/data, where it is there)
-  --out DIR         where raw results go (default: validation, in the build directory); an advisor.csv in it goes into the
-                    document as well
+  --out DIR         where raw results go (default: validation, in the build directory)
   --quick           the coarse grid of tissue_contact_benchmark: minutes instead of half an hour
-  --reuse           do not run again what has its results in DIR
-Takes about half an hour. Nothing else should run meanwhile: times are wall times.
+  --reuse           do not run again what has its results in DIR; the document names the commit each was made with
+Takes about half an hour on two cores. Nothing else should run meanwhile: times are wall times.
 """
 import argparse
 import csv
@@ -18,6 +18,9 @@ import os
 import shutil
 import subprocess
 import sys
+
+import rosbag
+import yaml
 
 PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 SCENES = {
@@ -60,12 +63,26 @@ def machine(build):
     compiler = output(flags["CMAKE_CXX_COMPILER"], "--version").splitlines()[0]
     build_type = flags.get("CMAKE_BUILD_TYPE", "")
     options = flags.get("CMAKE_CXX_FLAGS_" + build_type.upper(), "")
-    changed = " with uncommitted changes" if output("git", "status", "--porcelain", "--untracked-files=no") else ""
     return [
-        ("commit", output("git", "log", "-1", "--format=%h of %cs") + changed),
         ("processor", "%s, %d cores (one is used)" % (model, os.cpu_count())),
         ("compiler", "%s, %s (%s)" % (compiler, build_type, options)),
     ]
+
+
+def commit():
+    changed = " with uncommitted changes" if output("git", "status", "--porcelain", "--untracked-files=no") else ""
+    return output("git", "log", "-1", "--format=%h of %cs") + changed
+
+
+def made_with(files):
+    """The commits of results, one line where they agree."""
+    commits = {}
+    for what, file in files.items():
+        with open(file + ".commit", encoding="utf-8") as stream:
+            commits.setdefault(stream.read().strip(), []).append(what)
+    if len(commits) == 1:
+        return next(iter(commits))
+    return "; ".join("%s: %s" % (", ".join(what), name) for name, what in commits.items())
 
 
 def number(value, digits=4):
@@ -123,8 +140,8 @@ def percent(text):
 
 
 def speed_row(row):
-    settings = "tolerance %g, at most %s" % (float(row["tolerance"]), row["iterations"]) if row["tolerance"] not in (
-        "", "0") else (row["iterations"] + " iterations" if row["iterations"] else "")
+    most = row["iterations"] + " \u00d7 " + row["contact_passes"] if row["contact_passes"] else ""
+    settings = "%g, at most %s" % (float(row["tolerance"]), most) if row["tolerance"] not in ("", "0") else most
     name = " ".join(filter(None, [row["method"], row["relaxation"]]))
     return ["**%s**" % name if row["shipped"] == "1" else name, settings, row["nodes"],
             "%g" % (1e3 * float(row["dt_s"])), "%.3g" % float(row["median_ms"]), "%.3g" % float(row["p99_ms"]),
@@ -132,7 +149,7 @@ def speed_row(row):
             percent(row["solver_error"]), percent(row["total_error"]), percent(row["met_tolerance"])]
 
 
-SPEED_HEAD = ["solver", "stops at", "nodes", "dt, ms", "median, ms", "p99", "max", "steps/s", "\u00d7 real time",
+SPEED_HEAD = ["solver", "stops at; iterations \u00d7 passes", "nodes", "dt, ms", "median, ms", "p99", "max", "steps/s", "\u00d7 real time",
               "solver error, %", "total error, %", "steps that met it, %"]
 
 
@@ -159,21 +176,58 @@ def speed_section(folder):
 
 
 def advisor_section(file):
-    if not os.path.exists(file):
-        return []
     rows = read_rows(file)
-    head = list(rows[0]) if rows else []
-    return ["## What a scene does not need", "Time saved and error added by leaving it out, per scene and feature.",
+    head = list(rows[0])
+    text = ("Each scene with each choice of the advisor off and on: processor time per step, what it adds to the wrench (RMS of "
+            "the force over the run, relative), and the bound stated for it. Sleep is off while another choice is measured. "
+            "Made by `bench/advisor.cpp`.")
+    return ["## What a scene does not need", text,
             table([name.replace("_", " ") for name in head], [[row[name] for name in head] for row in rows])]
 
 
-def run(command, result, reuse, may_fail=False):
-    if reuse and os.path.exists(result):
+def run(command, result, reuse, may_fail=False, stdout=None):
+    """Runs what makes `result`; `result`.commit, written last, says that it is whole."""
+    if reuse and os.path.exists(result) and os.path.exists(result + ".commit"):
         return
+    made = commit()
+    if os.path.exists(result + ".commit"):
+        os.remove(result + ".commit")
     print(" ".join(command), flush=True)
-    code = subprocess.run(command, check=False).returncode
+    code = subprocess.run(command, check=False, stdout=stdout).returncode
     if code != 0 and not (may_fail and code == 1):
         fail("%s ended with exit code %d" % (command[0], code))
+    with open(result + ".commit", "w", encoding="utf-8") as stream:
+        stream.write(made + "\n")
+
+
+def write_path(bag_file, csv_file):
+    """Two dips of the recorded arm as a table of joint positions, for bench/advisor.cpp: those of the benchmark."""
+    begin, end = 14.1, 19.1  # s from the first joint state
+    with open(os.path.join(PACKAGE, "config", "psm_dvrk.yaml"), encoding="utf-8") as stream:
+        instrument = yaml.safe_load(stream)["instruments"][0]
+    names = instrument["joint_names"]
+    first = None
+    with rosbag.Bag(bag_file) as bag, open(csv_file, "w", newline="", encoding="ascii") as stream:
+        writer = csv.writer(stream)
+        for _, message, _ in bag.read_messages(topics=instrument["joint_state_topics"]):
+            stamp = message.header.stamp.to_sec()
+            if first is None:
+                first = stamp
+                writer.writerow(["time_s"] + [names.get(name, name) for name in message.name])
+            if begin <= stamp - first <= end:
+                writer.writerow([stamp - first - begin] + list(message.position))
+
+
+def run_advisor(build, robot_bag, result, reuse):
+    if reuse and os.path.exists(result) and os.path.exists(result + ".commit"):
+        return
+    command = [os.path.join(build, "bench", "advisor"), "1"]
+    if robot_bag:
+        path = os.path.join(os.path.dirname(result), "psm_path.csv")
+        write_path(robot_bag, path)
+        command.append("psm=" + path)
+    with open(result, "w", encoding="ascii") as stream:
+        run(command, result, False, stdout=stream)
 
 
 def main():
@@ -188,20 +242,27 @@ def main():
     build = output(os.path.join(PACKAGE, "scripts", "build"), "--where")
     out = arguments.out or os.path.join(build, "validation")
     os.makedirs(out, exist_ok=True)
+    output("cmake", "--build", build, "--target", "tissue_contact_validate", "tissue_contact_benchmark", "advisor")
     results_file = os.path.join(out, "validation.json")
     # A case that fails is a result as well, exit code 1; the document says so.
     run([program(build, "tissue_contact_validate"), "--json", results_file], results_file, arguments.reuse, True)
-    robot = ["--robot-bag", arguments.robot_bag] if os.path.exists(arguments.robot_bag) else []
-    run([program(build, "tissue_contact_benchmark"), "--out", out] + robot + (["--quick"] if arguments.quick else []), os.path.join(out, "summary.txt"),
-        arguments.reuse)
+    robot_bag = arguments.robot_bag if os.path.exists(arguments.robot_bag) else ""
+    speed = [program(build, "tissue_contact_benchmark"), "--out", out]
+    speed += ["--robot-bag", robot_bag] if robot_bag else []
+    speed += ["--quick"] if arguments.quick else []
+    speed_file = os.path.join(out, "summary.txt")
+    run(speed, speed_file, arguments.reuse)
+    advisor_file = os.path.join(out, "advisor.csv")
+    run_advisor(build, robot_bag, advisor_file, arguments.reuse)
 
     with open(results_file, encoding="utf-8") as stream:
         results = json.load(stream)
     parts = ["# Validation, measured", "Generated by `scripts/make_validation_doc.py`; do not edit.",
-             table(["", ""], machine(build))]
+             table(["", ""], [("commit", made_with({"cases": results_file, "speed": speed_file, "advisor": advisor_file}))] +
+                   machine(build))]
     if arguments.quick:
         parts.append("Speed against error: the quick grid, with fewer settings and meshes than the full one.")
-    parts += validation_section(results) + speed_section(out) + advisor_section(os.path.join(out, "advisor.csv"))
+    parts += validation_section(results) + speed_section(out) + advisor_section(advisor_file)
     doc = os.path.join(PACKAGE, "doc")
     with open(os.path.join(doc, "validation.md"), "w", encoding="utf-8") as stream:
         stream.write("\n\n".join(parts) + "\n")

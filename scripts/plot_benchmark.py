@@ -3,7 +3,7 @@
 
 usage: plot_benchmark.py FOLDER
 Per scene <scene>.png: time per step against solver error (left) and against total error (right). Colour: solver and
-relaxation; marker: mesh and step; the line joins the Pareto front; ring: the shipped settings; star: the peer.
+relaxation; marker: mesh and step; the line joins the Pareto front; ring: the shipped settings; star: a peer.
 growth.png: time and error of the shipped solver over the nodes of press and drag.
 """
 import csv

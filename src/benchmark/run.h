@@ -65,8 +65,8 @@ using RunProgress = std::function<void(double share)>;
 Run runScene(const BenchmarkScene& scene, const Settings& settings, const RunProgress& progress = {},
              double duration_s = 0.0);
 
-/// Settings of the answer that solver errors are measured against: the predictor-corrector's fixed point to 1e-10, or what
-/// 500 iterations reach of it (200 with a Cholesky factor or on more than 2000 nodes); Run::met_tolerance tells how often.
+/// Settings of the answer that solver errors are measured against: the predictor-corrector's fixed point to 1e-10 (1e-8
+/// on more than 2000 nodes), or what 500 iterations reach of it (200 there and with a Cholesky factor); Run::met_tolerance tells how often.
 Settings convergedSettings(Settings settings);
 
 }  // namespace tissue_contact

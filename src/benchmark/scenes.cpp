@@ -30,7 +30,7 @@ BenchmarkScene shippedScene(const std::string& name, const std::string& file) {
   return scene;
 }
 
-/// The scene on a finer mesh. Its solver error, half a per cent at most, is small beside what meshes differ by.
+/// The scene on a finer mesh. Its solver error, a ten-thousandth or so, is small beside what meshes differ by.
 BenchmarkScene finer(const BenchmarkScene& scene, const std::array<int, 3>& cells) {
   Settings settings = shippedSettings(scene);
   settings.solver.iterations = 100;

@@ -33,7 +33,7 @@ struct BenchmarkRow {
       0.0;  ///< against the converged run of the same mesh, step and elements; ours: the solver error
   double mean_iterations = 0.0;
   double met_tolerance = 0.0;    ///< share of the steps
-  double reference_met = 0.0;    ///< share of the steps of the converged run that met 1e-10
+  double reference_met = 0.0;    ///< share of the steps of the converged run that met its tolerance
   long discarded = 0;            ///< steps without a finite answer
   bool shipped = false;          ///< the settings the scene ships with, on the mesh and step it ships with
   bool shipped_solver = false;   ///< the settings it ships with, on any mesh and step

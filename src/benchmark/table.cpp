@@ -90,8 +90,9 @@ void printFront(const SceneResult& result, std::ostream& out) {
   }
   for (const std::size_t i : runs) {
     if (!result.rows[i].shipped) continue;
-    out << text("  solver error against: the same scene solved to convergence (1e-10 met in %.0f %% of the steps)\n",
-                100.0 * result.rows[i].reference_met);
+    out << text(
+        "  solver error against: the same scene solved to convergence (tolerance met in %.0f %% of the steps)\n",
+        100.0 * result.rows[i].reference_met);
   }
   out << "  Pareto front, time against solver error, at the shipped mesh and step:\n";
   printHeader(out);

@@ -164,6 +164,8 @@ void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std:
   message.open_contacts = static_cast<std::uint32_t>(report.open_contacts);
   message.static_contacts = static_cast<std::uint32_t>(report.static_contacts);
   message.kinetic_contacts = static_cast<std::uint32_t>(report.kinetic_contacts);
+  message.sleeping_nodes = static_cast<std::uint32_t>(report.sleeping_nodes);
+  message.held_force = report.held_force_n;
   message.momentum_residual = report.residuals.momentum;
   message.penetration = report.residuals.penetration_m;
   message.adhesion = report.residuals.adhesion_n;

@@ -5,7 +5,6 @@ namespace {
 
 constexpr int kMaxIterations = 10000;
 constexpr int kMaxContactPasses = 100;
-// A pass costs little beside a back-substitution, and the contacts see each other through all of the tissue.
 // Below the spacing of doubles near 1 a residual can never fall.
 constexpr Range kToleranceRange{1e-16, 0.1};
 constexpr Range kTimeBudgetRange{0.0, 10.0, "s", "give seconds: 1 ms is 0.001; 0 sets no budget"};

@@ -9,6 +9,8 @@
 namespace tissue_contact {
 namespace {
 
+constexpr int kPassesPerIteration = 2;  // forth and back
+
 /// Steps mixed. Random problems need as many iterations with 5 or 20; degenerate ones vary, 10 was never bad.
 constexpr int kAndersonDepth = 10;
 
@@ -85,7 +87,7 @@ SweepsReport iterate(ContactSweeps& sweeps, const SolverDescription& description
   SweepsReport report;
   while (report.iterations < iterations) {
     const VectorX start = sweeps.impulses();
-    sweeps.sweep(description.contact_passes);
+    sweeps.sweep(kPassesPerIteration);
     ++report.iterations;
     report.converged = sweeps.naturalMapNorm() <= tolerance;
     const double change = (sweeps.impulses() - start).norm();

@@ -12,12 +12,6 @@ std::unique_ptr<Relaxation> makeRelaxation(RelaxationKind kind) {
   return kind == RelaxationKind::kCholesky ? makeCholeskyRelaxation() : makeGaussSeidelRelaxation();
 }
 
-double norm(const std::vector<Vector3>& impulses) {
-  double sum = 0.0;
-  for (const Vector3& impulse : impulses) sum += impulse.squaredNorm();
-  return std::sqrt(sum);
-}
-
 }  // namespace
 
 IterativePredictorCorrector::IterativePredictorCorrector(const SolverDescription& description, SecondsClock clock)
@@ -34,7 +28,7 @@ void IterativePredictorCorrector::reset() { relaxation_->reset(); }
 
 bool IterativePredictorCorrector::converged(double momentum_change, double impulse_change,
                                             const ContactSolution& solution) const {
-  const double impulses = norm(solution.impulses);
+  const double impulses = impulseNorm(solution.impulses);
   return momentum_change <= description_.tolerance * (load_scale_ + impulses) &&
          impulse_change <= description_.tolerance * impulses;
 }
@@ -53,9 +47,8 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
   SolverReport report;
   for (bool stop = false; !stop;) {
     const double momentum_change = relaxation_->relax(problem, report.iterations, *corrector_, solution);
-    const double enough = description_.tolerance * norm(solution.impulses);
-    const double impulse_change =
-        relaxation_->correctContacts(problem, description_.contact_passes, enough, *corrector_, solution);
+    const double impulse_change = relaxation_->correctContacts(problem, description_.contact_passes,
+                                                               description_.tolerance, *corrector_, solution);
     ++report.iterations;
     stop = true;
     if (converged(momentum_change, impulse_change, solution)) {

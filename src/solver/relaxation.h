@@ -4,11 +4,15 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "solver/contact_corrector.h"
 #include "tissue_contact/solver/contact_solver.h"
 
 namespace tissue_contact {
+
+/// Of all contacts together, N s.
+double impulseNorm(const std::vector<Vector3>& impulses);
 
 class Relaxation {
  public:
@@ -21,9 +25,9 @@ class Relaxation {
   virtual double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                        ContactSolution& solution) = 0;
 
-  /// At most `passes` passes over the contacts, fewer once one changes impulses by no more than `enough` (N s).
+  /// At most `passes` passes over the contacts, fewer once one changes the impulses by no more than `tolerance` of them.
   /// @return |change of the impulses| of the first pass, N s.
-  double correctContacts(const ContactProblem& problem, int passes, double enough, ContactCorrector& corrector,
+  double correctContacts(const ContactProblem& problem, int passes, double tolerance, ContactCorrector& corrector,
                          ContactSolution& solution);
 
   /// Ends a step: brings v in line with the impulses.

@@ -45,7 +45,7 @@ class BenchmarkTest(unittest.TestCase):
                 self.assertGreater(float(row["median_ms"]), 0.0)
                 self.assertLessEqual(float(row["median_ms"]), float(row["max_ms"]))
             # More iterations of the same method, no more error: else the errors mean nothing. Five and thirty may both be
-            # at the floor that is left when friction's history has taken another way (0.3 % in press-drag).
+            # at the floor that is left when friction's history has taken another way.
             fixed = {int(row["iterations"]): float(row["solver_error"]) for row in ours
                      if row["tolerance"] == "0" and row["at_shipped_size"] == "1"
                      and (row["method"], row["relaxation"]) == ("predictor_corrector", "gauss_seidel")}

@@ -10,7 +10,7 @@
 
 namespace tissue_contact {
 
-/// Directory of a ROS package, or "" when it is not known. The ROS room passes ros::package::getPath.
+/// Directory of a ROS package, or "" when it is not known. The ROS room has packagePath().
 using PackagePath = std::function<std::string(const std::string& package)>;
 
 /// Turns `uri` into an absolute path: `package://name/rest` through `package_path`, `file:///rest`, an absolute path,

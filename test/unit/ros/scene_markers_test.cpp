@@ -161,6 +161,24 @@ TEST(Conversions, StatusTellsOfJumps) {
   EXPECT_TRUE(isFinite(simulator));
 }
 
+TEST(Conversions, StatusTellsOfSleep) {
+  Scene scene = makeSimulator().scene();
+  scene.gravity_m_per_s2 = Vector3(0, 0, -1.0);  // something to be held against
+  SceneEnvironment environment;
+  environment.package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
+  Simulator simulator(scene, environment);
+  const JointStatePlayer player(simulator);
+  Status status;
+  simulator.advance(0.01, {Vector3(0, 0, 0.01)});
+  fillStatus(simulator, player, kSecond, status);
+  EXPECT_EQ(status.sleeping_nodes, 0U);
+  for (int k = 0; k < 300; ++k) simulator.advance(0.01, {Vector3(0, 0, 0.01)});
+  fillStatus(simulator, player, kSecond, status);
+  EXPECT_GT(status.sleeping_nodes, 0U);
+  EXPECT_GT(status.held_force, 0.0);
+  EXPECT_EQ(status.held_force, simulator.report().held_force_n);
+}
+
 TEST(Conversions, StatusOfADiscardedStepIsFiniteAndSaysSo) {
   Scene scene = makeSimulator().scene();
   scene.gravity_m_per_s2 = Vector3(0, 0, -1e308);  // beyond what the loader allows: overflows within a step of 10 s

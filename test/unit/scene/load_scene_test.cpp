@@ -133,7 +133,8 @@ TEST_F(SceneTest, HasDefaults) {
   EXPECT_EQ(scene.step.max_step_s, defaults.step.max_step_s);
   EXPECT_EQ(scene.step.max_gap_s, defaults.step.max_gap_s);
   EXPECT_EQ(scene.solver.iterations, defaults.solver.iterations);
-  EXPECT_EQ(scene.solver.tolerance, defaults.solver.tolerance);
+  EXPECT_EQ(scene.solver.contact_passes, 20);
+  EXPECT_EQ(scene.solver.tolerance, 1e-4);
   EXPECT_EQ(scene.publish.mesh_rate_hz, defaults.publish.mesh_rate_hz);
   EXPECT_FALSE(scene.publish.tf);
   EXPECT_TRUE(scene.friction.empty());

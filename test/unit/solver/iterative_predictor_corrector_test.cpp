@@ -342,5 +342,54 @@ TEST(Residuals, NotANumberIsNeverTakenForZero) {
   EXPECT_TRUE(std::isnan(residuals.static_slip_m_per_s));
 }
 
+/// A node under the four faces around it, as a ball that rests on a vertex of coarse cells makes them: four contacts for
+/// three unknowns, each of which undoes a part of what the one before it did.
+OneNode vertexUnderFourFaces() {
+  OneNode scene(Vector3(-1.0, 0.02, 0.01), {0.05, 0.05});
+  const ContactRow row = scene.problem.contacts[0];
+  scene.problem.contacts.clear();
+  for (const double x : {-0.3, 0.3}) {
+    for (const double y : {-0.3, 0.3}) {
+      ContactRow face = row;
+      const Vector3 n = Vector3(1.0, x, y).normalized();
+      const Vector3 t = n.unitOrthogonal();
+      face.R_WC << n, t, n.cross(t);
+      scene.problem.contacts.push_back(face);
+    }
+  }
+  scene.solution.impulses.assign(4, Vector3::Zero());
+  scene.solution.states.assign(4, ContactState::kOpen);
+  return scene;
+}
+
+class PassesOverContacts : public testing::TestWithParam<RelaxationKind> {
+ protected:
+  ContactSolution solve(OneNode scene, int iterations, int passes, double tolerance) const {
+    IterativePredictorCorrector(options(iterations, passes, tolerance, GetParam()))
+        .solve(scene.problem, scene.solution);
+    return scene.solution;
+  }
+};
+
+TEST_P(PassesOverContacts, ManyOfThemSettleWhatFewLeave) {
+  const OneNode scene = vertexUnderFourFaces();
+  const NodalVectors exact = solve(scene, 1000, 100, 1e-15).v[0];
+  const auto error = [&](int passes) { return (solve(scene, 3, passes, 1e-15).v[0] - exact).norm(); };
+  EXPECT_GT(error(2), 0.0);
+  EXPECT_LT(error(20), 0.1 * error(2));
+}
+
+TEST_P(PassesOverContacts, StopOnceImpulsesSettle) {
+  const OneNode scene = vertexUnderFourFaces();
+  const ContactSolution one = solve(scene, 1, 100, 0.05);
+  const ContactSolution never = solve(scene, 1, 100, 1e-15);
+  EXPECT_NE(one.impulses, never.impulses);
+  EXPECT_EQ(one.impulses, solve(scene, 1, 90, 0.05).impulses);
+}
+
+INSTANTIATE_TEST_SUITE_P(Relaxations, PassesOverContacts,
+                         testing::Values(RelaxationKind::kGaussSeidel, RelaxationKind::kCholesky),
+                         [](const auto& relaxation) { return std::string(relaxationName(relaxation.param)); });
+
 }  // namespace
 }  // namespace tissue_contact

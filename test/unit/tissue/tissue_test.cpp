@@ -122,6 +122,9 @@ TEST(Tissue, RefusesModelsThatDoNotSuitTheGeometry) {
   description.regions = {regionAbove(0.01)};
   description.regions[0].material.model = ElasticModel::kNeoHookean;
   expectRefused(description, {"tissue 'block', region 'capsule'", "'neo_hookean'", "'corotational'"});
+  description.regions[0].material = description.material;
+  description.regions[0].material.dilatation = Dilatation::kElement;
+  expectRefused(description, {"tissue 'block', region 'capsule'", "dilatation"});
   description = sheetDescription();
   std::get<SheetDescription>(description.geometry).thickness_m = 0.0;
   expectRefused(description, {"tissue 'flap'", "thickness_m", "> 0"});
