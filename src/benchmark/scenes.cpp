@@ -75,7 +75,9 @@ std::vector<Vector3> graspPath() {
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream numbers(line);
     Vector3 row;
-    if (!(numbers >> row.x() >> row.y() >> row.z())) throw std::runtime_error(name + ": no three numbers: " + line);
+    if (!(numbers >> row.x() >> row.y() >> row.z())) {
+      throw std::runtime_error(std::string(name).append(": no three numbers: ").append(line));
+    }
     rows.push_back(row);
   }
   if (rows.size() < 2) throw std::runtime_error(name + " cannot be read or has no rows");

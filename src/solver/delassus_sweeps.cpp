@@ -81,8 +81,7 @@ double ContactSweeps::naturalMapNorm() const {
   return std::sqrt(sum);
 }
 
-SweepsReport iterate(ContactSweeps& sweeps, const SolverDescription& description, double tolerance, double settled,
-                     int iterations) {
+SweepsReport iterate(ContactSweeps& sweeps, double tolerance, double settled, int iterations) {
   AndersonMixing mixing(kAndersonDepth);
   SweepsReport report;
   while (report.iterations < iterations) {

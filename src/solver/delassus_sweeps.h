@@ -50,9 +50,8 @@ struct SweepsReport {
   bool converged = false;  ///< the natural map met the tolerance
 };
 
-/// Repeats sweep(contact_passes) under Anderson's acceleration until the scaled natural map is <= tolerance, nothing
+/// Repeats passes forth and back under Anderson's acceleration until the scaled natural map is <= tolerance, nothing
 /// changes any more by more than `settled` (relative), or `iterations` are used up.
-SweepsReport iterate(ContactSweeps& sweeps, const SolverDescription& description, double tolerance, double settled,
-                     int iterations);
+SweepsReport iterate(ContactSweeps& sweeps, double tolerance, double settled, int iterations);
 
 }  // namespace tissue_contact

@@ -23,7 +23,7 @@ double slowPress(const PadScene& scene, double depth_m) {
 }
 
 /// Down at 0.5 m/s, rest, up at 0.5 m/s, again and again.
-void enterFast(const std::string& name, PadScene scene, double depth_m, Report& report, double from, double to) {
+void enterFast(const std::string& name, const PadScene& scene, double depth_m, Report& report, double from, double to) {
   Simulator simulator = makePad(scene);
   HardRun run(simulator, 41);
   constexpr double kSpeed = 0.5;
