@@ -2,6 +2,7 @@
 
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <exception>
 #include <filesystem>
@@ -12,8 +13,6 @@
 #include "benchmark/sweep.h"
 #include "benchmark/table.h"
 #include "validation/package_directory.h"
-
-extern char** environ;
 
 namespace tissue_contact {
 namespace {

@@ -176,7 +176,8 @@ double NarrowPhase::addCornerInFold(int triangle, const ShapeCorner& corner) {
   if (elsewhere || outward.isZero(0.0)) return kNone;
   outward.normalize();
   const double gap = outward.dot(corner.p_S - p);
-  return add(triangle, weights, corner.index, -outward, gap) ? gap : kNone;
+  if (!add(triangle, weights, corner.index, -outward, gap)) return kNone;
+  return gap;
 }
 
 void NarrowPhase::addClosest(int triangle, const TrianglePoints& points, double flush_gap) {

@@ -205,7 +205,7 @@ void MeanDilatation::holdStill(const std::vector<bool>& still, const NodalVector
     if (state.still[p]) addForces(patches_[p], x, state, state.held.forces);
   }
   for (const BatchRange range : state.held.still) {
-    std::fill(state.turned.begin() + range.begin, state.turned.begin() + range.end, 0);
+    std::fill_n(state.turned.data() + range.begin, range.end - range.begin, 0);
   }
 }
 

@@ -72,8 +72,8 @@ void addStiffness(const TetElement& element, const Matrix3& F, double sign, Elas
   const Eigen::Matrix<double, 3, 4> b = tangent.V.transpose() * shapeGradients(element.rest_inverse);
   const double volume = sign * element.volume;
   const bool damps = state.damping.rows() > 0;
-  for (std::size_t n = 0; n < 4; ++n) {
-    for (std::size_t m = n; m < 4; ++m) {
+  for (int n = 0; n < 4; ++n) {
+    for (int m = n; m < 4; ++m) {
       if (element.slots[n][m] < 0) continue;
       Matrix3 inner;
       for (int i = 0; i < 3; ++i) {

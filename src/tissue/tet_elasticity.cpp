@@ -102,8 +102,8 @@ void TetElasticity::addStiffness(const TetElement& element, const Quaternion& ro
   const Eigen::Matrix<double, 3, 4> c = rotation.toRotationMatrix() * shapeGradients(element.rest_inverse);
   const double lambda = sign * element.volume * element.lame.lambda;
   const double mu = sign * element.volume * element.lame.mu;
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = i; j < 4; ++j) {
+  for (int i = 0; i < 4; ++i) {
+    for (int j = i; j < 4; ++j) {
       if (element.slots[i][j] < 0) continue;
       Matrix3 block = (lambda * c.col(i)) * c.col(j).transpose() + (mu * c.col(j)) * c.col(i).transpose();
       block.diagonal().array() += mu * c.col(i).dot(c.col(j));

@@ -38,7 +38,9 @@ void patchTest(Report& report) {
     for (const int node : triangle) boundary[node] = true;
   }
   for (Eigen::Index i = 0; i < mesh.positions.cols(); ++i) {
-    if (!boundary[i]) mesh.positions.col(i) += 0.002 * Vector3(std::sin(7.0 * i), std::cos(5.0 * i), std::sin(3.0 * i));
+    const auto any = static_cast<double>(i);
+    if (!boundary[i])
+      mesh.positions.col(i) += 0.002 * Vector3(std::sin(7.0 * any), std::cos(5.0 * any), std::sin(3.0 * any));
   }
   NodalVectors u = gradient * mesh.positions;
   const NodalVectors exact = u;
