@@ -27,7 +27,8 @@ void shakeInside(double size, SheetMesh& mesh) {
   for (Eigen::Index i = 0; i < mesh.positions.cols(); ++i) {
     auto x = mesh.positions.col(i);
     if (x.x() == low.x() || x.x() == high.x() || x.y() == low.y() || x.y() == high.y()) continue;
-    x.head<2>() += size * Vector2(std::sin(7.0 * i), std::cos(5.0 * i));
+    const auto any = static_cast<double>(i);
+    x.head<2>() += size * Vector2(std::sin(7.0 * any), std::cos(5.0 * any));
   }
 }
 
