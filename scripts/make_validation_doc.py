@@ -6,9 +6,9 @@ usage, after scripts/build:   . scripts/env.bash; scripts/make_validation_doc.py
   --robot-bag FILE  recorded dVRK joint states for config/psm_dvrk.yaml (default: dvrk/psm2_classic_motion.bag of
                     TISSUE_CONTACT_SHARED_DATA or ../shared/data, where it is there)
   --out DIR         where raw results go (default: validation, in the build directory)
-  --quick           the coarse grid of tissue_contact_benchmark: minutes instead of half an hour
+  --quick           the coarse grid of tissue_contact_benchmark: a minute instead of half an hour
   --reuse           do not run again what has its results in DIR; the document names the commit each was made with
-Takes about half an hour on two cores. Nothing else should run meanwhile: times are wall times.
+Takes about three quarters of an hour. Nothing else should run meanwhile: times are wall times.
 """
 import argparse
 import csv
