@@ -245,7 +245,6 @@ std::map<std::string, std::function<Run()>> scenes() {
   return {
       {"drag_605", ball(10, 4, kFriction, 1200, pressDrag)},
       {"drag_3087", ball(20, 6, kFriction, 600, pressDrag)},
-      {"drag_14256", ball(35, 10, kFriction, 300, pressDrag)},
       {"drag_605_frictionless", ball(10, 4, no_friction, 1200, pressDrag)},
       {"drag_605_folds", ball(10, 4, kFriction + folds, 600, pressDrag)},
       {"hold_605", ball(10, 4, kFriction, 2000, pressHold)},
