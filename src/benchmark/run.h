@@ -66,7 +66,8 @@ Run runScene(const BenchmarkScene& scene, const Settings& settings, const RunPro
              double duration_s = 0.0);
 
 /// Settings of the answer that solver errors are measured against: the predictor-corrector's fixed point to 1e-10 (1e-8
-/// on more than 2000 nodes), or what 500 iterations reach of it (200 there and with a Cholesky factor); Run::met_tolerance tells how often.
+/// on more than 2000 nodes), or what 500 iterations reach of it (200 there and with a Cholesky factor);
+/// Run::met_tolerance tells how often.
 Settings convergedSettings(Settings settings);
 
 }  // namespace tissue_contact

@@ -195,7 +195,8 @@ void validateHardJointStates(Report& report) {
   // A gap of an hour, in which the probe went 5 mm deep.
   const std::vector<double> after = play(simulator, player, {sampleAt(3600.0, -0.004)});
   report.near("a gap of an hour: gaps counted", "", 1, static_cast<double>(player.gaps()), 0, "max_gap_s of 1 s");
-  report.near("a gap of an hour: force after", "N", slowPress({}, 0.004), after.back(), 0.05 * slowPress({}, 0.004),
+  const double slowly = slowPress({}, 0.004);
+  report.near("a gap of an hour: force after", "N", slowly, after.back(), 0.05 * slowly,
               "the same depth reached slowly");
   run.report("rough joint states", {}, report);
 }

@@ -25,7 +25,8 @@ class ConvexBody {
   /// @param rest 3 x n, m, of a convex body.
   ConvexBody(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra);
 
-  /// Whether k < kMostStrain, and k < 1 even after all nodes have moved by up to `travel_m`, with Frobenius's norm, which is never less than the spectral one. The answer depends on x
+  /// Whether k < kMostStrain, and k < 1 even after all nodes have moved by up to `travel_m`, with Frobenius's norm, which
+  /// is never less than the spectral one. The answer depends on x
   /// alone; elements are looked at only when nodes have moved far enough since they were last to make a difference.
   /// No allocation.
   bool cannotFold(const NodalVectors& x, double travel_m = 0.0);

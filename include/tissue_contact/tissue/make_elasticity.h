@@ -12,7 +12,7 @@
 namespace tissue_contact {
 
 /// From this Poisson's ratio on Dilatation::kAuto averages: at 0.45 a seventh to a quarter of the error of a press on
-/// coarse cells is locking (validation case coarse-press), for 1.5 to 1.9 times the time of a step.
+/// coarse cells is locking (validation case coarse-press), for 1.7 times the instructions of a step.
 constexpr double kAveragedPoissonsRatio = 0.3;
 
 /// Whether volume changes of these materials are averaged over patches: what they ask for, or what kAuto chooses.
