@@ -6,6 +6,9 @@
 #include "benchmark/bullet_peer.h"
 
 namespace tissue_contact {
+
+#ifdef TISSUE_CONTACT_HAS_BULLET
+
 namespace {
 
 PeerScene peerScene(const BenchmarkScene& scene, const Settings& settings, const PressDragMotion& motion, bool damped) {
@@ -30,8 +33,6 @@ PeerScene peerScene(const BenchmarkScene& scene, const Settings& settings, const
 }
 
 }  // namespace
-
-#ifdef TISSUE_CONTACT_HAS_BULLET
 
 bool hasPeer() { return true; }
 

@@ -5,27 +5,53 @@
 
 namespace tissue_contact {
 
-VectorX AndersonMixing::next(const VectorX& x, const VectorX& g) {
-  const VectorX residual = g - x;
-  const double size = residual.norm();
-  if (steps_ > 0 && !(size <= least_)) steps_ = 0;
+AndersonMixing::AndersonMixing(int depth) : depth_(depth), products_(depth, depth) {}
+
+const VectorX& AndersonMixing::next(const VectorX& x, const VectorX& g) {
+  residual_ = g - x;
+  const double size = residual_.norm();
+  if (steps_ > 0 && !(size <= least_)) {
+    steps_ = 0;
+    ++setbacks_;
+  }
   if (steps_ == 0) {
     residual_changes_.resize(x.size(), depth_);
     g_changes_.resize(x.size(), depth_);
     least_ = size;
   } else {
-    const int column = (steps_ - 1) % depth_;
-    residual_changes_.col(column) = residual - residual_;
-    g_changes_.col(column) = g - g_;
+    remember(g);
     least_ = std::min(least_, size);
   }
-  residual_ = residual;
-  g_ = g;
-  const int known = std::min(steps_, depth_);
+  last_residual_ = residual_;
+  last_g_ = g;
+  next_ = g;
+  mix(std::min(steps_, depth_));
   ++steps_;
-  if (known == 0) return g;
-  const VectorX weights = residual_changes_.leftCols(known).colPivHouseholderQr().solve(residual);
-  return g - g_changes_.leftCols(known) * weights;
+  return next_;
+}
+
+void AndersonMixing::remember(const VectorX& g) {
+  const int column = (steps_ - 1) % depth_;
+  residual_changes_.col(column) = residual_ - last_residual_;
+  g_changes_.col(column) = g - last_g_;
+  for (int other = 0; other < std::min(steps_, depth_); ++other) {
+    const double product = residual_changes_.col(column).dot(residual_changes_.col(other));
+    products_(column, other) = products_(other, column) = product;
+  }
+}
+
+void AndersonMixing::mix(int known) {
+  if (known == 0) return;
+  Weights along(known);
+  for (int k = 0; k < known; ++k) along[k] = residual_changes_.col(k).dot(residual_);
+  const Weights weights = products_.topLeftCorner(known, known).colPivHouseholderQr().solve(along);
+  for (int k = 0; k < known; ++k) next_ -= weights[k] * g_changes_.col(k);
+}
+
+std::size_t AndersonMixing::bytes() const {
+  const Eigen::Index values = residual_changes_.size() + g_changes_.size() + residual_.size() + last_residual_.size() +
+                              last_g_.size() + next_.size();
+  return sizeof(double) * static_cast<std::size_t>(values);
 }
 
 }  // namespace tissue_contact

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 
 #include "tissue_contact/core/types.h"
 
@@ -11,21 +12,47 @@ namespace tissue_contact {
 
 /// The combination of the last steps whose mixed residual g(x) - x is smallest (Walker & Ni 2011, type II). Forgets its
 /// steps when the residual grows, because then another piece of the map is reached where they mean nothing.
+///
+/// The weights come from the normal equations: what their round-off costs is speed alone, since any weights lead to an
+/// affine combination of what the map gave.
 class AndersonMixing {
  public:
-  explicit AndersonMixing(int depth) : depth_(depth) {}
+  static constexpr int kMostSteps = 10;
 
+  /// @param depth steps that are mixed, 1 to kMostSteps.
+  explicit AndersonMixing(int depth);
+
+  /// Allocates only when x is of another size than before.
   /// @param x where the map was evaluated. @param g what it gave. @return where to go on; g itself after a restart.
-  VectorX next(const VectorX& x, const VectorX& g);
+  const VectorX& next(const VectorX& x, const VectorX& g);
+
+  /// Begins anew, with another map.
+  void restart() { steps_ = setbacks_ = 0; }
+
+  /// How often the residual has grown since restart().
+  int setbacks() const { return setbacks_; }
+
+  /// Held now.
+  std::size_t bytes() const;
 
  private:
+  using Products = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostSteps, kMostSteps>;
+  using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostSteps, 1>;
+
+  void remember(const VectorX& g);
+  void mix(int known);
+
   int depth_;
-  int steps_ = 0;                     ///< since the last restart
-  double least_ = 0.0;                ///< smallest residual since the last restart
+  int steps_ = 0;  ///< since they were forgotten
+  int setbacks_ = 0;
+  double least_ = 0.0;                ///< smallest residual since then
   Eigen::MatrixXd residual_changes_;  ///< ring of `depth` columns
   Eigen::MatrixXd g_changes_;
-  VectorX residual_;
-  VectorX g_;
+  Products products_;  ///< of each two columns of residual_changes_
+  VectorX residual_;   ///< g - x
+  VectorX last_residual_;
+  VectorX last_g_;
+  VectorX next_;
 };
 
 }  // namespace tissue_contact

@@ -1,6 +1,5 @@
 #include "tissue_contact/solver/iterative_predictor_corrector.h"
 
-#include <cmath>
 #include <utility>
 
 #include "solver/relaxation.h"
@@ -35,13 +34,11 @@ bool IterativePredictorCorrector::converged(double momentum_change, double impul
 
 SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, ContactSolution& solution) {
   const double start = clock_ ? clock_() : 0.0;
-  double load = 0.0;
   scratch_.resize(problem.bodies.size());
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    if (!problem.bodies[k].asleep) load += problem.bodies[k].b.squaredNorm();
     scratch_[k].resize(3, problem.bodies[k].K->rows());
   }
-  load_scale_ = std::sqrt(load);
+  load_scale_ = loadScale(problem);
   relaxation_->prepare(problem, solution);
   corrector_->prepare(problem, solution);
   SolverReport report;

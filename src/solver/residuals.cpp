@@ -29,16 +29,13 @@ double momentumResidual(const ContactProblem& problem, const ContactSolution& so
   }
   double defect = 0.0;
   double scale = 0.0;
-  double load = 0.0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     if (problem.bodies[k].asleep) continue;
     scale += contact_impulses[k].squaredNorm();
-    load += problem.bodies[k].b.squaredNorm();
     defect += bodyDefect(problem.bodies[k], solution.v[k], contact_impulses[k], contact_impulses[k]);
   }
   if (std::isnan(defect)) return defect;
-  if (scale == 0.0) scale = load;
-  return scale == 0.0 ? 0.0 : std::sqrt(defect / scale);
+  return std::sqrt(defect) / (scale == 0.0 ? loadScale(problem) : std::sqrt(scale));
 }
 
 /// How far friction is beyond what the contact's law allows, N; negative inside.
@@ -59,6 +56,17 @@ double kineticAngle(const CoulombLaw& law, const Vector2& friction, const Vector
 }
 
 }  // namespace
+
+double loadScale(const ContactProblem& problem) {
+  constexpr double kStill = 1e-9;  // m/s
+  double load = 0.0;
+  double mass = 0.0;
+  for (const BodySystem& body : problem.bodies) {
+    mass += body.mass.squaredNorm();
+    if (!body.asleep) load += body.b.squaredNorm();
+  }
+  return std::sqrt(load) + kStill * std::sqrt(mass);
+}
 
 Residuals computeResiduals(const ContactProblem& problem, const ContactSolution& solution,
                            std::vector<NodalVectors>& scratch) {

@@ -8,6 +8,7 @@
 ///  2. Anticipate, predict, correct: contact by contact on the local operator W_P = J P^-1 J'. The velocity the contact
 ///     would have without its own impulse predicts the sliding direction; if the impulse that stops the sliding is
 ///     inside the limit the contact is static, else kinetic at mu_k along it. v += P^-1 J' (change of lambda) at once.
+/// The sweeps of hard steps are accelerated by Anderson's mixing (makeGaussSeidelRelaxation).
 /// At a fixed point both steps change nothing, so A v = b + J'lambda and every contact law hold together.
 ///
 /// MICA: a static contact is a linear projection constraint of the same loop. A node held by a contact of its own is
@@ -51,7 +52,7 @@ class IterativePredictorCorrector : public ContactSolver {
   std::unique_ptr<Relaxation> relaxation_;
   std::unique_ptr<ContactCorrector> corrector_;
   std::vector<NodalVectors> scratch_;
-  double load_scale_ = 0.0;  ///< |b|, N s
+  double load_scale_ = 0.0;  ///< loadScale(), N s
 };
 
 }  // namespace tissue_contact

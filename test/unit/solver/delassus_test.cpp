@@ -86,6 +86,19 @@ TEST(AndersonMixing, SolvesALinearFixedPointInAsManyStepsAsDimensions) {
   EXPECT_LE(least, 1e-12);
 }
 
+TEST(AndersonMixing, CountsSetbacksAndThenStartsFromTheMapsOwnAnswer) {
+  AndersonMixing mixing(3);
+  const auto at = [](double value) { return VectorX(VectorX::Constant(2, value)); };
+  EXPECT_EQ(mixing.next(at(0.0), at(1.0)), at(1.0));
+  EXPECT_NE(mixing.next(at(1.0), at(1.5)), at(1.5));  // two points of a line: extrapolated
+  EXPECT_EQ(mixing.setbacks(), 0);
+  EXPECT_EQ(mixing.next(at(2.0), at(4.0)), at(4.0));  // the residual has grown
+  EXPECT_EQ(mixing.setbacks(), 1);
+  mixing.restart();
+  EXPECT_EQ(mixing.setbacks(), 0);
+  EXPECT_EQ(mixing.next(at(0.0), at(9.0)), at(9.0));
+}
+
 TEST(DelassusResiduals, AreZeroAtTheClosedForms) {  // validation, A
   for (const auto& [q, r] : {std::pair(Vector3(-1.0, 0.2, 0.1), Vector3(2.0, -0.4, -0.2)),
                              std::pair(Vector3(-1.0, 1.2, 1.6), Vector3(2.0, -0.6, -0.8))}) {

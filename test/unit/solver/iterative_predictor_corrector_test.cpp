@@ -98,6 +98,12 @@ struct PressedBlock {
   ContactProblem problem;
   ContactSolution solution;
 
+  void keepContacts(std::size_t count) {
+    problem.contacts.resize(count);
+    solution.impulses.resize(count);
+    solution.states.resize(count);
+  }
+
   PressedBlock(double mu, double dt) {
     BlockDescription block;
     block.size_m = Vector3(0.04, 0.04, 0.02);
@@ -276,6 +282,75 @@ TEST(LaggedCholesky, NeedsFewIterationsWhereGaussSeidelStalls) {
                                     .solve(stiff.problem, stiff.solution);
   EXPECT_TRUE(factored.converged());
   EXPECT_LE(10 * factored.iterations, sweeps.iterations);
+}
+
+/// Without contact, under a load along x that bends it as a whole.
+struct BentBlock : PressedBlock {
+  explicit BentBlock(double load) : PressedBlock(0.5, 0.03) {
+    keepContacts(0);
+    problem.bodies[0].b.row(0).setConstant(load);
+  }
+};
+
+/// |A v - b - J'lambda| over |b| after some sweeps of one block after the other, forth and back, without contact: what
+/// Gauss-Seidel with Anderson's mixing must beat.
+double defectOfPlainSweeps(const BentBlock& scene, int sweeps) {
+  const BodySystem& body = scene.problem.bodies[0];
+  const int nodes = body.K->rows();
+  NodalVectors v = NodalVectors::Zero(3, nodes);
+  const auto defectAt = [&](int i) -> Vector3 {
+    const Vector3 elastic = body.K->offDiagonalProduct(i, v) + body.K->diagonal[i] * v.col(i);
+    return body.b.col(i) - body.mass[i] * v.col(i) - body.stiffness_scale * elastic;
+  };
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (int step = 0; step < nodes; ++step) {
+      const int i = sweep % 2 == 0 ? step : nodes - 1 - step;
+      if ((*body.fixed)[i]) continue;
+      const Matrix3 block = body.stiffness_scale * body.K->diagonal[i] + body.mass[i] * Matrix3::Identity();
+      v.col(i) += block.inverse() * defectAt(i);
+    }
+  }
+  double squared = 0.0;
+  for (int i = 0; i < nodes; ++i) {
+    if (!(*body.fixed)[i]) squared += defectAt(i).squaredNorm();
+  }
+  return std::sqrt(squared) / body.b.norm();
+}
+
+TEST(IterativePredictorCorrector, MixedSweepsLeaveFarLessThanPlainOnes) {
+  for (const int sweeps : {5, 30}) {
+    BentBlock scene(0.01);
+    const double plain = defectOfPlainSweeps(scene, sweeps);
+    const SolverReport report =
+        IterativePredictorCorrector(options(sweeps, 2, 1e-15)).solve(scene.problem, scene.solution);
+    if (sweeps == 5) {
+      EXPECT_NEAR(report.residuals.momentum, plain, 1e-9 * plain);  // nothing to mix yet
+    } else {
+      EXPECT_LT(report.residuals.momentum, 0.02 * plain);
+    }
+  }
+}
+
+/// Memory from a larger problem must leave no trace in a smaller one's answer.
+TEST(IterativePredictorCorrector, MixingForgetsTheLastProblem) {
+  PressedBlock larger(0.5, 0.03);
+  PressedBlock one(0.5, 0.03);
+  PressedBlock same(0.5, 0.03);
+  one.keepContacts(1);
+  same.keepContacts(1);
+  IterativePredictorCorrector used(options(30, 20, 1e-12));
+  used.solve(larger.problem, larger.solution);
+  used.solve(one.problem, one.solution);
+  IterativePredictorCorrector(options(30, 20, 1e-12)).solve(same.problem, same.solution);
+  EXPECT_EQ(one.solution.v[0], same.solution.v[0]);
+}
+
+TEST(IterativePredictorCorrector, RoundOffIsNotSolved) {
+  BentBlock scene(1e-19);
+  const SolverReport report = IterativePredictorCorrector(options(30, 20, 1e-4)).solve(scene.problem, scene.solution);
+  EXPECT_EQ(report.stop, StopReason::kTolerance);
+  EXPECT_EQ(report.iterations, 1);
+  EXPECT_LT(report.residuals.momentum, 1e-3);
 }
 
 TEST(IterativePredictorCorrector, StopsWhenTheTimeBudgetIsSpentAndSaysSo) {
