@@ -22,9 +22,10 @@ class AndersonMixing {
   /// @param depth steps that are mixed, 1 to kMostSteps.
   explicit AndersonMixing(int depth);
 
-  /// Allocates only when x is of another size than before.
-  /// @param x where the map was evaluated. @param g what it gave. @return where to go on; g itself after a restart.
-  const VectorX& next(const VectorX& x, const VectorX& g);
+  /// Allocates only when x is larger than ever before. Between restarts x keeps its size.
+  /// @param x where the map was evaluated. @param g what it gave.
+  /// @return where to go on, valid until the next call; g itself after a restart.
+  Eigen::VectorBlock<const VectorX> next(const Eigen::Ref<const VectorX>& x, const Eigen::Ref<const VectorX>& g);
 
   /// Begins anew, with another map.
   void restart() { steps_ = setbacks_ = 0; }
@@ -39,11 +40,13 @@ class AndersonMixing {
   using Products = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostSteps, kMostSteps>;
   using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostSteps, 1>;
 
-  void remember(const VectorX& g);
+  void reserve(Eigen::Index size);
+  void remember(const Eigen::Ref<const VectorX>& g);
   void mix(int known);
 
   int depth_;
-  int steps_ = 0;  ///< since they were forgotten
+  Eigen::Index size_ = 0;  ///< of x: what is used of the rows below
+  int steps_ = 0;          ///< since they were forgotten
   int setbacks_ = 0;
   double least_ = 0.0;                ///< smallest residual since then
   Eigen::MatrixXd residual_changes_;  ///< ring of `depth` columns

@@ -50,8 +50,9 @@ class GaussSeidelRelaxation : public Relaxation {
   std::vector<std::vector<int>> node_contact_;       ///< per body and node: the contact that alone holds it, else -1
   bool holding_ = false;                             ///< some node_contact_ is not -1
   AndersonMixing mixing_{kMixedPairs};
-  VectorX begun_;    ///< where a pair of sweeps began: velocities, and W_(0, 0) times impulses, m/s; then zeros
-  VectorX reached_;  ///< where it led
+  Eigen::Index state_size_ = 0;  ///< what is used of the vectors below
+  VectorX begun_;                ///< where a pair of sweeps began: velocities, and W_(0, 0) times impulses, m/s
+  VectorX reached_;              ///< where it led
 };
 
 void GaussSeidelRelaxation::prepare(const ContactProblem& problem, ContactSolution& solution) {
@@ -217,20 +218,21 @@ double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration
 /// map throughout a step, linear while no contact changes its state. The answer of a step is always what a sweep and
 /// its passes lead to, never a mixture.
 void GaussSeidelRelaxation::beginMixing(const ContactProblem& problem, const ContactSolution& solution) {
-  Eigen::Index size = 3 * static_cast<Eigen::Index>(problem.contacts.size());
+  state_size_ = 3 * static_cast<Eigen::Index>(problem.contacts.size());
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    if (!problem.bodies[k].asleep) size += solution.v[k].size();
+    if (!problem.bodies[k].asleep) state_size_ += solution.v[k].size();
   }
-  size = std::max(size, begun_.size());
-  begun_.setZero(size);
-  reached_.setZero(size);
+  if (begun_.size() < state_size_) {
+    begun_.resize(state_size_);
+    reached_.resize(state_size_);
+  }
   mixing_.restart();
   gather(problem, solution, begun_);
 }
 
 void GaussSeidelRelaxation::mix(const ContactProblem& problem, ContactSolution& solution) {
   gather(problem, solution, reached_);
-  begun_ = mixing_.next(begun_, reached_);
+  begun_.head(state_size_) = mixing_.next(begun_.head(state_size_), reached_.head(state_size_));
   scatter(problem, begun_, solution);
 }
 
