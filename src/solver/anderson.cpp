@@ -2,56 +2,50 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <utility>
+#include <cassert>
 
 namespace tissue_contact {
 
-AndersonMixing::AndersonMixing(int depth) : depth_(depth), products_(depth, depth) {}
+AndersonMixing::AndersonMixing(int depth) : depth_(depth), products_(depth, depth) {
+  assert(1 <= depth && depth <= kMostSteps);
+}
 
-Eigen::VectorBlock<const VectorX> AndersonMixing::next(const Eigen::Ref<const VectorX>& x,
-                                                       const Eigen::Ref<const VectorX>& g) {
-  reserve(x.size());
-  residual_.head(size_) = g - x;
-  const double residual = residual_.head(size_).norm();
-  if (steps_ > 0 && !(residual <= least_)) {
-    steps_ = 0;
-    ++setbacks_;
+const VectorX& AndersonMixing::next(const VectorX& x, const VectorX& g) {
+  residual_ = g - x;
+  const double size = residual_.norm();
+  if (steps_ > 0 && !(size <= least_)) steps_ = 0;
+  if (steps_ == 0) {
+    residual_changes_.resize(x.size(), depth_);
+    g_changes_.resize(x.size(), depth_);
+    least_ = size;
+  } else {
+    remember(g);
+    least_ = std::min(least_, size);
   }
-  if (steps_ > 0) remember(g);
-  least_ = steps_ == 0 ? residual : std::min(least_, residual);
-  last_residual_.head(size_) = residual_.head(size_);
-  last_g_.head(size_) = g;
-  next_.head(size_) = g;
+  next_ = g;
   mix(std::min(steps_, depth_));
   ++steps_;
-  return std::as_const(next_).head(size_);
+  last_residual_.swap(residual_);
+  last_g_ = g;
+  return next_;
 }
 
-void AndersonMixing::reserve(Eigen::Index size) {
-  if (steps_ > 0) return;
-  size_ = size;
-  if (size <= residual_.size()) return;
-  residual_changes_.resize(size, depth_);
-  g_changes_.resize(size, depth_);
-  for (VectorX* const vector : {&residual_, &last_residual_, &last_g_, &next_}) vector->resize(size);
-}
-
-void AndersonMixing::remember(const Eigen::Ref<const VectorX>& g) {
+void AndersonMixing::remember(const VectorX& g) {
   const int column = (steps_ - 1) % depth_;
-  const auto change = [&](int k) { return residual_changes_.col(k).head(size_); };
-  change(column) = residual_.head(size_) - last_residual_.head(size_);
-  g_changes_.col(column).head(size_) = g - last_g_.head(size_);
+  residual_changes_.col(column) = residual_ - last_residual_;
+  g_changes_.col(column) = g - last_g_;
   for (int other = 0; other < std::min(steps_, depth_); ++other) {
-    products_(column, other) = products_(other, column) = change(column).dot(change(other));
+    const double product = residual_changes_.col(column).dot(residual_changes_.col(other));
+    products_(column, other) = products_(other, column) = product;
   }
 }
 
 void AndersonMixing::mix(int known) {
   if (known == 0) return;
   Weights along(known);
-  for (int k = 0; k < known; ++k) along[k] = residual_changes_.col(k).head(size_).dot(residual_.head(size_));
+  for (int k = 0; k < known; ++k) along[k] = residual_changes_.col(k).dot(residual_);
   const Weights weights = products_.topLeftCorner(known, known).colPivHouseholderQr().solve(along);
-  for (int k = 0; k < known; ++k) next_.head(size_) -= weights[k] * g_changes_.col(k).head(size_);
+  for (int k = 0; k < known; ++k) next_ -= weights[k] * g_changes_.col(k);
 }
 
 std::size_t AndersonMixing::bytes() const {

@@ -13,8 +13,8 @@ namespace tissue_contact {
 /// The combination of the last steps whose mixed residual g(x) - x is smallest (Walker & Ni 2011, type II). Forgets its
 /// steps when the residual grows, because then another piece of the map is reached where they mean nothing.
 ///
-/// The weights come from the normal equations: what their round-off costs is speed alone, since any weights lead to an
-/// affine combination of what the map gave.
+/// The weights come from the normal equations, cheap beside one evaluation of the map. What these lose in accuracy is
+/// lost in the choice of the next x alone: a fixed point stays one, whatever the weights.
 class AndersonMixing {
  public:
   static constexpr int kMostSteps = 10;
@@ -22,16 +22,13 @@ class AndersonMixing {
   /// @param depth steps that are mixed, 1 to kMostSteps.
   explicit AndersonMixing(int depth);
 
-  /// Allocates only when x is larger than ever before. Between restarts x keeps its size.
+  /// Allocates only when x has another size than at the restart before. Between restarts it keeps its size.
   /// @param x where the map was evaluated. @param g what it gave.
-  /// @return where to go on, valid until the next call; g itself after a restart.
-  Eigen::VectorBlock<const VectorX> next(const Eigen::Ref<const VectorX>& x, const Eigen::Ref<const VectorX>& g);
+  /// @return where to go on, valid until the next call; g itself at first and after the residual has grown.
+  const VectorX& next(const VectorX& x, const VectorX& g);
 
   /// Begins anew, with another map.
-  void restart() { steps_ = setbacks_ = 0; }
-
-  /// How often the residual has grown since restart().
-  int setbacks() const { return setbacks_; }
+  void restart() { steps_ = 0; }
 
   /// Held now.
   std::size_t bytes() const;
@@ -40,14 +37,11 @@ class AndersonMixing {
   using Products = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostSteps, kMostSteps>;
   using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostSteps, 1>;
 
-  void reserve(Eigen::Index size);
-  void remember(const Eigen::Ref<const VectorX>& g);
+  void remember(const VectorX& g);
   void mix(int known);
 
   int depth_;
-  Eigen::Index size_ = 0;  ///< of x: what is used of the rows below
-  int steps_ = 0;          ///< since they were forgotten
-  int setbacks_ = 0;
+  int steps_ = 0;                     ///< since they were forgotten
   double least_ = 0.0;                ///< smallest residual since then
   Eigen::MatrixXd residual_changes_;  ///< ring of `depth` columns
   Eigen::MatrixXd g_changes_;

@@ -1,5 +1,4 @@
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 
 #include "solver/anderson.h"
@@ -10,12 +9,20 @@ namespace {
 
 /// Iterations before any is remembered: those that an easy step needs are not burdened.
 constexpr int kPlainIterations = 2;
+static_assert(kPlainIterations % 2 == 0, "pairs of sweeps are mixed: forth and back");
 
 /// Pairs of sweeps mixed. With 3 a grasp keeps twice the momentum defect, with 7 no scene gets faster.
 constexpr int kMixedPairs = 5;
 
-/// Then the sweeps go on alone: where contacts keep changing their state, mixing can do worse than they.
-constexpr int kMostSetbacks = 2;
+/// Of the bodies awake, one after the other.
+void gather(const ContactProblem& problem, const std::vector<NodalVectors>& v, VectorX& all) {
+  Eigen::Index at = 0;
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
+    if (problem.bodies[k].asleep) continue;
+    all.segment(at, v[k].size()) = v[k].reshaped();
+    at += v[k].size();
+  }
+}
 
 class GaussSeidelRelaxation : public Relaxation {
  public:
@@ -31,7 +38,6 @@ class GaussSeidelRelaxation : public Relaxation {
 
   void prepareBodies(const ContactProblem& problem);
   void prepareContacts(const ContactProblem& problem, ContactSolution& solution);
-  void addImpulse(const ContactRow& row, const Vector3& impulse_W);
   void findNodeContacts(const ContactProblem& problem);
   double sweep(const ContactProblem& problem, bool forward, std::vector<NodalVectors>& v) const;
   double sweepHolding(const ContactProblem& problem, bool forward, ContactCorrector& corrector,
@@ -39,10 +45,8 @@ class GaussSeidelRelaxation : public Relaxation {
   double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
   double correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution);
   void apply(const ContactRow& row, const Vector3& impulse_W, std::vector<NodalVectors>& v);
-  void beginMixing(const ContactProblem& problem, const ContactSolution& solution);
-  void mix(const ContactProblem& problem, ContactSolution& solution);
-  void gather(const ContactProblem& problem, const ContactSolution& solution, VectorX& state) const;
-  void scatter(const ContactProblem& problem, const VectorX& state, ContactSolution& solution);
+  void beginMixing(const ContactProblem& problem, const std::vector<NodalVectors>& v);
+  void mix(const ContactProblem& problem, std::vector<NodalVectors>& v);
 
   std::vector<std::vector<Matrix3>> block_inverse_;  ///< P_i^-1 per body and node; 0 for fixed nodes
   std::vector<NodalVectors> contact_impulses_;       ///< J'lambda per body
@@ -50,9 +54,8 @@ class GaussSeidelRelaxation : public Relaxation {
   std::vector<std::vector<int>> node_contact_;       ///< per body and node: the contact that alone holds it, else -1
   bool holding_ = false;                             ///< some node_contact_ is not -1
   AndersonMixing mixing_{kMixedPairs};
-  Eigen::Index state_size_ = 0;  ///< what is used of the vectors below
-  VectorX begun_;                ///< where a pair of sweeps began: velocities, and W_(0, 0) times impulses, m/s
-  VectorX reached_;              ///< where it led
+  VectorX begun_;    ///< velocities where a pair of sweeps began, of the bodies awake, m/s
+  VectorX reached_;  ///< and where it led
 };
 
 void GaussSeidelRelaxation::prepare(const ContactProblem& problem, ContactSolution& solution) {
@@ -107,14 +110,10 @@ void GaussSeidelRelaxation::prepareContacts(const ContactProblem& problem, Conta
       solution.states[c] = ContactState::kOpen;
       continue;
     }
-    addImpulse(row, row.R_WC * solution.impulses[c]);
-  }
-}
-
-/// J' impulse of one contact; `impulse_W` in world axes, N s.
-void GaussSeidelRelaxation::addImpulse(const ContactRow& row, const Vector3& impulse_W) {
-  for (int a = 0; a < row.node_count; ++a) {
-    contact_impulses_[row.nodes[a].body].col(row.nodes[a].node) += row.nodes[a].weight * impulse_W;
+    const Vector3 impulse_W = row.R_WC * solution.impulses[c];
+    for (int a = 0; a < row.node_count; ++a) {
+      contact_impulses_[row.nodes[a].body].col(row.nodes[a].node) += row.nodes[a].weight * impulse_W;
+    }
   }
 }
 
@@ -209,58 +208,31 @@ double GaussSeidelRelaxation::sweepHolding(const ContactProblem& problem, bool f
 double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                                     ContactSolution& solution) {
   const bool forward = iteration % 2 == 0;
-  if (iteration == kPlainIterations) beginMixing(problem, solution);
-  if (forward && iteration > kPlainIterations && mixing_.setbacks() < kMostSetbacks) mix(problem, solution);
+  if (iteration == kPlainIterations) beginMixing(problem, solution.v);
+  if (forward && iteration > kPlainIterations) mix(problem, solution.v);
   return holding_ ? sweepHolding(problem, forward, corrector, solution) : sweep(problem, forward, solution.v);
 }
 
-/// A sweep forth and one back, each with its passes over the contacts, are one map of velocities and impulses: the same
-/// map throughout a step, linear while no contact changes its state. The answer of a step is always what a sweep and
-/// its passes lead to, never a mixture.
-void GaussSeidelRelaxation::beginMixing(const ContactProblem& problem, const ContactSolution& solution) {
-  state_size_ = 3 * static_cast<Eigen::Index>(problem.contacts.size());
-  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    if (!problem.bodies[k].asleep) state_size_ += solution.v[k].size();
-  }
-  if (begun_.size() < state_size_) {
-    begun_.resize(state_size_);
-    reached_.resize(state_size_);
-  }
+void GaussSeidelRelaxation::beginMixing(const ContactProblem& problem, const std::vector<NodalVectors>& v) {
+  Eigen::Index size = 0;
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k) size += problem.bodies[k].asleep ? 0 : v[k].size();
+  begun_.resize(size);
+  reached_.resize(size);
   mixing_.restart();
-  gather(problem, solution, begun_);
+  gather(problem, v, begun_);
 }
 
-void GaussSeidelRelaxation::mix(const ContactProblem& problem, ContactSolution& solution) {
-  gather(problem, solution, reached_);
-  begun_.head(state_size_) = mixing_.next(begun_.head(state_size_), reached_.head(state_size_));
-  scatter(problem, begun_, solution);
-}
-
-void GaussSeidelRelaxation::gather(const ContactProblem& problem, const ContactSolution& solution,
-                                   VectorX& state) const {
+/// A sweep forth and one back, each with its passes over the contacts, are a map of velocities, nearly the same one
+/// throughout a step and nearly linear while no contact changes its state. The impulses are not mixed: the next passes
+/// bring them in line, and every answer lies in its cone.
+void GaussSeidelRelaxation::mix(const ContactProblem& problem, std::vector<NodalVectors>& v) {
+  gather(problem, v, reached_);
+  begun_ = mixing_.next(begun_, reached_);
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     if (problem.bodies[k].asleep) continue;
-    state.segment(at, solution.v[k].size()) = solution.v[k].reshaped();
-    at += solution.v[k].size();
-  }
-  for (std::size_t c = 0; c < problem.contacts.size(); ++c, at += 3) {
-    state.segment<3>(at) = W_[c](0, 0) * solution.impulses[c];
-  }
-}
-
-void GaussSeidelRelaxation::scatter(const ContactProblem& problem, const VectorX& state, ContactSolution& solution) {
-  Eigen::Index at = 0;
-  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    if (problem.bodies[k].asleep) continue;
-    solution.v[k].reshaped() = state.segment(at, solution.v[k].size());
-    at += solution.v[k].size();
-    contact_impulses_[k].setZero();
-  }
-  for (std::size_t c = 0; c < problem.contacts.size(); ++c, at += 3) {
-    if (!(W_[c](0, 0) > 0.0)) continue;
-    solution.impulses[c] = state.segment<3>(at) / W_[c](0, 0);
-    addImpulse(problem.contacts[c], problem.contacts[c].R_WC * solution.impulses[c]);
+    v[k].reshaped() = begun_.segment(at, v[k].size());
+    at += v[k].size();
   }
 }
 

@@ -43,8 +43,8 @@ class Relaxation {
   virtual double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) = 0;
 };
 
-/// P = block diagonal of A; one sweep per relaxation, alternating direction. From the sixth iteration on, each pair of
-/// sweeps starts from Anderson's mixture of the pairs before.
+/// P = block diagonal of A; one sweep per relaxation, alternating direction. From the seventh iteration of a step on,
+/// each pair of sweeps starts from Anderson's mixture of the velocities that the pairs before led to.
 std::unique_ptr<Relaxation> makeGaussSeidelRelaxation();
 
 /// P = A of an earlier step, factored.

@@ -13,9 +13,9 @@ void worsen(double& worst, double value) {
   if (!(value <= worst)) worst = value;
 }
 
-/// |A v - b - J'lambda| / |J'lambda| over all bodies.
-double momentumResidual(const ContactProblem& problem, const ContactSolution& solution,
-                        std::vector<NodalVectors>& contact_impulses) {
+/// Over all bodies.
+void momentumResidual(const ContactProblem& problem, const ContactSolution& solution,
+                      std::vector<NodalVectors>& contact_impulses, Residuals& residuals) {
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     if (!problem.bodies[k].asleep) contact_impulses[k].setZero();
   }
@@ -34,8 +34,9 @@ double momentumResidual(const ContactProblem& problem, const ContactSolution& so
     scale += contact_impulses[k].squaredNorm();
     defect += bodyDefect(problem.bodies[k], solution.v[k], contact_impulses[k], contact_impulses[k]);
   }
-  if (std::isnan(defect)) return defect;
-  return std::sqrt(defect) / (scale == 0.0 ? loadScale(problem) : std::sqrt(scale));
+  residuals.momentum_defect_n_s = std::sqrt(defect);
+  if (defect == 0.0) return;
+  residuals.momentum = residuals.momentum_defect_n_s / (scale == 0.0 ? loadScale(problem) : std::sqrt(scale));
 }
 
 /// How far friction is beyond what the contact's law allows, N; negative inside.
@@ -62,8 +63,9 @@ double loadScale(const ContactProblem& problem) {
   double load = 0.0;
   double mass = 0.0;
   for (const BodySystem& body : problem.bodies) {
+    if (body.asleep) continue;
+    load += body.b.squaredNorm();
     mass += body.mass.squaredNorm();
-    if (!body.asleep) load += body.b.squaredNorm();
   }
   return std::sqrt(load) + kStill * std::sqrt(mass);
 }
@@ -90,7 +92,7 @@ Residuals computeResiduals(const ContactProblem& problem, const ContactSolution&
       worsen(worst.kinetic_angle_rad, kineticAngle(row.law, friction, sliding));
     }
   }
-  worst.momentum = momentumResidual(problem, solution, scratch);
+  momentumResidual(problem, solution, scratch, worst);
   return worst;
 }
 

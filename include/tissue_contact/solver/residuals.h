@@ -8,16 +8,17 @@ namespace tissue_contact {
 
 /// Worst values over all contacts of one step.
 struct Residuals {
-  double momentum = 0.0;       ///< |A v - b - J'lambda| / |J'lambda|, dimensionless; over loadScale() without contact
-  double penetration_m = 0.0;  ///< how deep the linearised gap at the end of the step is below 0, m
-  double adhesion_n = 0.0;     ///< pulling normal force, N
+  double momentum = 0.0;  ///< |A v - b - J'lambda| / |J'lambda|, dimensionless; over loadScale() without contact
+  double momentum_defect_n_s = 0.0;  ///< |A v - b - J'lambda|, N s
+  double penetration_m = 0.0;        ///< how deep the linearised gap at the end of the step is below 0, m
+  double adhesion_n = 0.0;           ///< pulling normal force, N
   double complementarity_w = 0.0;    ///< normal force times separation speed, W
   double cone_violation_n = 0.0;     ///< tangential force beyond its limit, N
   double static_slip_m_per_s = 0.0;  ///< sliding speed of contacts called static, m/s
   double kinetic_angle_rad = 0.0;    ///< between friction force and the opposite of sliding, over sliding contacts, rad
 };
 
-/// |b| over all bodies that are awake, and the momentum of all nodes at a nanometre per second, N s. The latter is beyond
+/// |b| over all bodies that are awake, and the momentum of their nodes at a nanometre per second, N s. The latter is beyond
 /// measure, but keeps the round-off of a tissue at rest from being solved to the tolerance.
 double loadScale(const ContactProblem& problem);
 

@@ -4,11 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <random>
 
-#include "solver/anderson.h"
 #include "solver/natural_map.h"
 #include "support/random_contact_problem.h"
 #include "tissue_contact/friction/friction_law.h"
@@ -69,34 +67,6 @@ TEST(ConeProjection, DerivativeIsThatOfTheProjection) {
       EXPECT_LE((derivative.col(k) - difference).norm(), 1e-4);
     }
   }
-}
-
-TEST(AndersonMixing, SolvesALinearFixedPointInAsManyStepsAsDimensions) {
-  Matrix3 A;
-  A << 0.5, 0.3, 0.0, 0.0, -0.7, 0.2, 0.1, 0.0, 0.9;
-  const Vector3 b(1.0, 2.0, 3.0);
-  const Vector3 answer = (Matrix3::Identity() - A).inverse() * b;
-  AndersonMixing mixing(5);
-  VectorX x = Vector3::Zero();
-  double least = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < 8; ++step) {
-    x = mixing.next(x, A * x + b);
-    least = std::min(least, (x - answer).norm());
-  }
-  EXPECT_LE(least, 1e-12);
-}
-
-TEST(AndersonMixing, CountsSetbacksAndThenStartsFromTheMapsOwnAnswer) {
-  AndersonMixing mixing(3);
-  const auto at = [](double value) { return VectorX(VectorX::Constant(2, value)); };
-  EXPECT_EQ(mixing.next(at(0.0), at(1.0)), at(1.0));
-  EXPECT_NE(mixing.next(at(1.0), at(1.5)), at(1.5));  // two points of a line: extrapolated
-  EXPECT_EQ(mixing.setbacks(), 0);
-  EXPECT_EQ(mixing.next(at(2.0), at(4.0)), at(4.0));  // the residual has grown
-  EXPECT_EQ(mixing.setbacks(), 1);
-  mixing.restart();
-  EXPECT_EQ(mixing.setbacks(), 0);
-  EXPECT_EQ(mixing.next(at(0.0), at(9.0)), at(9.0));
 }
 
 TEST(DelassusResiduals, AreZeroAtTheClosedForms) {  // validation, A

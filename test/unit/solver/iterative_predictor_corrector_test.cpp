@@ -331,8 +331,8 @@ TEST(IterativePredictorCorrector, MixedSweepsLeaveFarLessThanPlainOnes) {
   }
 }
 
-/// A larger problem before must leave no trace in a smaller one's answer, not in its last bit.
-TEST(IterativePredictorCorrector, MixingForgetsTheLastProblem) {
+/// Neither a larger problem before nor a body asleep leaves a trace in the answer, not in its last bit.
+TEST(IterativePredictorCorrector, MixingKnowsThisProblemAlone) {
   IterativePredictorCorrector used(options(30, 20, 1e-12));
   PressedBlock larger(0.5, 0.03);
   used.solve(larger.problem, larger.solution);
@@ -343,10 +343,19 @@ TEST(IterativePredictorCorrector, MixingForgetsTheLastProblem) {
       scene->keepContacts(contacts);
       scene->problem.bodies[0].b.row(0).setConstant(0.01);
     }
+    BodySystem asleep = one.problem.bodies[0];
+    asleep.asleep = true;
+    one.problem.bodies.insert(one.problem.bodies.begin(), asleep);
+    one.solution.v.insert(one.solution.v.begin(), NodalVectors::Zero(3, asleep.mass.size()));
+    for (ContactRow& row : one.problem.contacts) {
+      for (int a = 0; a < row.node_count; ++a) row.nodes[a].body = 1;
+    }
     const SolverReport report = used.solve(one.problem, one.solution);
     IterativePredictorCorrector(options(30, 20, 1e-12)).solve(same.problem, same.solution);
     EXPECT_GT(report.iterations, 10);
-    EXPECT_EQ(one.solution.v[0], same.solution.v[0]) << contacts << " contacts";
+    EXPECT_EQ(one.solution.v[1], same.solution.v[0]) << contacts << " contacts";
+    EXPECT_EQ(one.solution.v[0], NodalVectors::Zero(3, asleep.mass.size()));
+    EXPECT_EQ(one.solution.impulses, same.solution.impulses);
   }
 }
 
