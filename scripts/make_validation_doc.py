@@ -8,7 +8,7 @@ usage, after scripts/build:   . scripts/env.bash; scripts/make_validation_doc.py
   --out DIR         where raw results go (default: validation, in the build directory)
   --quick           the coarse grid of tissue_contact_benchmark: a minute instead of half an hour
   --reuse           do not run again what has its results in DIR; the document names the commit each was made with
-Takes about three quarters of an hour. Nothing else should run meanwhile: times are wall times.
+Takes three quarters of an hour to an hour. Nothing else should run meanwhile: times are wall times.
 """
 import argparse
 import csv
@@ -201,7 +201,7 @@ def run(command, result, reuse, may_fail=False, stdout=None):
 
 
 def write_path(bag_file, csv_file):
-    """Two dips of the recorded arm as a table of joint positions, for bench/advisor.cpp: those of the benchmark."""
+    """Two dips of the recorded arm as a table of joint positions, for bench/advisor.cpp: the benchmark's, seen to their end."""
     begin, end = 14.1, 19.1  # s from the first joint state
     with open(os.path.join(PACKAGE, "config", "psm_dvrk.yaml"), encoding="utf-8") as stream:
         instrument = yaml.safe_load(stream)["instruments"][0]
