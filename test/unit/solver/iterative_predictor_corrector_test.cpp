@@ -5,26 +5,13 @@
 
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <random>
 #include <stdexcept>
 #include <string>
 
-#include "tissue_contact/tissue/tet_elasticity.h"
-#include "tissue_contact/tissue/tet_mesh.h"
+#include "support/pressed_block.h"
 
 namespace tissue_contact {
 namespace {
-
-SolverDescription options(int iterations, int contact_passes, double tolerance,
-                          RelaxationKind relaxation = RelaxationKind::kGaussSeidel) {
-  SolverDescription description;
-  description.iterations = iterations;
-  description.contact_passes = contact_passes;
-  description.tolerance = tolerance;
-  description.relaxation = relaxation;
-  return description;
-}
 
 /// One free node of 2 kg without elasticity, touched by one contact: W = I/2 exactly as in form A.
 struct OneNode {
@@ -89,61 +76,6 @@ TEST(IterativePredictorCorrector, RejectsBadOptions) {
   EXPECT_THROW(IterativePredictorCorrector(options(1, 1, std::numeric_limits<double>::quiet_NaN())),
                std::invalid_argument);
 }
-
-/// A block pressed and sheared through barycentric contacts on its upper face.
-struct PressedBlock {
-  TetMesh mesh;
-  std::vector<bool> fixed;
-  std::unique_ptr<Elasticity::State> state;
-  ContactProblem problem;
-  ContactSolution solution;
-
-  void keepContacts(std::size_t count) {
-    problem.contacts.resize(count);
-    solution.impulses.resize(count);
-    solution.states.resize(count);
-  }
-
-  PressedBlock(double mu, double dt) {
-    BlockDescription block;
-    block.size_m = Vector3(0.04, 0.04, 0.02);
-    block.cells = {4, 4, 2};
-    mesh = makeBlockMesh(block);
-    fixed = fixedNodes(mesh.positions, {PlaneRegion{}}, "block");
-    const MaterialDescription material{ElasticModel::kLinear, 5e3, 0.45, 1000.0};
-    state = TetElasticity(mesh.positions, mesh.tetrahedra, fixed, material).makeState();
-    const auto nodes = mesh.positions.cols();
-    BodySystem body;
-    body.K = &state->stiffness;
-    body.fixed = &fixed;
-    body.stiffness_scale = dt * dt;
-    body.mass = VectorX::Constant(nodes, 1e-3);
-    body.b = NodalVectors::Zero(3, nodes);
-    problem.dt_s = dt;
-    problem.bodies = {body};
-    std::mt19937 random(3);
-    std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    for (const Triangle& triangle : boundaryTriangles(mesh.tetrahedra)) {
-      bool top = true;
-      for (const int node : triangle) top = top && mesh.positions(2, node) > 0.0199;
-      if (!top) continue;
-      ContactRow row;
-      Vector3 weights(0.1 + uniform(random), 0.1 + uniform(random), 0.1 + uniform(random));
-      weights /= weights.sum();
-      row.node_count = 3;
-      for (int i = 0; i < 3; ++i) row.nodes[i] = {0, triangle[i], weights[i]};
-      row.R_WC << 0.0, 1.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0;  // n = -z
-      row.gap_m = 1e-4 * uniform(random);
-      row.required_u_n = -row.gap_m / dt;
-      row.u_tool = Vector3(0.05 + 0.1 * uniform(random), 0.1, 0.05);
-      row.law = {mu, mu};
-      problem.contacts.push_back(row);
-    }
-    solution.v = {NodalVectors::Zero(3, nodes)};
-    solution.impulses.assign(problem.contacts.size(), Vector3::Zero());
-    solution.states.assign(problem.contacts.size(), ContactState::kOpen);
-  }
-};
 
 class Relaxations : public ::testing::TestWithParam<RelaxationKind> {};
 
@@ -282,89 +214,6 @@ TEST(LaggedCholesky, NeedsFewIterationsWhereGaussSeidelStalls) {
                                     .solve(stiff.problem, stiff.solution);
   EXPECT_TRUE(factored.converged());
   EXPECT_LE(10 * factored.iterations, sweeps.iterations);
-}
-
-/// Without contact, under a load along x that bends it as a whole.
-struct BentBlock : PressedBlock {
-  explicit BentBlock(double load) : PressedBlock(0.5, 0.03) {
-    keepContacts(0);
-    problem.bodies[0].b.row(0).setConstant(load);
-  }
-};
-
-/// |A v - b - J'lambda| over |b| after some sweeps of one block after the other, forth and back, without contact: what
-/// Gauss-Seidel with Anderson's mixing must beat.
-double defectOfPlainSweeps(const BentBlock& scene, int sweeps) {
-  const BodySystem& body = scene.problem.bodies[0];
-  const int nodes = body.K->rows();
-  NodalVectors v = NodalVectors::Zero(3, nodes);
-  const auto defectAt = [&](int i) -> Vector3 {
-    const Vector3 elastic = body.K->offDiagonalProduct(i, v) + body.K->diagonal[i] * v.col(i);
-    return body.b.col(i) - body.mass[i] * v.col(i) - body.stiffness_scale * elastic;
-  };
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for (int step = 0; step < nodes; ++step) {
-      const int i = sweep % 2 == 0 ? step : nodes - 1 - step;
-      if ((*body.fixed)[i]) continue;
-      const Matrix3 block = body.stiffness_scale * body.K->diagonal[i] + body.mass[i] * Matrix3::Identity();
-      v.col(i) += block.inverse() * defectAt(i);
-    }
-  }
-  double squared = 0.0;
-  for (int i = 0; i < nodes; ++i) {
-    if (!(*body.fixed)[i]) squared += defectAt(i).squaredNorm();
-  }
-  return std::sqrt(squared) / body.b.norm();
-}
-
-TEST(IterativePredictorCorrector, MixedSweepsLeaveFarLessThanPlainOnes) {
-  for (const int sweeps : {5, 30}) {
-    BentBlock scene(0.01);
-    const double plain = defectOfPlainSweeps(scene, sweeps);
-    const SolverReport report =
-        IterativePredictorCorrector(options(sweeps, 2, 1e-15)).solve(scene.problem, scene.solution);
-    if (sweeps == 5) {
-      EXPECT_NEAR(report.residuals.momentum, plain, 1e-9 * plain);  // nothing to mix yet
-    } else {
-      EXPECT_LT(report.residuals.momentum, 0.02 * plain);
-    }
-  }
-}
-
-/// Neither a larger problem before nor a body asleep leaves a trace in the answer, not in its last bit.
-TEST(IterativePredictorCorrector, MixingKnowsThisProblemAlone) {
-  IterativePredictorCorrector used(options(30, 20, 1e-12));
-  PressedBlock larger(0.5, 0.03);
-  used.solve(larger.problem, larger.solution);
-  for (const std::size_t contacts : {0, 1, 2, 5, 7, 12}) {
-    PressedBlock one(0.5, 0.03);
-    PressedBlock same(0.5, 0.03);
-    for (PressedBlock* const scene : {&one, &same}) {
-      scene->keepContacts(contacts);
-      scene->problem.bodies[0].b.row(0).setConstant(0.01);
-    }
-    BodySystem asleep = one.problem.bodies[0];
-    asleep.asleep = true;
-    one.problem.bodies.insert(one.problem.bodies.begin(), asleep);
-    one.solution.v.insert(one.solution.v.begin(), NodalVectors::Zero(3, asleep.mass.size()));
-    for (ContactRow& row : one.problem.contacts) {
-      for (int a = 0; a < row.node_count; ++a) row.nodes[a].body = 1;
-    }
-    const SolverReport report = used.solve(one.problem, one.solution);
-    IterativePredictorCorrector(options(30, 20, 1e-12)).solve(same.problem, same.solution);
-    EXPECT_GT(report.iterations, 10);
-    EXPECT_EQ(one.solution.v[1], same.solution.v[0]) << contacts << " contacts";
-    EXPECT_EQ(one.solution.v[0], NodalVectors::Zero(3, asleep.mass.size()));
-    EXPECT_EQ(one.solution.impulses, same.solution.impulses);
-  }
-}
-
-TEST(IterativePredictorCorrector, RoundOffIsNotSolved) {
-  BentBlock scene(1e-19);
-  const SolverReport report = IterativePredictorCorrector(options(30, 20, 1e-4)).solve(scene.problem, scene.solution);
-  EXPECT_EQ(report.stop, StopReason::kTolerance);
-  EXPECT_EQ(report.iterations, 1);
-  EXPECT_LT(report.residuals.momentum, 1e-3);
 }
 
 TEST(IterativePredictorCorrector, StopsWhenTheTimeBudgetIsSpentAndSaysSo) {
