@@ -69,7 +69,7 @@ void InstrumentMotion::place(int instrument, const VectorX& positions) {
   X_WL_end_[instrument] = X_WL_[instrument];
 }
 
-int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets) {
+int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets, int most_steps) {
   // A duration that is a whole number of steps up to round-off of the stamps must not get one step more.
   constexpr double kRoundOff = 1e-9;
   constexpr double kLargestTurn = 1.0;  // rad
@@ -86,9 +86,11 @@ int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vec
   double steps = std::max(by_time, joint_steps);
   if (joint_steps <= kMaxTravelSteps) steps *= std::max(1.0, std::ceil(longestTravelOver(steps) / kTravelPerStep));
   jumped_ = !(steps <= std::max(by_time, kMaxTravelSteps));
-  if (!jumped_) return static_cast<int>(steps);
-  for (std::size_t i = 0; i < states_.size(); ++i) place(static_cast<int>(i), targets[i]);
-  return static_cast<int>(by_time);
+  if (jumped_) {
+    for (std::size_t i = 0; i < states_.size(); ++i) place(static_cast<int>(i), targets[i]);
+    steps = by_time;
+  }
+  return most_steps > 0 ? std::min(most_steps, static_cast<int>(steps)) : static_cast<int>(steps);
 }
 
 double InstrumentMotion::longestTravelOver(double steps) {

@@ -167,7 +167,7 @@ void Simulator::requireJointPositions(int instrument, const VectorX& joint_posit
   }
 }
 
-void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_positions) {
+void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_positions, const AdvanceLimits& limits) {
   Implementation& all = *implementation_;
   requirePositive("duration", duration_s, "s");
   if (joint_positions.size() != all.instruments.size()) {
@@ -177,14 +177,18 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
   for (std::size_t i = 0; i < joint_positions.size(); ++i) {
     requireJointPositions(static_cast<int>(i), joint_positions[i]);
   }
-  all.report.discarded = false;
-  all.report.substeps = all.motion.begin(duration_s, all.scene.step.max_step_s, joint_positions);
-  all.report.jumped = all.motion.jumped();
-  const double dt = duration_s / all.report.substeps;
-  for (int k = 1; k <= all.report.substeps; ++k) {
-    all.motion.moveTo(static_cast<double>(k) / all.report.substeps);
+  StepReport& report = all.report;
+  report.discarded = false;
+  report.interrupted = false;
+  const int steps = all.motion.begin(duration_s, all.scene.step.max_step_s, joint_positions, limits.most_steps);
+  report.jumped = all.motion.jumped();
+  const double dt = duration_s / steps;
+  for (report.substeps = 0; report.substeps < steps && !report.interrupted;) {
+    all.motion.moveTo(static_cast<double>(++report.substeps) / steps);
     all.step(dt);
+    report.interrupted = report.substeps < steps && limits.interrupted && limits.interrupted();
   }
+  report.advanced_s = report.interrupted ? report.substeps * dt : duration_s;
   all.sumWrenches();
 }
 

@@ -22,8 +22,8 @@ class InstrumentMotion {
   /// into: none longer than max_step_s, none in which a shape moves more than half its smallest half extent, so that it
   /// cannot pass through a feature thinner than itself, and none in which a joint turns by more than 1 rad (a full turn
   /// ends where it began). A motion that would need more than kMaxTravelSteps steps is a jump: the instruments are placed
-  /// at the targets.
-  int begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets);
+  /// at the targets. With most_steps > 0 there are no more than that, however long they get.
+  int begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets, int most_steps = 0);
   bool jumped() const { return jumped_; }  ///< by the last begin()
 
   /// Sets the poses at the end of a step to those at this fraction (0..1] of the interval.

@@ -28,7 +28,9 @@ struct SolvedContact {
 
 /// How the last step went.
 struct StepReport {
-  int substeps = 0;        ///< implicit steps taken for the last advance
+  int substeps = 0;          ///< implicit steps taken for the last advance
+  double advanced_s = 0.0;   ///< by the last advance; its duration unless interrupted
+  bool interrupted = false;  ///< the last advance ended early, see AdvanceLimits
   bool jumped = false;     ///< an instrument moved too far for sub-stepping: it was put at its new place without a path
   bool discarded = false;  ///< a step gave no finite answer: tissues were stopped where they were
   int iterations = 0;      ///< solver iterations of its last step
@@ -39,6 +41,15 @@ struct StepReport {
   int open_contacts = 0;
   int static_contacts = 0;
   int kinetic_contacts = 0;
+};
+
+/// Bounds on the work of one advance, for a caller that has to keep up with time.
+struct AdvanceLimits {
+  /// At most so many implicit steps, which are then longer than scene.step.max_step_s and may carry an instrument through
+  /// something thin; <= 0: as many as the interval and the motion ask for.
+  int most_steps = 0;
+  /// Asked between two steps; true ends the advance there, with the instruments as far as they have come. Null: never.
+  std::function<bool()> interrupted;
 };
 
 class Simulator {
@@ -65,10 +76,10 @@ class Simulator {
 
   /// Advances by `duration_s` (> 0) while the joints move linearly to `joint_positions` (one vector per instrument).
   /// Cuts the interval into equal implicit steps no longer than scene.step.max_step_s, and shorter where an instrument
-  /// moves so far that it could pass through tissue.
+  /// moves so far that it could pass through tissue. Without limits the result depends on the arguments alone.
   /// @throws std::invalid_argument when duration or positions are not finite or of the wrong size; nothing has moved
   /// then.
-  void advance(double duration_s, const std::vector<VectorX>& joint_positions);
+  void advance(double duration_s, const std::vector<VectorX>& joint_positions, const AdvanceLimits& limits = {});
 
   /// What the tissues exert on the instrument: mean over the last implicit step, at the origin of the tip link and in
   /// its axes (N, N m). Zero before the first advance.

@@ -38,6 +38,54 @@ double penetration(const Simulator& simulator) {
   return deepest;
 }
 
+TEST(Simulator, LimitsThatDoNotBiteChangeNoBit) {
+  Simulator plain = makeScene();
+  Simulator limited = makeScene();
+  int asked = 0;
+  const AdvanceLimits limits{1000, [&] { return ++asked < 0; }};
+  plain.advance(0.05, {Vector3(0.001, 0.0, -0.004)});
+  limited.advance(0.05, {Vector3(0.001, 0.0, -0.004)}, limits);
+  EXPECT_EQ(asked, 49);  // between steps, so not after the last
+  EXPECT_EQ(limited.report().substeps, 50);
+  EXPECT_EQ(limited.report().advanced_s, 0.05);
+  EXPECT_EQ(limited.positions(0), plain.positions(0));
+  EXPECT_EQ(limited.wrench(0).force, plain.wrench(0).force);
+}
+
+TEST(Simulator, TakesAtMostAsManyStepsAsAllowedAndStillArrives) {
+  for (const double sideways : {0.0, 0.3}) {  // m: the ball would have to be sub-stepped for its travel as well
+    Simulator simulator = makeScene();
+    simulator.advance(0.05, {Vector3(sideways, 0.0, -0.004)}, {7, nullptr});
+    EXPECT_EQ(simulator.stepCount(), 7);
+    EXPECT_EQ(simulator.report().substeps, 7);
+    EXPECT_FALSE(simulator.report().jumped);
+    EXPECT_EQ(simulator.jointPositions(0), VectorX(Vector3(sideways, 0.0, -0.004)));
+  }
+}
+
+TEST(Simulator, AJumpKeepsToTheStepsAllowed) {
+  Simulator simulator = makeScene();
+  simulator.advance(0.05, {Vector3(900.0, 0.0, 0.0)}, {3, nullptr});
+  EXPECT_TRUE(simulator.report().jumped);
+  EXPECT_EQ(simulator.stepCount(), 3);
+}
+
+TEST(Simulator, StopsBetweenStepsWhenInterruptedAndGoesOnFromThere) {
+  Simulator simulator = makeScene();
+  simulator.advance(0.05, {Vector3(0.0, 0.0, -0.004)}, {0, [&] { return simulator.stepCount() == 20; }});
+  EXPECT_TRUE(simulator.report().interrupted);
+  EXPECT_EQ(simulator.report().substeps, 20);
+  EXPECT_DOUBLE_EQ(simulator.report().advanced_s, 0.02);
+  EXPECT_DOUBLE_EQ(simulator.jointPositions(0).z(), -0.0016);
+  simulator.advance(0.03, {Vector3(0.0, 0.0, -0.004)});
+  EXPECT_FALSE(simulator.report().interrupted);
+
+  Simulator whole = makeScene();
+  whole.advance(0.05, {Vector3(0.0, 0.0, -0.004)});
+  // The same motion cut in two: round-off of where the ball is, met by what the solver's tolerance leaves open.
+  EXPECT_NEAR(simulator.wrench(0).force.z(), whole.wrench(0).force.z(), 1e-3 * whole.wrench(0).force.z());
+}
+
 TEST(Simulator, RefusesBadTargetsAndKeepsItsState) {
   Simulator simulator = makeScene();
   simulator.advance(0.05, {Vector3(0.0, 0.0, -0.003)});
