@@ -15,8 +15,8 @@ namespace {
 std::vector<std::string> topicsOf(const Scene& scene) {
   std::vector<std::string> topics;
   for (const InstrumentDescription& instrument : scene.instruments) {
-    for (const std::string& topic : instrument.joint_state_topics) {
-      if (std::find(topics.begin(), topics.end(), topic) == topics.end()) topics.push_back(topic);
+    for (const JointStateTopic& topic : instrument.joint_state_topics) {
+      if (std::find(topics.begin(), topics.end(), topic.name) == topics.end()) topics.push_back(topic.name);
     }
   }
   return topics;

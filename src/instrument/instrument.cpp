@@ -57,7 +57,7 @@ class Builder {
              ") but no joint-state topic is given; name one in joint_state_topics");
     }
     if (!moves && !description_.joint_state_topics.empty()) {
-      refuse("joint_state_topics names '" + description_.joint_state_topics.front() +
+      refuse("joint_state_topics names '" + description_.joint_state_topics.front().name +
              "' but its URDF has no moving joint; leave the key out for a fixed obstacle");
     }
   }

@@ -14,6 +14,10 @@ namespace fs = std::filesystem;
 constexpr Range kGravityRange{-1000.0, 1000.0, "m/s^2"};
 constexpr Range kMaxStepRange{1e-6, 1.0, "s", "give seconds: 1 ms is 0.001"};
 constexpr Range kMaxGapRange{1e-6, 60.0, "s", "give seconds"};
+constexpr Range kMaxLagRange{1e-6, 60.0, "s", "give seconds: 20 ms is 0.02"};
+constexpr std::pair<const char*, StatePolicy> kStatePolicies[] = {{"auto", StatePolicy::kAuto},
+                                                                  {"every_state", StatePolicy::kEveryState},
+                                                                  {"newest_state", StatePolicy::kNewestState}};
 constexpr Range kRateRange{0.0, 10000.0, "Hz", "0 switches the topic off"};
 
 /// Where each name was first given. One set for tissues and instruments: both become topics of the same node.
@@ -32,6 +36,8 @@ StepDescription parseStep(const YamlCursor& cursor) {
   StepDescription step;
   if (const YamlCursor* value = map.find("max_step_s")) step.max_step_s = value->number(kMaxStepRange);
   if (const YamlCursor* value = map.find("max_gap_s")) step.max_gap_s = value->number(kMaxGapRange);
+  if (const YamlCursor* value = map.find("joint_states")) step.joint_states = value->choice(kStatePolicies);
+  if (const YamlCursor* value = map.find("max_lag_s")) step.max_lag_s = value->number(kMaxLagRange);
   if (step.max_gap_s < step.max_step_s) {
     cursor.fail("max_gap_s is shorter than max_step_s; it must be at least as long");
   }

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cctype>
 #include <set>
 
 #include "scene_sections.h"
@@ -19,12 +21,58 @@ void parseUrdfSource(const YamlMap& map, const PathContext& paths, InstrumentDes
   }
 }
 
-std::vector<std::string> parseTopics(const YamlCursor& cursor) {
-  std::vector<std::string> topics;
+/// Whether a part of the name, between '/' and '_', is one that drivers give to what opens and closes: CRTK
+/// /PSM1/jaw/measured_js, older dVRK /dvrk/PSM2/state_jaw_current.
+bool isJawByName(const std::string& topic) {
+  std::string word;
+  for (const char c : topic + "/") {
+    if (c != '/' && c != '_') {
+      word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      continue;
+    }
+    if (word == "jaw" || word == "jaws" || word == "gripper") return true;
+    word.clear();
+  }
+  return false;
+}
+
+/// A jaw that the scene says nothing about only updates, if that leaves a topic that triggers.
+void defaultTriggers(const std::vector<bool>& is_given, std::vector<JointStateTopic>& topics) {
+  bool any_triggers = false;
+  for (std::size_t i = 0; i < topics.size(); ++i) {
+    any_triggers |= topics[i].triggers && (is_given[i] || !isJawByName(topics[i].name));
+  }
+  for (std::size_t i = 0; i < topics.size() && any_triggers; ++i) {
+    if (!is_given[i]) topics[i].triggers = !isJawByName(topics[i].name);
+  }
+}
+
+std::vector<JointStateTopic> parseTopics(const YamlCursor& cursor) {
+  std::vector<JointStateTopic> topics;
+  std::vector<bool> is_given;
   std::set<std::string> seen;
   for (const YamlCursor& element : cursor.list(0)) {
-    topics.push_back(parseRosName(element));
-    if (!seen.insert(topics.back()).second) element.fail("topic " + inQuotes(topics.back()) + " is named twice");
+    topics.emplace_back();
+    is_given.push_back(false);
+    if (element.isScalar()) {
+      topics.back().name = parseRosName(element);
+    } else {
+      const YamlMap map = element.map(MapKind::kJointStateTopic);
+      topics.back().name = parseRosName(map.get("topic"));
+      const YamlCursor* triggers = map.find("triggers");
+      is_given.back() = triggers != nullptr;
+      if (triggers != nullptr) topics.back().triggers = triggers->boolean();
+    }
+    if (!seen.insert(topics.back().name).second) {
+      element.fail("topic " + inQuotes(topics.back().name) + " is named twice");
+    }
+  }
+  defaultTriggers(is_given, topics);
+  const auto triggers = [](const JointStateTopic& topic) { return topic.triggers; };
+  if (!topics.empty() && std::none_of(topics.begin(), topics.end(), triggers)) {
+    cursor.fail(
+        "no topic triggers, so this instrument would never give a wrench; leave triggers out, or make it true, "
+        "for the topic of its arm");
   }
   return topics;
 }

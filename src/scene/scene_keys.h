@@ -27,6 +27,7 @@ enum class MapKind {
   kRegionMaterial,
   kRegionDamping,
   kInstrument,
+  kJointStateTopic,
   kContactLink,
   kShape,
   kShapeSphere,

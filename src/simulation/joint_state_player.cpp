@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstdlib>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -21,58 +19,25 @@ std::int64_t toNanoseconds(double seconds) {
   return std::llround(std::min(seconds, kCentury) * kNanosecondsPerSecond);
 }
 
-std::string listOf(const std::vector<std::string>& names) {
-  constexpr std::size_t kMaxNamed = 12;  // a message may hold any number of names, a warning should not
-  std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kMaxNamed); ++i) text += (i == 0 ? "" : ", ") + names[i];
-  return names.size() > kMaxNamed ? text + ", ..." : text;
-}
-
-std::string stampText(std::int64_t stamp_ns) {
-  std::ostringstream text;
-  const std::int64_t ns_per_s = 1000000000;
-  text << stamp_ns / ns_per_s << '.';
-  text.width(9);
-  text.fill('0');
-  text << std::abs(stamp_ns % ns_per_s) << " s";
-  return text.str();
-}
-
 }  // namespace
 
-const char* verdictText(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kAccepted:
-      return "accepted";
-    case Verdict::kDuplicateStamp:
-      return "duplicate stamp";
-    case Verdict::kBadStamp:
-      return "bad stamp";
-    case Verdict::kNotFinite:
-      return "position not finite";
-    case Verdict::kBadLength:
-      return "names and positions differ in number";
-    case Verdict::kNoKnownJoint:
-      return "no known joint";
-    case Verdict::kLate:
-      return "too late";
-  }
-  return "unknown";
-}
-
 JointStatePlayer::JointStatePlayer(Simulator& simulator)
-    : simulator_(simulator), max_gap_ns_(toNanoseconds(simulator.scene().step.max_gap_s)) {
+    : simulator_(simulator),
+      max_gap_ns_(toNanoseconds(simulator.scene().step.max_gap_s)),
+      max_lag_ns_(std::min(max_gap_ns_, toNanoseconds(simulator.scene().step.max_lag_s))),
+      owes_(simulator.instruments().size(), false) {
   const std::vector<InstrumentDescription>& instruments = simulator.scene().instruments;
   for (std::size_t i = 0; i < instruments.size(); ++i) {
-    for (const std::string& name : instruments[i].joint_state_topics) {
-      const auto known = std::find(topics_.begin(), topics_.end(), name);
-      const auto topic = static_cast<std::size_t>(known - topics_.begin());
+    for (const JointStateTopic& described : instruments[i].joint_state_topics) {
+      const auto known = std::find(topics_.begin(), topics_.end(), described.name);
+      const auto index = static_cast<std::size_t>(known - topics_.begin());
       if (known == topics_.end()) {
-        topics_.push_back(name);
+        topics_.push_back(described.name);
         topic_states_.emplace_back();
       }
-      std::vector<int>& listeners = topic_states_[topic].instruments;
-      if (listeners.empty() || listeners.back() != static_cast<int>(i)) listeners.push_back(static_cast<int>(i));
+      Topic& topic = topic_states_[index];
+      topic.listeners.push_back({static_cast<int>(i), described.triggers});
+      topic.triggers |= described.triggers;
     }
   }
   if (topics_.empty()) {
@@ -84,74 +49,43 @@ JointStatePlayer::JointStatePlayer(Simulator& simulator)
   forgetJoints();
 }
 
+void JointStatePlayer::setPolicy(StatePolicy policy) {
+  if (policy == StatePolicy::kAuto) {
+    throw std::invalid_argument("the policy 'auto' has to be made every_state or newest_state by whoever plays");
+  }
+  policy_ = policy;
+}
+
 void JointStatePlayer::push(int topic, JointStateSample sample) {
   assert(topic >= 0 && topic < static_cast<int>(topic_states_.size()));
   Topic& state = topic_states_[static_cast<std::size_t>(topic)];
+  Moment moment;
   std::string detail;
-  const Verdict verdict = judge(sample, state, detail);
+  Verdict verdict = judgeContent(sample, state, detail);
+  if (verdict == Verdict::kAccepted) verdict = judgeStamp(sample.stamp_ns, state, moment, detail);
   if (verdict != Verdict::kAccepted) {
-    PlayedSample refused;
-    refused.verdict = verdict;
-    refused.topic = topic;
-    refused.stamp_ns = sample.stamp_ns;
-    refused.detail = topics_[static_cast<std::size_t>(topic)] + " at " + stampText(sample.stamp_ns) + ": " + detail;
-    refused_.push_back(std::move(refused));
+    refuse(verdict, topic, sample.stamp_ns, detail);
     return;
   }
-  const Moment moment = momentOf(sample.stamp_ns, state);
+  const bool is_loop = state.last && moment.epoch != state.last->epoch;
+  if (state.restart_before_ns && (is_loop || sample.stamp_ns > *state.restart_before_ns))
+    state.restart_before_ns.reset();
+  state.late_ns.reset();
+  state.late_progress_ns = 0;
   noteMoment(moment);
   state.last = moment;
   state.queue.push_back({moment, std::move(sample)});
   ++waiting_;
+  if (state.triggers || state.queue.size() <= kMaxWaiting) return;
+  state.queue.pop_front();  // nothing triggers: the newer ones tell where the joints are
+  --waiting_;
+  ++merged_;
 }
 
-/// Everything that can be said about a sample without knowing what was played.
-Verdict JointStatePlayer::judge(const JointStateSample& sample, const Topic& topic, std::string& detail) const {
-  if (sample.stamp_ns <= 0) {
-    detail = "the stamp must be > 0; fill header.stamp";
-    return Verdict::kBadStamp;
+void JointStatePlayer::restart() {
+  for (Topic& topic : topic_states_) {
+    if (topic.last) topic.restart_before_ns = topic.last->stamp_ns + max_gap_ns_;
   }
-  if (sample.names.size() != sample.positions.size()) {
-    detail = std::to_string(sample.names.size()) + " names but " + std::to_string(sample.positions.size()) +
-             " positions; each name needs a position";
-    return Verdict::kBadLength;
-  }
-  const Verdict verdict = judgeJoints(sample, topic, detail);
-  if (verdict != Verdict::kAccepted) return verdict;
-  if (topic.last && topic.last->stamp_ns == sample.stamp_ns) {
-    detail = "same stamp as the topic's last joint state";
-    return Verdict::kDuplicateStamp;
-  }
-  return Verdict::kAccepted;
-}
-
-Verdict JointStatePlayer::judgeJoints(const JointStateSample& sample, const Topic& topic, std::string& detail) const {
-  bool any_known = false;
-  for (const int i : topic.instruments) {
-    const Instrument& instrument = simulator_.instruments()[static_cast<std::size_t>(i)];
-    for (std::size_t k = 0; k < sample.names.size(); ++k) {
-      if (instrument.jointOfRecordedName(sample.names[k]) < 0) continue;
-      any_known = true;
-      if (!std::isfinite(sample.positions[k])) {
-        std::ostringstream text;
-        text << "position of joint '" << sample.names[k] << "' is " << sample.positions[k] << "; it must be finite";
-        detail = text.str();
-        return Verdict::kNotFinite;
-      }
-    }
-  }
-  if (any_known) return Verdict::kAccepted;
-  detail = "none of its joints (" + listOf(sample.names) +
-           ") is a joint of an instrument on this topic, neither by its " + "URDF name nor through joint_names";
-  return Verdict::kNoKnownJoint;
-}
-
-JointStatePlayer::Moment JointStatePlayer::momentOf(std::int64_t stamp_ns, const Topic& topic) const {
-  const int newest = newest_ ? newest_->epoch : 0;
-  if (!topic.last) return {newest, stamp_ns};
-  if (stamp_ns < topic.last->stamp_ns) return {topic.last->epoch + 1, stamp_ns};
-  const bool near_newest = newest_ && std::abs(stamp_ns - newest_->last_ns) <= max_gap_ns_;
-  return {near_newest ? newest : topic.last->epoch, stamp_ns};
 }
 
 void JointStatePlayer::noteMoment(const Moment& moment) {
@@ -162,68 +96,78 @@ void JointStatePlayer::noteMoment(const Moment& moment) {
   }
 }
 
-/// Topic whose first waiting sample is the earliest, -1 if there is none or it has to wait.
-int JointStatePlayer::nextTopic() const {
-  int next = -1;
-  const Moment* earliest = nullptr;
-  for (std::size_t i = 0; i < topic_states_.size(); ++i) {
-    if (topic_states_[i].queue.empty()) continue;
-    const Moment& moment = topic_states_[i].queue.front().moment;
-    if (earliest != nullptr && !(moment < *earliest)) continue;
-    earliest = &moment;
-    next = static_cast<int>(i);
+/// The earliest moment that waits to be played, if it has not to wait for a topic.
+std::optional<JointStatePlayer::Moment> JointStatePlayer::nextMoment() const {
+  std::optional<Moment> earliest;
+  for (const Topic& topic : topic_states_) {
+    if (!topic.triggers || topic.queue.empty()) continue;
+    const Moment& moment = topic.queue.front().moment;
+    if (!earliest || moment < *earliest) earliest = moment;
   }
-  return earliest != nullptr && mustWait(*earliest) ? -1 : next;
+  if (earliest && mustWait(*earliest)) earliest.reset();
+  return earliest;
 }
 
-/// Whether a topic could still deliver something earlier than `moment`, the earliest waiting, and is worth waiting for.
+/// The newest moment that has not to wait for a topic and lies ahead.
+std::optional<JointStatePlayer::Moment> JointStatePlayer::newestMoment() const {
+  std::optional<Moment> newest;
+  for (const Topic& topic : topic_states_) {
+    if (!topic.triggers) continue;
+    const auto is_ready = [&](const Queued& queued) { return !mustWait(queued.moment); };
+    const auto found = std::find_if(topic.queue.rbegin(), topic.queue.rend(), is_ready);
+    if (found == topic.queue.rend() || isPast(found->moment)) continue;
+    if (!newest || *newest < found->moment) newest = found->moment;
+  }
+  return newest;
+}
+
+/// Whether a topic could still deliver something for `moment` or earlier, and is worth waiting for.
 bool JointStatePlayer::mustWait(const Moment& moment) const {
-  if (finished_ || waiting_ > kMaxWaiting) return false;
-  const auto has_passed = [&](const Topic& topic) { return topic.last && !(*topic.last < moment); };
-  if (std::all_of(topic_states_.begin(), topic_states_.end(), has_passed)) return false;
-  // Stamps of different loops do not compare: a sample of an older loop is as old as the newest loop is long.
-  const std::int64_t since = newest_->epoch == moment.epoch ? moment.stamp_ns : newest_->first_ns;
-  return newest_->last_ns - since < max_gap_ns_;
+  const bool is_live = policy_ == StatePolicy::kNewestState;
+  const std::int64_t bound_ns = is_live ? max_lag_ns_ : max_gap_ns_;
+  if (finished_ || waiting_ > kMaxWaiting || ageOf(moment) >= bound_ns) return false;
+  return std::any_of(topic_states_.begin(), topic_states_.end(), [&](const Topic& topic) {
+    if (topic.last && !(*topic.last < moment)) return false;
+    if (is_live && !topic.triggers) return false;
+    return ageOf(topic.last) < 2 * bound_ns;  // one interval between stamps, and as late as is waited for
+  });
+}
+
+/// How far behind the newest stamp of all, in ns. Stamps of different loops do not compare: what is not in the newest
+/// loop is as far behind as that is long.
+std::int64_t JointStatePlayer::ageOf(const std::optional<Moment>& moment) const {
+  const bool is_in_newest = moment && moment->epoch == newest_->epoch;
+  return newest_->last_ns - (is_in_newest ? moment->stamp_ns : newest_->first_ns);
+}
+
+bool JointStatePlayer::isPast(const Moment& moment) const {
+  return moment.epoch < epoch_ || (moment.epoch == epoch_ && time_ns_ && moment.stamp_ns <= *time_ns_);
 }
 
 std::optional<PlayedSample> JointStatePlayer::playNext() {
+  refuseLate();
   PlayedSample played;
   if (!refused_.empty()) {
     played = std::move(refused_.front());
     refused_.pop_front();
-  } else {
-    const int topic = nextTopic();
-    if (topic < 0) return std::nullopt;
-    std::deque<Queued>& queue = topic_states_[static_cast<std::size_t>(topic)].queue;
-    const Queued next = std::move(queue.front());
-    queue.pop_front();
-    --waiting_;
-    played.topic = topic;
-    played.stamp_ns = next.sample.stamp_ns;
-    play(next, played);
+    ++counts_[static_cast<std::size_t>(played.verdict)];
+    return played;
   }
-  ++counts_[static_cast<std::size_t>(played.verdict)];
+  const std::optional<Moment> moment = policy_ == StatePolicy::kNewestState ? newestMoment() : nextMoment();
+  if (!moment) return std::nullopt;
+  play(*moment, played);
   return played;
 }
 
-void JointStatePlayer::play(const Queued& next, PlayedSample& played) {
-  if (isLate(next.moment)) {
-    played.verdict = Verdict::kLate;
-    played.detail = topics_[static_cast<std::size_t>(played.topic)] + " at " + stampText(played.stamp_ns) +
-                    (next.moment.epoch < epoch_ ? ": time went backwards on another topic but not on this one"
-                                                : ": the simulation is already at " + stampText(*time_ns_));
-    return;
-  }
-  if (next.moment.epoch > epoch_) {
-    startLoop(next.moment.epoch);
+void JointStatePlayer::play(const Moment& moment, PlayedSample& played) {
+  if (moment.epoch > epoch_) {
+    startLoop(moment.epoch);
     played.was_reset = true;
   }
-  takeJoints(next.sample, topic_states_[static_cast<std::size_t>(played.topic)], played);
-  advanceTo(next.sample.stamp_ns, played);
-}
-
-bool JointStatePlayer::isLate(const Moment& moment) const {
-  return moment.epoch < epoch_ || (moment.epoch == epoch_ && time_ns_ && moment.stamp_ns < *time_ns_);
+  for (std::size_t t = 0; t < topic_states_.size(); ++t) take(moment, static_cast<int>(t), played);
+  placeNewJoints();
+  advanceTo(moment.stamp_ns, played);
+  settle(played);
 }
 
 void JointStatePlayer::startLoop(int epoch) {
@@ -239,30 +183,76 @@ void JointStatePlayer::forgetJoints() {
   heard_.clear();
   for (const Instrument& instrument : simulator_.instruments()) {
     targets_.push_back(instrument.initialPositions());
-    heard_.emplace_back(instrument.model().joints().size(), false);
+    heard_.emplace_back(instrument.model().joints().size(), Heard::kNever);
   }
+  for (Topic& topic : topic_states_) topic.taken.reset();
+  owes_.assign(owes_.size(), false);
 }
 
-/// Sets the targets of the joints in `sample`; those heard for the first time are placed there.
-void JointStatePlayer::takeJoints(const JointStateSample& sample, const Topic& topic, PlayedSample& played) {
-  for (const int i : topic.instruments) {
-    const auto index = static_cast<std::size_t>(i);
-    const Instrument& instrument = simulator_.instruments()[index];
-    VectorX placed = simulator_.jointPositions(i);
+/// Takes everything of a topic up to the moment, and sets its joints to where they are then.
+void JointStatePlayer::take(const Moment& moment, int topic, PlayedSample& played) {
+  Topic& state = topic_states_[static_cast<std::size_t>(topic)];
+  while (!state.queue.empty() && !(moment < state.queue.front().moment)) {
+    const Queued& next = state.queue.front();
+    const bool is_passed_over = state.triggers && next.moment < moment;
+    if (next.moment.epoch == moment.epoch) {
+      takeJoints(next.sample, state);
+      state.taken = next.moment;
+    }
+    if (state.triggers && !is_passed_over && played.topic < 0) played.topic = topic;
+    ++(is_passed_over ? played.merged : played.accepted);
+    state.queue.pop_front();
+    --waiting_;
+  }
+  headForNext(moment, state);
+}
+
+/// Sets the targets of the joints in `sample`.
+void JointStatePlayer::takeJoints(const JointStateSample& sample, const Topic& topic) {
+  for (const Listener& listener : topic.listeners) {
+    const auto index = static_cast<std::size_t>(listener.instrument);
     bool any_known = false;
-    bool any_new = false;
     for (std::size_t k = 0; k < sample.names.size(); ++k) {
-      const int joint = instrument.jointOfRecordedName(sample.names[k]);
+      const int joint = simulator_.instruments()[index].jointOfRecordedName(sample.names[k]);
       if (joint < 0) continue;
       any_known = true;
       targets_[index][joint] = sample.positions[k];
-      if (heard_[index][static_cast<std::size_t>(joint)]) continue;
-      heard_[index][static_cast<std::size_t>(joint)] = true;
-      placed[joint] = sample.positions[k];
-      any_new = true;
+      Heard& heard = heard_[index][static_cast<std::size_t>(joint)];
+      if (heard == Heard::kNever) heard = Heard::kNow;
     }
-    if (any_new) simulator_.placeInstrument(i, placed);
-    if (any_known) played.instruments.push_back(i);
+    if (any_known && listener.triggers) owes_[index] = true;
+  }
+}
+
+/// Moves the joints' targets from where they were last known towards the topic's next sample, as far as the moment
+/// lies between the two.
+void JointStatePlayer::headForNext(const Moment& moment, const Topic& topic) {
+  if (!topic.taken || topic.taken->stamp_ns >= moment.stamp_ns || topic.queue.empty()) return;
+  const Queued& next = topic.queue.front();
+  if (next.moment.epoch != moment.epoch || next.moment.stamp_ns - topic.taken->stamp_ns > max_gap_ns_) return;
+  const std::int64_t from_ns = std::max(topic.taken->stamp_ns, time_ns_.value_or(topic.taken->stamp_ns));
+  const double fraction =
+      static_cast<double>(moment.stamp_ns - from_ns) / static_cast<double>(next.moment.stamp_ns - from_ns);
+  for (const Listener& listener : topic.listeners) {
+    const auto index = static_cast<std::size_t>(listener.instrument);
+    for (std::size_t k = 0; k < next.sample.names.size(); ++k) {
+      const int joint = simulator_.instruments()[index].jointOfRecordedName(next.sample.names[k]);
+      if (joint < 0 || heard_[index][static_cast<std::size_t>(joint)] == Heard::kNever) continue;
+      targets_[index][joint] += fraction * (next.sample.positions[k] - targets_[index][joint]);
+    }
+  }
+}
+
+void JointStatePlayer::placeNewJoints() {
+  for (std::size_t i = 0; i < heard_.size(); ++i) {
+    if (std::find(heard_[i].begin(), heard_[i].end(), Heard::kNow) == heard_[i].end()) continue;
+    VectorX placed = simulator_.jointPositions(static_cast<int>(i));
+    for (std::size_t k = 0; k < heard_[i].size(); ++k) {
+      if (heard_[i][k] != Heard::kNow) continue;
+      placed[static_cast<Eigen::Index>(k)] = targets_[i][static_cast<Eigen::Index>(k)];
+      heard_[i][k] = Heard::kBefore;
+    }
+    simulator_.placeInstrument(static_cast<int>(i), placed);
   }
 }
 
@@ -275,7 +265,24 @@ void JointStatePlayer::advanceTo(std::int64_t stamp_ns, PlayedSample& played) {
     played.was_gap = true;
     ++gaps_;
   }
-  simulator_.advance(static_cast<double>(interval_ns) / kNanosecondsPerSecond, targets_);
+  simulator_.advance(static_cast<double>(interval_ns) / kNanosecondsPerSecond, targets_, limits_);
+  played.interrupted = simulator_.report().interrupted;
+  if (played.interrupted) time_ns_ = stamp_ns - interval_ns + toNanoseconds(simulator_.report().advanced_s);
+}
+
+/// What the moment owes and how its samples count.
+void JointStatePlayer::settle(PlayedSample& played) {
+  played.stamp_ns = *time_ns_;
+  if (played.interrupted) {
+    played.merged += std::exchange(played.accepted, 0);
+  } else {
+    for (std::size_t i = 0; i < owes_.size(); ++i) {
+      if (owes_[i]) played.instruments.push_back(static_cast<int>(i));
+    }
+    owes_.assign(owes_.size(), false);
+  }
+  counts_[static_cast<std::size_t>(Verdict::kAccepted)] += played.accepted;
+  merged_ += played.merged;
 }
 
 }  // namespace tissue_contact

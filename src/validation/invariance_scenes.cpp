@@ -29,7 +29,7 @@ InstrumentDescription makeTool(const std::string& name, const Vector3& position,
   tool.name = name;
   tool.robot_description_parameter = "carrier";
   tool.base_pose.X.translation() = position;
-  tool.joint_state_topics = {"/" + name};
+  tool.joint_state_topics = {{"/" + name}};
   tool.tip_link = "tip";
   tool.contact_links = {{"tip", {shape}}};
   return tool;

@@ -152,12 +152,19 @@ struct ContactLinkDescription {
   std::vector<ShapeDescription> shapes;
 };
 
+/// A topic of joint states of an instrument.
+struct JointStateTopic {
+  std::string name;
+  /// Its stamps are moments of the simulation, each with a wrench. If not, it only updates joints (a jaw beside its arm).
+  bool triggers = true;
+};
+
 struct InstrumentDescription {
   std::string name;
   std::string urdf_file;                    ///< absolute path; empty: the URDF comes from `robot_description_parameter`
   std::string robot_description_parameter;  ///< ROS parameter holding the URDF text; empty if `urdf_file` is given
   PoseDescription base_pose;                ///< of the URDF root link
-  std::vector<std::string> joint_state_topics;            ///< empty for a fixed obstacle
+  std::vector<JointStateTopic> joint_state_topics;        ///< empty for a fixed obstacle; else at least one triggers
   std::map<std::string, std::string> joint_names;         ///< recorded joint name -> URDF joint name
   std::map<std::string, double> initial_joint_positions;  ///< URDF joint name -> rad or m; others start at 0
   std::string tip_link;                                   ///< wrench origin and frame
@@ -206,9 +213,18 @@ struct FrictionDescription {
   FrictionLawDescription law;
 };
 
+/// Which joint states the simulation stops at.
+enum class StatePolicy {
+  kAuto,        ///< whoever plays them decides: kEveryState for recordings, kNewestState beside a robot driver
+  kEveryState,  ///< each, in the order of their stamps; nothing is skipped however long it takes
+  kNewestState  ///< the newest there is; older ones are merged into the motion towards it
+};
+
 struct StepDescription {
   double max_step_s = 0.001;  ///< an interval between joint states is cut into equal steps no longer than this
   double max_gap_s = 1.0;     ///< a longer interval between joint states is simulated as this long (counted)
+  StatePolicy joint_states = StatePolicy::kAuto;
+  double max_lag_s = 0.02;  ///< how far the answer may lag behind the newest joint state under kNewestState
 };
 
 /// How a step's contact problem is solved. All but kPredictorCorrector and kReference are rivals kept for comparison.

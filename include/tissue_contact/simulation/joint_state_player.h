@@ -1,6 +1,6 @@
 /// @file
 /// Room `simulation`: recorded or live joint states in, in whatever order the topics deliver them; simulator advanced
-/// from stamp to stamp. Used alike by the node and by offline replay, so both give the same bits.
+/// from moment to moment. Used alike by the node and by offline replay, so both give the same bits.
 #pragma once
 
 #include <array>
@@ -9,6 +9,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tissue_contact/simulation/simulator.h"
@@ -23,47 +24,66 @@ struct JointStateSample {
 };
 
 enum class Verdict {
-  kAccepted,        ///< the simulator is now at this stamp
+  kAccepted,        ///< its joints were taken
   kDuplicateStamp,  ///< same stamp as the topic's last one: ignored
   kBadStamp,        ///< zero or negative stamp: ignored
   kNotFinite,       ///< a position of a known joint is NaN or infinite: ignored
   kBadLength,       ///< as many positions as names are needed: ignored
   kNoKnownJoint,    ///< none of the names means a joint of an instrument on this topic: ignored
-  kLate,            ///< older than the time already simulated (another topic was not waited for any longer): ignored
+  kLate,            ///< its stamp lies before its topic's last, or in time already simulated: ignored
 };
 constexpr int kVerdictCount = 7;
 
 /// A few words for people ("duplicate stamp"), never null.
 const char* verdictText(Verdict verdict);
 
-/// What happened to one sample.
+/// A moment that was played, or one sample that was refused.
 struct PlayedSample {
   Verdict verdict = Verdict::kAccepted;
-  int topic = -1;
-  std::int64_t stamp_ns = 0;
+  int topic = -1;                ///< of the refused sample; of a moment: the first topic that triggered it
+  std::int64_t stamp_ns = 0;     ///< of the refused sample; of a moment: where the simulator is now
   std::string detail;            ///< names the joint and value for a refused sample; empty if accepted
-  bool was_reset = false;        ///< time went backwards (bag loop): the scene was reset before this sample
+  bool was_reset = false;        ///< time went backwards (bag loop): the scene was reset before this moment
   bool was_gap = false;          ///< the interval was longer than max_gap_s and was simulated as that long
-  std::vector<int> instruments;  ///< instruments that took joints from it: each owes one wrench at this stamp
+  bool interrupted = false;      ///< AdvanceLimits ended it before the samples' stamp: it owes no wrench
+  int accepted = 0;              ///< samples of this moment, those of topics that only update included
+  int merged = 0;                ///< samples passed over on the way to this moment
+  std::vector<int> instruments;  ///< each owes one wrench at this stamp; ascending
 };
 
 /// Plays joint states into a simulator.
 ///
-/// Order. Samples are played in the order of (loop, stamp, topic index). Time going backwards on a topic starts that
-/// topic's next loop; the first sample played from a new loop resets the scene. A topic first heard joins the newest
-/// loop; so does one that did not go back itself but whose stamps are within max_gap_s of the newest loop's newest
-/// stamp (a source whose clock was set back a little, beside others).
+/// Moments. The samples of all topics that have one stamp (in one loop) are one moment. All of them are taken, then the
+/// tissues advance to it, once, and every instrument with a triggering sample among them owes one wrench. A topic of
+/// which no instrument is triggered makes no moment: its joints are taken at the next one.
 ///
-/// Joints. A joint heard for the first time since the start or a reset is placed; later its instrument moves linearly
-/// from stamp to stamp. Joints not heard stay at the scene's initial position. The first sample of a run places
-/// instruments without any step. A sample at the stamp the simulator is already at (another topic's) changes only where
-/// the instruments head in the next interval.
+/// Joints. At a moment every joint is where its topic says: in its sample of that stamp; else on the straight line to
+/// its next sample, if that is here and follows within max_gap_s; else where its newest sample before put it. In
+/// between instruments move linearly. A joint heard for the first time since the start or a reset is placed. Joints not
+/// heard stay at the scene's initial position. The first moment of a run places instruments without any step.
+///
+/// Waiting. A moment waits until every other topic has delivered its stamp or a later one, so that what arrives first
+/// does not matter; but no longer than until it is max_gap_s older than the newest stamp of all, and not for a topic
+/// that is 2 max_gap_s behind that (or was never heard, 2 max_gap_s after the first stamp): it is missing or stuck.
+/// Under kNewestState both bounds are of max_lag_s, and topics that only update are not waited for.
+///
+/// Time. A stamp before its topic's last by at most max_gap_s is late: refused, nothing else changes. Farther back is a
+/// loop: the first moment of it resets the scene. So does any stamp that goes back after restart(). A topic first heard
+/// joins the newest loop; so does one that fits it within max_gap_s after another topic has begun it. A stamp far in the
+/// future is believed, so that what follows it is a loop. A looped recording shorter than max_gap_s needs restart();
+/// without it passes are refused as late until their stamps have gone through max_gap_s, and the next pass is a loop.
+///
+/// Counts. pushed = accepted + merged + refused (count() of the other verdicts) + waiting(), at any time. Accepted are
+/// the samples of moments that were played, and those of update-only topics up to them. Merged are those that were
+/// passed over: under kNewestState older moments, which only shape the motion by their last positions; and those
+/// of an interrupted advance.
 ///
 /// Memory. Played or refused samples are forgotten; waiting ones span at most max_gap_s of message time per loop and
-/// are at most kMaxWaiting, provided that playNext() is called until it returns nothing after every push().
+/// are at most kMaxWaiting (of update-only topics: each), provided that playNext() is called until it returns nothing
+/// after every push().
 ///
-/// With one topic the result depends on the stamps and positions alone; with several, also on nothing else as long as
-/// no topic is more than max_gap_s late and no loop is shorter than that. Not thread-safe.
+/// Under kEveryState the result depends on the stamps and positions alone; with several topics, on condition that none
+/// arrives later than max_gap_s or pauses for longer and no loop is shorter than that. Not thread-safe.
 class JointStatePlayer {
  public:
   /// Samples that may wait for another topic: 20 s of one 500 Hz topic. Beyond it nothing waits.
@@ -74,21 +94,35 @@ class JointStatePlayer {
 
   /// Distinct joint-state topics of the scene, in order of first mention. Indices are the `topic` of push().
   const std::vector<std::string>& topics() const { return topics_; }
+  /// Whether the topic's stamps are moments of some instrument; if not, it only updates joints.
+  bool triggers(int topic) const { return topic_states_.at(static_cast<std::size_t>(topic)).triggers; }
 
-  /// Queues a sample. With several topics samples are played in the order of their stamps: a sample waits until every
-  /// other topic has delivered one of its stamp or later, or until it is max_gap_s older than the newest one.
-  /// A sample whose content is refused has no say in time: neither its stamp nor its arrival is remembered.
+  /// kEveryState (at first) or kNewestState; at any time. @throws std::invalid_argument for kAuto.
+  void setPolicy(StatePolicy policy);
+  StatePolicy policy() const { return policy_; }
+
+  /// For every advance from now on.
+  void setLimits(AdvanceLimits limits) { limits_ = std::move(limits); }
+
+  /// Queues a sample. One whose content is refused has no say in time: neither its stamp nor its arrival is remembered.
   void push(int topic, JointStateSample sample);
 
-  /// Plays the next sample whose turn it is; nothing if there is none. Call until it returns nothing. Refused samples
-  /// come first.
+  /// The source of time has restarted (a bag that is played again): the next stamp of each topic that is not later than
+  /// its last begins a new loop, however little it goes back. Forgotten per topic once its stamps have gone on by
+  /// max_gap_s.
+  void restart();
+
+  /// Plays the next moment whose turn it is (kEveryState) or the newest (kNewestState), or reports a refused sample,
+  /// those first; nothing if there is neither. Call until it returns nothing.
   std::optional<PlayedSample> playNext();
 
   /// No more samples will come (end of a bag): nothing waits any longer.
   void finish() { finished_ = true; }
 
-  /// Samples so far by verdict, resets and gaps.
+  /// Samples so far by verdict, merged, waiting; resets and gaps.
   std::int64_t count(Verdict verdict) const { return counts_[static_cast<std::size_t>(verdict)]; }
+  std::int64_t merged() const { return merged_; }
+  std::int64_t waiting() const { return static_cast<std::int64_t>(waiting_ + refused_.size()); }
   std::int64_t resets() const { return resets_; }
   std::int64_t gaps() const { return gaps_; }
 
@@ -106,10 +140,19 @@ class JointStatePlayer {
     Moment moment;
     JointStateSample sample;
   };
+  struct Listener {
+    int instrument = 0;
+    bool triggers = true;
+  };
   struct Topic {
     std::deque<Queued> queue;
-    std::optional<Moment> last;  ///< of the last sample queued, to see time go backwards
-    std::vector<int> instruments;
+    std::optional<Moment> last;   ///< of the last sample queued, to see time go backwards
+    std::optional<Moment> taken;  ///< of the last sample whose joints were taken
+    std::vector<Listener> listeners;
+    bool triggers = false;                          ///< any listener
+    std::optional<std::int64_t> restart_before_ns;  ///< restart() counts until a stamp beyond this
+    std::optional<std::int64_t> late_ns;            ///< stamp of the sample before, if that was late
+    std::int64_t late_progress_ns = 0;              ///< by how much late samples in a row have gone forward
   };
   /// The newest loop any topic has reached.
   struct NewestLoop {
@@ -118,32 +161,46 @@ class JointStatePlayer {
     std::int64_t last_ns = 0;   ///< newest stamp in it
   };
 
-  Verdict judge(const JointStateSample& sample, const Topic& topic, std::string& detail) const;
+  void refuse(Verdict verdict, int topic, std::int64_t stamp_ns, const std::string& detail);
+  Verdict judgeContent(const JointStateSample& sample, const Topic& topic, std::string& detail) const;
   Verdict judgeJoints(const JointStateSample& sample, const Topic& topic, std::string& detail) const;
-  Moment momentOf(std::int64_t stamp_ns, const Topic& topic) const;
+  Verdict judgeStamp(std::int64_t stamp_ns, Topic& topic, Moment& moment, std::string& detail) const;
   void noteMoment(const Moment& moment);
-  int nextTopic() const;
+  std::optional<Moment> nextMoment() const;
+  std::optional<Moment> newestMoment() const;
   bool mustWait(const Moment& moment) const;
-  bool isLate(const Moment& moment) const;
-  void play(const Queued& next, PlayedSample& played);
+  std::int64_t ageOf(const std::optional<Moment>& moment) const;
+  bool isPast(const Moment& moment) const;
+  void refuseLate();
+  void play(const Moment& moment, PlayedSample& played);
+  void take(const Moment& moment, int topic, PlayedSample& played);
+  void takeJoints(const JointStateSample& sample, const Topic& topic);
+  void headForNext(const Moment& moment, const Topic& topic);
+  void placeNewJoints();
   void startLoop(int epoch);
   void forgetJoints();
-  void takeJoints(const JointStateSample& sample, const Topic& topic, PlayedSample& played);
   void advanceTo(std::int64_t stamp_ns, PlayedSample& played);
+  void settle(PlayedSample& played);
 
   Simulator& simulator_;
   std::int64_t max_gap_ns_;
+  std::int64_t max_lag_ns_;
+  StatePolicy policy_ = StatePolicy::kEveryState;
+  AdvanceLimits limits_;
   std::vector<std::string> topics_;
   std::vector<Topic> topic_states_;
-  std::deque<PlayedSample> refused_;  ///< judged by push(), not yet reported
+  std::deque<PlayedSample> refused_;  ///< not yet reported
   std::optional<NewestLoop> newest_;
-  std::size_t waiting_ = 0;               ///< samples in all queues
-  std::vector<VectorX> targets_;          ///< joint positions last heard, per instrument
-  std::vector<std::vector<bool>> heard_;  ///< per instrument and joint: ever heard since the last reset
-  std::optional<std::int64_t> time_ns_;   ///< stamp the simulator is at
-  int epoch_ = 0;                         ///< loop being played
+  std::size_t waiting_ = 0;       ///< samples in all queues
+  std::vector<VectorX> targets_;  ///< joint positions at the moment played last, per instrument
+  enum class Heard { kNever, kNow, kBefore };
+  std::vector<std::vector<Heard>> heard_;  ///< per instrument and joint: since the last reset; kNow: to be placed
+  std::vector<bool> owes_;                 ///< per instrument: has a triggering sample without a wrench
+  std::optional<std::int64_t> time_ns_;    ///< stamp the simulator is at
+  int epoch_ = 0;                          ///< loop being played
   bool finished_ = false;
   std::array<std::int64_t, kVerdictCount> counts_{};
+  std::int64_t merged_ = 0;
   std::int64_t resets_ = 0;
   std::int64_t gaps_ = 0;
 };

@@ -30,7 +30,7 @@ RobotModel arm() {
 InstrumentDescription armDescription() {
   InstrumentDescription description;
   description.name = "arm";
-  description.joint_state_topics = {"/joint_states"};
+  description.joint_state_topics = {{"/joint_states"}};
   description.tip_link = "tip";
   return description;
 }
@@ -137,7 +137,7 @@ TEST(Instrument, MovingAndFixedUrdfsNeedTheirTopics) {
   const Instrument obstacle(description, table, Pose::Identity());
   EXPECT_TRUE(obstacle.isObstacle());
   EXPECT_EQ(obstacle.initialPositions().size(), 0);
-  description.joint_state_topics = {"/joint_states"};
+  description.joint_state_topics = {{"/joint_states"}};
   expectContains(refusal([&] { Instrument(description, table, Pose::Identity()); }),
                  {"instrument 'table'", "'/joint_states'", "no moving joint"});
 }

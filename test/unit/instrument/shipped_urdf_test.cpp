@@ -109,7 +109,7 @@ TEST(PsmClassic, JawsOpenSymmetricallyByHalfTheAngleEach) {
 TEST(PsmClassic, ShapesLieWhereTheInstrumentIs) {
   InstrumentDescription description;
   description.name = "psm";
-  description.joint_state_topics = {"js"};
+  description.joint_state_topics = {{"js"}};
   description.tip_link = "tip";
   description.contact_links = {{"shaft", {}}, {"wrist", {}}, {"jaw_base", {}}, {"jaw_1_link", {}}, {"jaw_2_link", {}}};
   const Instrument instrument(description, psm(), Pose::Identity());
@@ -232,7 +232,7 @@ TEST_F(SurrolPsm, EveryShapeOfTheUrdfLoads) {
 TEST_F(SurrolPsm, ToolMeshesHaveTheSizeOfTheTool) {
   InstrumentDescription description;
   description.name = "psm";
-  description.joint_state_topics = {"js"};
+  description.joint_state_topics = {{"js"}};
   description.tip_link = "psm_tool_tip_link";
   description.contact_links = {{"psm_tool_pitch_link", {}}, {"psm_tool_gripper1_link", {}}};
   const Instrument instrument(description, *model_, Pose::Identity());

@@ -31,7 +31,7 @@ const char kBag[] = TISSUE_CONTACT_SHARED_DATA "/dvrk/psm2_classic_motion.bag";
 Instrument recordedPsm() {
   InstrumentDescription description;
   description.name = "psm";
-  description.joint_state_topics = {"/PSM2/measured_js"};
+  description.joint_state_topics = {{"/PSM2/measured_js"}};
   description.tip_link = "tip";
   for (const char* joint : {"yaw", "pitch", "insertion", "roll", "wrist_pitch", "wrist_yaw"}) {
     description.joint_names[std::string("outer_") + joint] = joint;

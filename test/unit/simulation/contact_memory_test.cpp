@@ -80,7 +80,7 @@ class KeptPoints : public ::testing::Test {
     InstrumentDescription description;
     description.name = "probe";
     description.tip_link = "tip";
-    description.joint_state_topics = {"/joint_states"};
+    description.joint_state_topics = {{"/joint_states"}};
     description.contact_links = {{"tip", {}}};
     instruments.emplace_back(description, parseUrdf(probeUrdf(1.0), "test", "", nullptr), Pose::Identity());
     TissueSurface surface;
@@ -146,7 +146,7 @@ TEST(KeptRidgePoint, DoesNotDependOnTriangleOrder) {
   InstrumentDescription description;
   description.name = "probe";
   description.tip_link = "tip";
-  description.joint_state_topics = {"/joint_states"};
+  description.joint_state_topics = {{"/joint_states"}};
   description.contact_links = {{"tip", {}}};
   std::vector<Instrument> instruments;
   instruments.emplace_back(description, parseUrdf(probeUrdf(1.0), "test", "", nullptr), Pose::Identity());

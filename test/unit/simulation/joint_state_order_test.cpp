@@ -43,7 +43,7 @@ TEST(JointStatePlayer, WaitsForTheOtherTopic) {
   EXPECT_EQ(second[0].instruments, std::vector<int>{1});
 }
 
-TEST(JointStatePlayer, SameStampOnTwoTopicsNeedsNoWaitAndNoStep) {
+TEST(JointStatePlayer, SameStampOnTwoTopicsIsOneMoment) {
   const auto simulator = twoProbes();
   JointStatePlayer player(*simulator);
   for (int i = 0; i < 3; ++i) {
@@ -52,15 +52,27 @@ TEST(JointStatePlayer, SameStampOnTwoTopicsNeedsNoWaitAndNoStep) {
     EXPECT_TRUE(drain(player).empty());
     player.push(0, sample(stamp, -0.001 * i));
     const std::vector<PlayedSample> played = drain(player);
-    ASSERT_EQ(played.size(), 2U);
+    ASSERT_EQ(played.size(), 1U);
     EXPECT_EQ(played[0].topic, 0);
-    EXPECT_EQ(played[1].topic, 1);
-    EXPECT_EQ(played[1].verdict, Verdict::kAccepted);
-    EXPECT_EQ(played[1].instruments, std::vector<int>{1});
+    EXPECT_EQ(played[0].accepted, 2);
+    EXPECT_EQ(played[0].instruments, (std::vector<int>{0, 1}));
     EXPECT_EQ(simulator->stepCount(), 10 * i);
+    // Both wrenches are of this stamp, so both instruments must be where it has them.
+    EXPECT_EQ(simulator->jointPositions(0).z(), -0.001 * i);
+    EXPECT_EQ(simulator->jointPositions(1).z(), 0.001 * i);
   }
-  EXPECT_EQ(simulator->jointPositions(0).z(), -0.002);
-  EXPECT_EQ(simulator->jointPositions(1).z(), 0.001);  // its newest target takes effect in the next interval
+}
+
+TEST(JointStatePlayer, ASampleOfAMomentAlreadyPlayedIsLate) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  player.push(0, sample(kSecond, 0.0));
+  player.push(0, sample(kSecond + 50 * kMillisecond, 0.0));
+  EXPECT_EQ(drain(player).size(), 1U);  // not waited for any longer
+  player.push(1, sample(kSecond, -0.001));
+  const std::vector<PlayedSample> late = drain(player);
+  ASSERT_EQ(late.size(), 1U);
+  EXPECT_EQ(late[0].verdict, Verdict::kLate);
 }
 
 TEST(JointStatePlayer, StopsWaitingAfterMaxGapAndRefusesWhatComesLate) {
@@ -190,7 +202,7 @@ TEST(JointStatePlayer, ATopicFirstHeardInALaterLoopJoinsIt) {
   EXPECT_EQ(player.count(Verdict::kAccepted), 3);  // the newest of topic 0 waits
 }
 
-TEST(JointStatePlayer, AClockSetBackALittleOnOneTopicKeepsTheOtherOne) {
+TEST(JointStatePlayer, AClockSetBackALittleOnOneTopicDisturbsNeither) {
   const auto simulator = twoProbes();
   JointStatePlayer player(*simulator);
   for (int i = 0; i < 5; ++i) {
@@ -202,9 +214,28 @@ TEST(JointStatePlayer, AClockSetBackALittleOnOneTopicKeepsTheOtherOne) {
   }
   player.finish();
   drain(player);
+  EXPECT_EQ(player.resets(), 0);
+  EXPECT_EQ(player.count(Verdict::kLate), 2);  // 20 and 30 ms
+  EXPECT_EQ(player.count(Verdict::kDuplicateStamp), 1);
+  EXPECT_EQ(player.count(Verdict::kAccepted), 17);
+}
+
+TEST(JointStatePlayer, AClockSetBackFarOnOneTopicKeepsTheOtherOneOnceItFits) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  for (int i = 0; i < 5; ++i) {
+    for (const int topic : {0, 1}) player.push(topic, sample(2 * kSecond + i * 10 * kMillisecond, 0.0));
+  }
+  for (int i = 0; i < 20; ++i) {  // topic 0 by 90 ms, and topic 1 after a while as well
+    player.push(0, sample(2 * kSecond + (i * 10 - 40) * kMillisecond, 0.0));
+    player.push(1, sample(2 * kSecond + (i < 10 ? 50 + i * 10 : i * 10 - 40) * kMillisecond, 0.0));
+    drain(player);
+  }
+  player.finish();
+  drain(player);
   EXPECT_EQ(player.resets(), 1);
-  EXPECT_EQ(player.count(Verdict::kLate), 0);
-  EXPECT_EQ(player.count(Verdict::kAccepted), 20);
+  EXPECT_EQ(simulator->jointPositions(1).z(), 0.0);
+  EXPECT_EQ(player.waiting(), 0);
 }
 
 }  // namespace

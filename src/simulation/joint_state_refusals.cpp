@@ -1,0 +1,149 @@
+/// @file
+/// Room `simulation`: which joint states JointStatePlayer refuses, and to which loop of time it counts the others.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+#include <utility>
+
+#include "tissue_contact/simulation/joint_state_player.h"
+
+namespace tissue_contact {
+namespace {
+
+std::string listOf(const std::vector<std::string>& names) {
+  constexpr std::size_t kMaxNamed = 12;  // a message may hold any number of names, a warning should not
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMaxNamed); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  return names.size() > kMaxNamed ? text + ", ..." : text;
+}
+
+std::string stampText(std::int64_t stamp_ns) {
+  std::ostringstream text;
+  const std::int64_t ns_per_s = 1000000000;
+  text << stamp_ns / ns_per_s << '.';
+  text.width(9);
+  text.fill('0');
+  text << std::abs(stamp_ns % ns_per_s) << " s";
+  return text.str();
+}
+
+}  // namespace
+
+const char* verdictText(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kAccepted:
+      return "accepted";
+    case Verdict::kDuplicateStamp:
+      return "duplicate stamp";
+    case Verdict::kBadStamp:
+      return "bad stamp";
+    case Verdict::kNotFinite:
+      return "position not finite";
+    case Verdict::kBadLength:
+      return "names and positions differ in number";
+    case Verdict::kNoKnownJoint:
+      return "no known joint";
+    case Verdict::kLate:
+      return "late";
+  }
+  return "unknown";
+}
+
+void JointStatePlayer::refuse(Verdict verdict, int topic, std::int64_t stamp_ns, const std::string& detail) {
+  PlayedSample refused;
+  refused.verdict = verdict;
+  refused.topic = topic;
+  refused.stamp_ns = stamp_ns;
+  refused.detail = topics_[static_cast<std::size_t>(topic)] + " at " + stampText(stamp_ns) + ": " + detail;
+  refused_.push_back(std::move(refused));
+}
+
+/// All but the order of stamps.
+Verdict JointStatePlayer::judgeContent(const JointStateSample& sample, const Topic& topic, std::string& detail) const {
+  if (sample.stamp_ns <= 0) {
+    detail = "the stamp must be > 0; fill header.stamp";
+    return Verdict::kBadStamp;
+  }
+  if (sample.names.size() != sample.positions.size()) {
+    detail = std::to_string(sample.names.size()) + " names but " + std::to_string(sample.positions.size()) +
+             " positions; each name needs a position";
+    return Verdict::kBadLength;
+  }
+  return judgeJoints(sample, topic, detail);
+}
+
+Verdict JointStatePlayer::judgeJoints(const JointStateSample& sample, const Topic& topic, std::string& detail) const {
+  bool any_known = false;
+  for (const Listener& listener : topic.listeners) {
+    const Instrument& instrument = simulator_.instruments()[static_cast<std::size_t>(listener.instrument)];
+    for (std::size_t k = 0; k < sample.names.size(); ++k) {
+      if (instrument.jointOfRecordedName(sample.names[k]) < 0) continue;
+      any_known = true;
+      if (!std::isfinite(sample.positions[k])) {
+        std::ostringstream text;
+        text << "position of joint '" << sample.names[k] << "' is " << sample.positions[k] << "; it must be finite";
+        detail = text.str();
+        return Verdict::kNotFinite;
+      }
+    }
+  }
+  if (any_known) return Verdict::kAccepted;
+  detail = "none of its joints (" + listOf(sample.names) +
+           ") is a joint of an instrument on this topic, neither by its " + "URDF name nor through joint_names";
+  return Verdict::kNoKnownJoint;
+}
+
+/// Where in time the sample belongs: order and loop, given what its topic and the others have delivered so far.
+Verdict JointStatePlayer::judgeStamp(std::int64_t stamp_ns, Topic& topic, Moment& moment, std::string& detail) const {
+  const int newest = newest_ ? newest_->epoch : 0;
+  moment = {newest, stamp_ns};
+  if (!topic.last) return Verdict::kAccepted;
+  const std::int64_t back_ns = topic.last->stamp_ns - stamp_ns;
+  const bool restarted = topic.restart_before_ns.has_value();
+  if (back_ns == 0 && !restarted) {
+    detail = "same stamp as the topic's last joint state";
+    return Verdict::kDuplicateStamp;
+  }
+  // After restart() a stamp that goes on is left over from the loop before, however short the loop is.
+  const bool may_join = topic.last->epoch < newest && (back_ns >= 0 || !restarted);
+  if (may_join && std::abs(stamp_ns - newest_->last_ns) <= max_gap_ns_) return Verdict::kAccepted;
+  moment.epoch = topic.last->epoch;
+  if (back_ns < 0) return Verdict::kAccepted;
+  // Late ones in a row that have gone on for more than a gap and go back again are a short recording played in a loop.
+  const bool turns = topic.late_progress_ns > max_gap_ns_ && stamp_ns < *topic.late_ns;
+  if (back_ns > max_gap_ns_ || restarted || turns) {
+    ++moment.epoch;
+    return Verdict::kAccepted;
+  }
+  detail = "the topic's last joint state is at " + stampText(topic.last->stamp_ns);
+  if (topic.late_ns) {
+    topic.late_progress_ns += std::max<std::int64_t>(0, stamp_ns - *topic.late_ns);
+    detail +=
+        ", as for the one before; if a recording shorter than max_gap_s is played in a loop, let it give the time "
+        "(rosbag play --clock, /use_sim_time), or shorten step.max_gap_s";
+  }
+  topic.late_ns = stamp_ns;
+  return Verdict::kLate;
+}
+
+/// Refuses what waits for a moment that has been played without it, except where its joints still say something new:
+/// those of an update-only topic, and under kNewestState of every one, are taken at the next moment.
+void JointStatePlayer::refuseLate() {
+  for (std::size_t t = 0; t < topic_states_.size(); ++t) {
+    Topic& topic = topic_states_[t];
+    const bool is_taken_later = !topic.triggers || policy_ == StatePolicy::kNewestState;
+    while (!topic.queue.empty()) {
+      const Moment moment = topic.queue.front().moment;
+      const bool is_old_loop = moment.epoch < epoch_;
+      if (!is_old_loop && (is_taken_later || !isPast(moment))) break;
+      refuse(Verdict::kLate, static_cast<int>(t), moment.stamp_ns,
+             is_old_loop ? "time went backwards on another topic but not on this one"
+                         : "the simulation is already at " + stampText(*time_ns_));
+      topic.queue.pop_front();
+      --waiting_;
+    }
+  }
+}
+
+}  // namespace tissue_contact
