@@ -45,7 +45,7 @@ const char* verdictText(Verdict verdict) {
     case Verdict::kNoKnownJoint:
       return "no known joint";
     case Verdict::kLate:
-      return "late";
+      return "too late";
   }
   return "unknown";
 }

@@ -151,6 +151,12 @@ def read_csv(file):
                 for row in csv.DictReader(stream)]
 
 
+def read_table(file):
+    """All of a replay's CSV as a list of dictionaries, without the wall time, which differs from run to run."""
+    with open(file, newline="", encoding="ascii") as stream:
+        return [{k: v for k, v in row.items() if k != "step_time_s"} for row in csv.DictReader(stream)]
+
+
 def stamp_text(stamp):
     return "%d.%09d" % (stamp.secs, stamp.nsecs)
 

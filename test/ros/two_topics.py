@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Two instruments on two topics: played in the order of their stamps, whichever way they arrive; the bits of the replay."""
+"""Two topics, of two instruments or of an arm and its jaw: moments in the order of their stamps, whichever way they arrive;
+the bits of the replay."""
 import os
 import shutil
 import sys
@@ -37,6 +38,74 @@ class TwoTopics(unittest.TestCase):
             stream.write(text.replace("friction:\n", SECOND_PROBE).replace("tf: true", "tf: false"))
         self.samples = harness.press(100)
         self.shift = rospy.Duration(0, 3000000)
+
+    def write_bag(self, name, messages):
+        """messages: (topic, stamp, names, positions), recorded in this order."""
+        bag = os.path.join(self.directory, name)
+        with rosbag.Bag(bag, "w") as out:
+            for i, (topic, stamp, names, positions) in enumerate(messages):
+                message = JointState(name=list(names), position=list(positions))
+                message.header.stamp = stamp
+                out.write(topic, message, self.samples[0][0] + rospy.Duration(0, 1000) * i)
+        return bag
+
+    def rows(self, scene, bag):
+        table = bag + ".csv"
+        code, errors = harness.replay(scene, bag, table)
+        self.assertEqual(code, 0, errors)
+        return harness.read_table(table)
+
+    def test_equal_stamps_are_one_moment(self):
+        tables = []
+        for name, order in [("one.bag", 1), ("other.bag", -1)]:
+            messages = []
+            for stamp, (x, y, z) in self.samples:
+                messages += [(harness.TOPIC, stamp, "xyz", (x, y, z)),
+                             ("/other/joint_states", stamp, "xyz", (2 * x, y, 0.5 * z))][::order]
+            tables.append(self.rows(self.scene, self.write_bag(name, messages)))
+        self.assertEqual(tables[0], tables[1])
+        self.assertEqual([row["instrument"] for row in tables[0]], 100 * ["probe", "other"])
+        bases = {"probe": (0.0, 0.026), "other": (0.02, 0.026)}
+        for i, (stamp, (x, _, z)) in enumerate(self.samples):
+            for row, (dx, dz) in zip(tables[0][2 * i:2 * i + 2], [(x, z), (2 * x, 0.5 * z)]):
+                base_x, base_z = bases[row["instrument"]]
+                self.assertEqual(row["stamp_s"], harness.stamp_text(stamp))
+                # The pose of this stamp, not of the one before, 60 um away; a sum of a few doubles away.
+                self.assertAlmostEqual(float(row["tip_x_m"]), base_x + dx, delta=1e-12)
+                self.assertAlmostEqual(float(row["tip_z_m"]), base_z + dz, delta=1e-12)
+
+    def test_a_jaw_beside_its_arm_gives_no_wrench_of_its_own(self):
+        arm, jaw = "/probe/measured_js", "/probe/jaw/measured_js"
+        with open(harness.SCENE, encoding="utf-8") as stream:
+            text = stream.read().replace("[%s]" % harness.TOPIC, "[%s, %s]" % (arm, jaw))
+        scene = os.path.join(self.directory, "jaw.yaml")
+        with open(scene, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        messages = []
+        for i, (stamp, (x, y, z)) in enumerate(self.samples):  # the "jaw" has the probe's z
+            messages.append((arm, stamp, "xy", (x, y)))
+            if i % 2 == 0:
+                messages.append((jaw, stamp, "z", (z,)))
+            messages.append((jaw, stamp + self.shift, "z", (z - 0.00001,)))
+        bag = self.write_bag("jaw.bag", messages)
+        rows = self.rows(scene, bag)
+        self.assertEqual([row["stamp_s"] for row in rows], [harness.stamp_text(stamp) for stamp, _ in self.samples])
+        expected = harness.read_csv(bag + ".csv")
+        self.assertGreater(len({bits for _, _, bits in expected}), 50)  # not all zero
+
+        with harness.node(scene):
+            wrenches = harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)
+            sources = {topic: harness.JointSource(topic) for topic in [arm, jaw]}
+            for begin in range(0, len(messages), 25):  # 0.1 s of one topic, then of the other; max_gap_s is 0.2 s
+                for topic in [arm, jaw] if begin % 50 else [jaw, arm]:
+                    for to, stamp, names, positions in messages[begin:begin + 25]:
+                        if to == topic:
+                            sources[topic].send(stamp, positions, names)
+                played = [stamp for to, stamp, _, _ in messages[:begin + 25] if to == arm]
+                wrenches.wait_for_stamp(played[-2])  # the last may wait for the next batch
+            got = wrenches.wait_for_stamp(self.samples[-1][0])
+        self.assertEqual([(harness.stamp_text(w.header.stamp), harness.wrench_bits(w)) for w in got],
+                         [(stamp, bits) for stamp, _, bits in expected])
 
     def test_arrival_order_does_not_matter(self):
         bag = os.path.join(self.directory, "two.bag")

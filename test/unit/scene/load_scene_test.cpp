@@ -86,11 +86,59 @@ TEST_F(SceneTest, FillsAnInstrument) {
   EXPECT_EQ(arm.name, "arm");
   EXPECT_EQ(arm.urdf_file, path("arm.urdf"));
   EXPECT_TRUE(arm.robot_description_parameter.empty());
-  EXPECT_EQ(arm.joint_state_topics, (std::vector<std::string>{"/PSM2/measured_js", "/PSM2/jaw/measured_js"}));
+  ASSERT_EQ(arm.joint_state_topics.size(), 2U);
+  EXPECT_EQ(arm.joint_state_topics[0].name, "/PSM2/measured_js");
+  EXPECT_TRUE(arm.joint_state_topics[0].triggers);
+  EXPECT_EQ(arm.joint_state_topics[1].name, "/PSM2/jaw/measured_js");
+  EXPECT_FALSE(arm.joint_state_topics[1].triggers);
   EXPECT_EQ(arm.joint_names, (std::map<std::string, std::string>{{"outer_yaw", "yaw"}, {"outer_pitch", "pitch"}}));
   EXPECT_EQ(arm.initial_joint_positions, (std::map<std::string, double>{{"yaw", 0.25}}));
   EXPECT_EQ(arm.tip_link, "tip");
   EXPECT_EQ(parse(kFullScene).instruments.at(1).robot_description_parameter, "/arm2/robot_description");
+}
+
+TEST_F(SceneTest, KnowsWhichTopicsTrigger) {
+  struct Case {
+    const char* topics;
+    std::vector<bool> triggers;
+  };
+  const std::vector<Case> cases = {
+      {"[/PSM1/measured_js, /PSM1/jaw/measured_js]", {true, false}},  // CRTK
+      {"[/PSM1/jaw/setpoint_js, /PSM1/setpoint_js]", {false, true}},
+      {"[/PSM1/measured_js, /PSM1/gripper/measured_js]", {true, false}},
+      {"[/dvrk/PSM2/state_joint_current, /dvrk/PSM2/state_jaw_current]", {true, false}},  // dVRK before CRTK
+      {"[/arm, /Gripper]", {true, false}},
+      {"[/jaw/measured_js]", {true}},                   // alone
+      {"[/left_jaw/js, /right_jaw/js]", {true, true}},  // nothing else would trigger
+      {"[/jawbone/js, /arm/js]", {true, true}},         // no word of its own
+      {"[/arm/measured_js, /wrist/measured_js]", {true, true}},
+      {"[/arm, {topic: /jaw, triggers: true}]", {true, true}},
+      {"[{topic: /arm, triggers: false}, /wrist]", {false, true}},
+      {"[{topic: /arm, triggers: false}, /jaw]", {false, true}},
+      {"[{topic: /arm}, {topic: /jaw}]", {true, false}},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.topics);
+    const std::string given = "[/PSM2/measured_js, /PSM2/jaw/measured_js]";
+    std::string yaml = kFullScene;
+    const InstrumentDescription arm = parse(yaml.replace(yaml.find(given), given.size(), c.topics)).instruments.at(0);
+    ASSERT_EQ(arm.joint_state_topics.size(), c.triggers.size());
+    for (std::size_t i = 0; i < c.triggers.size(); ++i) {
+      EXPECT_EQ(arm.joint_state_topics[i].triggers, c.triggers[i]) << arm.joint_state_topics[i].name;
+    }
+  }
+}
+
+TEST_F(SceneTest, FillsThePolicyForJointStates) {
+  const std::pair<const char*, StatePolicy> words[] = {{"auto", StatePolicy::kAuto},
+                                                       {"every_state", StatePolicy::kEveryState},
+                                                       {"newest_state", StatePolicy::kNewestState}};
+  for (const auto& [word, policy] : words) {
+    const std::string step = "step: {joint_states: " + std::string(word) + ", max_lag_s: 0.005}\n";
+    const StepDescription filled = parse(kSmallestScene + step).step;
+    EXPECT_EQ(filled.joint_states, policy);
+    EXPECT_EQ(filled.max_lag_s, 0.005);
+  }
 }
 
 TEST_F(SceneTest, FillsContactShapes) {
@@ -132,6 +180,8 @@ TEST_F(SceneTest, HasDefaults) {
   EXPECT_EQ(scene.gravity_m_per_s2, Vector3::Zero());
   EXPECT_EQ(scene.step.max_step_s, defaults.step.max_step_s);
   EXPECT_EQ(scene.step.max_gap_s, defaults.step.max_gap_s);
+  EXPECT_EQ(scene.step.joint_states, StatePolicy::kAuto);
+  EXPECT_EQ(scene.step.max_lag_s, 0.02);
   EXPECT_EQ(scene.solver.iterations, defaults.solver.iterations);
   EXPECT_EQ(scene.solver.contact_passes, 20);
   EXPECT_EQ(scene.solver.tolerance, 1e-4);

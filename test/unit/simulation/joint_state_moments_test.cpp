@@ -1,0 +1,268 @@
+/// @file
+/// JointStatePlayer where topics give one moment together: interpolation, and topics that only update joints.
+#include <utility>
+
+#include "joint_state_player_fixture.h"
+
+namespace tissue_contact {
+namespace {
+
+using Order = std::vector<std::pair<int, JointStateSample>>;
+
+std::unique_ptr<Simulator> twoProbes() { return makeSimulator(probe("a", "/a", -0.015) + probe("b", "/b", 0.015)); }
+/// x and y on the arm's topic, z on the jaw's.
+std::unique_ptr<Simulator> armAndJaw() { return makeSimulator(probe("a", "/a/measured_js, /a/jaw/measured_js", 0.0)); }
+
+JointStateSample arm(std::int64_t stamp_ns, double x) { return {stamp_ns, {"x", "y"}, {x, 0.0}}; }
+JointStateSample jaw(std::int64_t stamp_ns, double z) { return {stamp_ns, {"z"}, {z}}; }
+
+Trace run(Simulator& simulator, JointStatePlayer& player, const Order& order) {
+  Trace trace;
+  const auto take = [&] {
+    while (const auto played = player.playNext()) {
+      EXPECT_EQ(played->verdict, Verdict::kAccepted) << played->detail;
+      trace.add(*played, simulator);
+    }
+  };
+  for (const auto& [topic, s] : order) {
+    player.push(topic, s);
+    take();
+  }
+  player.finish();
+  take();
+  return trace;
+}
+
+/// The same samples with one topic's `lag` places later among the other's.
+Order delayed(const Order& order, int late_topic, std::size_t lag) {
+  Order result;
+  Order held;
+  for (const auto& entry : order) {
+    if (entry.first != late_topic) {
+      result.push_back(entry);
+      continue;
+    }
+    held.push_back(entry);
+    if (held.size() > lag) result.push_back(held[held.size() - lag - 1]);
+  }
+  result.insert(result.end(), held.end() - static_cast<std::ptrdiff_t>(lag), held.end());
+  return result;
+}
+
+TEST(JointStateMoments, AnInstrumentSampledBetweenAnothersStampsMovesEvenly) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  const double speed = 0.1;  // m/s, upwards
+  const auto height = [&](std::int64_t stamp_ns) { return speed * 1e-9 * static_cast<double>(stamp_ns - kSecond); };
+  int moments = 0;
+  for (int i = 0; i < 10; ++i) {
+    const std::int64_t a = kSecond + i * 10 * kMillisecond;
+    const std::int64_t b = a + 3 * kMillisecond;
+    player.push(0, sample(a, height(a)));
+    player.push(1, sample(b, height(b)));
+    for (const PlayedSample& played : drain(player)) {
+      ++moments;
+      ASSERT_EQ(played.instruments.size(), 1U);
+      EXPECT_EQ(simulator->jointPositions(played.instruments[0]).z(), height(played.stamp_ns));
+      const bool other_heard = played.stamp_ns > kSecond;
+      const int other = 1 - played.instruments[0];
+      // Round-off alone, of joints that move a centimetre.
+      if (other_heard) EXPECT_NEAR(simulator->jointPositions(other).z(), height(played.stamp_ns), 1e-15);
+    }
+  }
+  EXPECT_EQ(moments, 19);  // the last of b waits
+}
+
+TEST(JointStateMoments, NothingIsInterpolatedOverMoreThanMaxGap) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  player.push(1, sample(kSecond, 0.001));
+  player.push(1, sample(kSecond + 51 * kMillisecond, 0.002));
+  for (const int ms : {0, 20, 40, 60}) player.push(0, sample(kSecond + ms * kMillisecond, 0.0));
+  std::vector<double> heights;
+  while (player.playNext()) heights.push_back(simulator->jointPositions(1).z());
+  EXPECT_EQ(heights, (std::vector<double>{0.001, 0.001, 0.001, 0.002}));  // 60 ms waits
+}
+
+TEST(JointStateMoments, EqualStampsAreOneMomentWhateverArrivesFirst) {
+  std::vector<Trace> traces;
+  for (const int first : {0, 1}) {
+    const auto simulator = twoProbes();
+    JointStatePlayer player(*simulator);
+    Order order;
+    const std::vector<JointStateSample> a = press(kSecond, 0.006);
+    const std::vector<JointStateSample> b = press(kSecond, 0.004);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      order.emplace_back(first, first == 0 ? a[i] : b[i]);
+      order.emplace_back(1 - first, first == 0 ? b[i] : a[i]);
+    }
+    traces.push_back(run(*simulator, player, order));
+    EXPECT_EQ(traces.back().stamps.size(), 30U);
+    EXPECT_EQ(traces.back().forces.size(), 30U * 12U);  // two wrenches for each
+    EXPECT_EQ(simulator->stepCount(), 290);
+    EXPECT_EQ(simulator->jointPositions(0).z(), -0.006);
+    EXPECT_EQ(simulator->jointPositions(1).z(), -0.004);
+  }
+  EXPECT_TRUE(traces[0].pressed());
+  EXPECT_TRUE(traces[0] == traces[1]);
+}
+
+TEST(JointStateMoments, TheOrderOfTopicsInTheSceneDoesNotMatter) {
+  std::vector<Trace> traces;
+  for (const char* topics : {"/arm, /wrist", "/wrist, /arm"}) {
+    const auto simulator = makeSimulator(probe("a", topics, 0.0));
+    JointStatePlayer player(*simulator);
+    const bool arm_first = player.topics()[0] == "/arm";
+    Order order;
+    for (int i = 0; i < 30; ++i) {
+      const std::int64_t stamp = kSecond + i * 10 * kMillisecond;
+      order.emplace_back(arm_first ? 0 : 1, arm(stamp, 1e-4 * i));
+      order.emplace_back(arm_first ? 1 : 0, jaw(stamp, -2e-4 * i));
+    }
+    traces.push_back(run(*simulator, player, order));
+    EXPECT_EQ(traces.back().stamps.size(), 30U);
+    EXPECT_EQ(traces.back().forces.size(), 30U * 6U);
+  }
+  EXPECT_TRUE(traces[0].pressed());
+  EXPECT_TRUE(traces[0] == traces[1]);
+}
+
+TEST(JointStateMoments, AJawBesideItsArmOnlyUpdates) {
+  const auto simulator = armAndJaw();
+  JointStatePlayer player(*simulator);
+  EXPECT_TRUE(player.triggers(0));
+  EXPECT_FALSE(player.triggers(1));
+  player.push(1, jaw(kSecond - 2 * kMillisecond, 0.001));
+  player.push(1, jaw(kSecond - kMillisecond, 0.002));
+  EXPECT_TRUE(drain(player).empty());
+  player.push(0, arm(kSecond, 0.001));
+  player.push(1, jaw(kSecond + 4 * kMillisecond, 0.003));
+  std::vector<PlayedSample> played = drain(player);
+  ASSERT_EQ(played.size(), 1U);
+  EXPECT_EQ(played[0].stamp_ns, kSecond);
+  EXPECT_EQ(played[0].topic, 0);
+  EXPECT_EQ(played[0].accepted, 3);
+  EXPECT_EQ(played[0].instruments, std::vector<int>{0});
+  // First heard: placed, at the newest position; from then on a fifth of the way from -1 ms to 4 ms.
+  EXPECT_NEAR(simulator->jointPositions(0).z(), 0.0022, 1e-15);
+  player.push(0, arm(kSecond + 10 * kMillisecond, 0.002));
+  EXPECT_TRUE(drain(player).empty());  // waits for the jaw
+  player.push(1, jaw(kSecond + 14 * kMillisecond, 0.013));
+  played = drain(player);
+  ASSERT_EQ(played.size(), 1U);
+  EXPECT_EQ(played[0].stamp_ns, kSecond + 10 * kMillisecond);
+  EXPECT_EQ(simulator->stepCount(), 10);
+  EXPECT_NEAR(simulator->jointPositions(0).z(), 0.003 + 0.6 * 0.010, 1e-15);
+  EXPECT_EQ(player.waiting(), 1);  // the jaw's newest, for the arm's next
+}
+
+TEST(JointStateMoments, ArrivalOrderOfAJawDoesNotMatter) {
+  Order in_order;
+  for (int i = 0; i < 30; ++i) {
+    const std::int64_t stamp = kSecond + i * 10 * kMillisecond;
+    in_order.emplace_back(0, arm(stamp, 1e-4 * i));
+    if (i % 3 == 0) in_order.emplace_back(1, jaw(stamp, -2e-4 * i));
+    in_order.emplace_back(1, jaw(stamp + 4 * kMillisecond, -2e-4 * i - 1e-4));
+  }
+  const auto reference_simulator = armAndJaw();
+  JointStatePlayer reference_player(*reference_simulator);
+  const Trace reference = run(*reference_simulator, reference_player, in_order);
+  EXPECT_EQ(reference.stamps.size(), 30U);
+  EXPECT_TRUE(reference.pressed());
+  for (const int late_topic : {0, 1}) {
+    for (const std::size_t lag : {1U, 2U, 3U}) {  // in samples: up to 44 ms, max_gap_s is 50
+      const auto simulator = armAndJaw();
+      JointStatePlayer player(*simulator);
+      EXPECT_TRUE(run(*simulator, player, delayed(in_order, late_topic, lag)) == reference) << late_topic << ' ' << lag;
+    }
+  }
+}
+
+TEST(JointStateMoments, AJawThatTriggersGivesWrenchesOfItsOwn) {
+  const auto simulator = makeSimulator(probe("a", "/a/measured_js, {topic: /a/jaw/measured_js, triggers: true}", 0.0));
+  JointStatePlayer player(*simulator);
+  Order order;
+  for (int i = 0; i < 5; ++i) {
+    order.emplace_back(0, arm(kSecond + i * 10 * kMillisecond, 0.0));
+    order.emplace_back(1, jaw(kSecond + (i * 10 + 4) * kMillisecond, 0.0));
+  }
+  EXPECT_EQ(run(*simulator, player, order).forces.size(), 10U * 6U);
+}
+
+TEST(JointStateMoments, AJawThatIsNeverHeardDelaysOnlyTheStart) {
+  const auto simulator = armAndJaw();
+  JointStatePlayer player(*simulator);
+  std::vector<std::size_t> played;
+  for (int i = 0; i < 15; ++i) {
+    player.push(0, arm(kSecond + i * 10 * kMillisecond, 0.0));
+    played.push_back(drain(player).size());
+  }
+  // max_gap_s is 50 ms: from there on samples are played so much later, after twice that at once.
+  EXPECT_EQ(played, (std::vector<std::size_t>{0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 6, 1, 1, 1, 1}));
+}
+
+TEST(JointStateMoments, AJawThatFallsSilentIsWaitedForAgainWhenItComesBack) {
+  const auto simulator = armAndJaw();
+  JointStatePlayer player(*simulator);
+  std::int64_t stamp = kSecond;
+  player.push(1, jaw(stamp, 0.001));
+  for (int i = 0; i < 15; ++i) player.push(0, arm(stamp += 10 * kMillisecond, 0.0));
+  drain(player);
+  EXPECT_EQ(player.waiting(), 0);
+  player.push(1, jaw(stamp + kMillisecond, 0.002));
+  player.push(0, arm(stamp += 10 * kMillisecond, 0.0));
+  EXPECT_TRUE(drain(player).empty());
+  player.push(1, jaw(stamp, 0.002));
+  EXPECT_EQ(drain(player).size(), 1U);
+  EXPECT_EQ(simulator->jointPositions(0).z(), 0.002);
+}
+
+TEST(JointStateMoments, AnOvertakenJawIsTakenAtTheNextMoment) {
+  const auto simulator = armAndJaw();
+  JointStatePlayer player(*simulator);
+  for (int i = 0; i < 11; ++i) player.push(0, arm(kSecond + i * 10 * kMillisecond, 0.0));
+  drain(player);
+  player.push(1, jaw(kSecond, 0.003));  // far behind: not waited for any longer
+  player.push(0, arm(kSecond + 110 * kMillisecond, 0.0));
+  player.push(0, arm(kSecond + 170 * kMillisecond, 0.0));
+  for (const PlayedSample& played : drain(player)) EXPECT_EQ(played.verdict, Verdict::kAccepted);
+  EXPECT_EQ(simulator->jointPositions(0).z(), 0.003);
+}
+
+TEST(JointStateMoments, AJawAloneMovesNothingAndItsQueueIsBounded) {
+  const auto simulator = armAndJaw();
+  JointStatePlayer player(*simulator);
+  const auto many = static_cast<std::int64_t>(JointStatePlayer::kMaxWaiting);
+  for (std::int64_t i = 0; i < many + 5; ++i) {
+    player.push(1, jaw(kSecond + i * kMillisecond, 0.001));
+    EXPECT_TRUE(drain(player).empty());
+  }
+  EXPECT_EQ(player.waiting(), many);
+  EXPECT_EQ(player.merged(), 5);
+  EXPECT_EQ(simulator->stepCount(), 0);
+  player.push(0, arm(kSecond + many * kMillisecond, 0.0));
+  EXPECT_EQ(drain(player).size(), 1U);
+  EXPECT_EQ(simulator->jointPositions(0).z(), 0.001);
+}
+
+TEST(JointStateMoments, AJawLoopsWithItsArm) {
+  const auto simulator = armAndJaw();
+  JointStatePlayer player(*simulator);
+  Order order;
+  for (int loop = 0; loop < 3; ++loop) {
+    for (int i = 0; i < 30; ++i) {
+      order.emplace_back(1, jaw(kSecond + i * 10 * kMillisecond, -2e-4 * i));
+      order.emplace_back(0, arm(kSecond + (i * 10 + 1) * kMillisecond, 1e-4 * i));
+    }
+  }
+  const Trace trace = run(*simulator, player, order);
+  EXPECT_EQ(player.resets(), 2);
+  ASSERT_EQ(trace.forces.size(), 3U * 30U * 6U);
+  EXPECT_TRUE(trace.pressed());
+  // The last moment of a loop is without the jaw's next, which the others' next loop holds: both hold it.
+  EXPECT_TRUE(std::equal(trace.forces.begin(), trace.forces.begin() + 180, trace.forces.begin() + 180));
+  EXPECT_TRUE(std::equal(trace.forces.begin(), trace.forces.begin() + 180, trace.forces.begin() + 360));
+}
+
+}  // namespace
+}  // namespace tissue_contact

@@ -1,0 +1,222 @@
+/// @file
+/// JointStatePlayer's policies: newest state beside every state, bounds on an advance, and counts that add up.
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+#include "joint_state_player_fixture.h"
+
+namespace tissue_contact {
+namespace {
+
+std::unique_ptr<Simulator> oneProbe() { return makeSimulator(probe("a", "/a", 0.0)); }
+std::unique_ptr<Simulator> twoProbes() { return makeSimulator(probe("a", "/a", -0.015) + probe("b", "/b", 0.015)); }
+
+/// A press of one probe, `batch` samples at a time.
+Trace pressInBatches(StatePolicy policy, std::size_t batch, std::int64_t& merged) {
+  const auto simulator = oneProbe();
+  JointStatePlayer player(*simulator);
+  player.setPolicy(policy);
+  Trace trace;
+  const std::vector<JointStateSample> samples = press(kSecond, 0.006);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    player.push(0, samples[i]);
+    if (i % batch != 0 && i + 1 < samples.size()) continue;
+    while (const auto played = player.playNext()) trace.add(*played, *simulator);
+  }
+  EXPECT_EQ(simulator->stepCount(), 290);
+  EXPECT_EQ(player.count(Verdict::kAccepted) + player.merged(), 30);
+  merged = player.merged();
+  return trace;
+}
+
+TEST(JointStatePolicy, AutoHasToBeDecidedByTheCaller) {
+  const auto simulator = oneProbe();
+  JointStatePlayer player(*simulator);
+  EXPECT_EQ(player.policy(), StatePolicy::kEveryState);
+  EXPECT_THROW(player.setPolicy(StatePolicy::kAuto), std::invalid_argument);
+}
+
+TEST(JointStatePolicy, NewestStateIsEveryStateForWhoKeepsUp) {
+  std::int64_t merged = 0;
+  const Trace every = pressInBatches(StatePolicy::kEveryState, 1, merged);
+  EXPECT_TRUE(every.pressed());
+  EXPECT_TRUE(every == pressInBatches(StatePolicy::kNewestState, 1, merged));
+  EXPECT_EQ(merged, 0);
+}
+
+TEST(JointStatePolicy, NewestStatePlaysStraightToTheNewestAndMergesTheRest) {
+  std::int64_t merged = 0;
+  const Trace every = pressInBatches(StatePolicy::kEveryState, 1, merged);
+  const Trace newest = pressInBatches(StatePolicy::kNewestState, 7, merged);
+  ASSERT_EQ(newest.stamps.size(), 6U);  // samples 0, 7, 14, 21, 28 and the last
+  EXPECT_EQ(merged, 24);
+  EXPECT_EQ(newest.stamps[1], kSecond + 70 * kMillisecond);
+  // The press is even, so that the merged motion is the same up to round-off, and a gap of 70 ms is cut to 50 ms;
+  // the end of a quasi-static press hardly depends on it. Friction and damping leave less than a per cent.
+  const double expected = every.forces[every.forces.size() - 4];
+  EXPECT_GT(std::abs(expected), 0.01);
+  EXPECT_NEAR(newest.forces[newest.forces.size() - 4], expected, 0.01 * std::abs(expected));
+}
+
+TEST(JointStatePolicy, AMomentSaysHowManyWereMerged) {
+  const auto simulator = oneProbe();
+  JointStatePlayer player(*simulator);
+  player.setPolicy(StatePolicy::kNewestState);
+  for (int i = 0; i < 4; ++i) player.push(0, sample(kSecond + i * 10 * kMillisecond, -0.001 * i));
+  std::vector<PlayedSample> played = drain(player);
+  ASSERT_EQ(played.size(), 1U);
+  EXPECT_EQ(played[0].accepted, 1);
+  EXPECT_EQ(played[0].merged, 3);
+  EXPECT_EQ(played[0].stamp_ns, kSecond + 30 * kMillisecond);
+  EXPECT_EQ(simulator->jointPositions(0).z(), -0.003);  // the first moment: placed at the newest, no step
+  EXPECT_EQ(simulator->stepCount(), 0);
+  for (int i = 4; i < 7; ++i) player.push(0, sample(kSecond + i * 10 * kMillisecond, -0.001 * i));
+  played = drain(player);
+  ASSERT_EQ(played.size(), 1U);
+  EXPECT_EQ(played[0].merged, 2);
+  EXPECT_EQ(simulator->stepCount(), 30);
+  EXPECT_EQ(player.merged(), 5);
+  EXPECT_EQ(player.count(Verdict::kAccepted), 2);
+}
+
+TEST(JointStatePolicy, NewestStateWaitsForATopicNoLongerThanMaxLag) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  player.setPolicy(StatePolicy::kNewestState);
+  player.push(1, sample(kSecond, 0.0));
+  player.push(0, sample(kSecond, 0.0));
+  EXPECT_EQ(drain(player).size(), 1U);
+  player.push(0, sample(kSecond + 10 * kMillisecond, 0.0));
+  player.push(0, sample(kSecond + 29 * kMillisecond, 0.0));
+  EXPECT_TRUE(drain(player).empty());
+  player.push(0, sample(kSecond + 30 * kMillisecond, 0.0));  // max_lag_s is 20 ms
+  std::vector<PlayedSample> played = drain(player);
+  ASSERT_EQ(played.size(), 1U);
+  EXPECT_EQ(played[0].stamp_ns, kSecond + 10 * kMillisecond);
+  player.push(0, sample(kSecond + 40 * kMillisecond, 0.0));  // twice that behind: no longer waited for at all
+  played = drain(player);
+  ASSERT_EQ(played.size(), 1U);
+  EXPECT_EQ(played[0].stamp_ns, kSecond + 40 * kMillisecond);
+  EXPECT_EQ(played[0].merged, 2);
+}
+
+TEST(JointStatePolicy, AnInstrumentThatIsAlwaysBehindStillMovesAndHasItsWrench) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  player.setPolicy(StatePolicy::kNewestState);
+  int owed = 0;
+  for (int i = 0; i < 30; ++i) {
+    player.push(0, sample(kSecond + i * 10 * kMillisecond, 0.0));
+    if (i >= 5) player.push(1, sample(kSecond + (i - 5) * 10 * kMillisecond, 1e-4 * i));
+    for (const PlayedSample& played : drain(player)) {
+      EXPECT_EQ(played.verdict, Verdict::kAccepted);
+      owed += static_cast<int>(std::count(played.instruments.begin(), played.instruments.end(), 1));
+    }
+  }
+  EXPECT_GT(owed, 20);
+  EXPECT_GT(simulator->jointPositions(1).z(), 0.0025);
+}
+
+TEST(JointStatePolicy, NewestStateDoesNotWaitForAJaw) {
+  const auto simulator = makeSimulator(probe("a", "/a/measured_js, /a/jaw/measured_js", 0.0));
+  JointStatePlayer player(*simulator);
+  player.setPolicy(StatePolicy::kNewestState);
+  player.push(0, {kSecond, {"x"}, {0.0}});
+  EXPECT_EQ(drain(player).size(), 1U);
+  player.push(1, {kSecond + kMillisecond, {"z"}, {0.004}});
+  player.push(0, {kSecond + 10 * kMillisecond, {"x"}, {0.001}});
+  EXPECT_EQ(drain(player).size(), 1U);
+  EXPECT_EQ(simulator->jointPositions(0), Vector3(0.001, 0.0, 0.004));
+}
+
+TEST(JointStatePolicy, NewestStateLoops) {
+  const auto simulator = oneProbe();
+  JointStatePlayer player(*simulator);
+  player.setPolicy(StatePolicy::kNewestState);
+  player.push(0, sample(2 * kSecond, 0.0));
+  drain(player);
+  player.push(0, sample(2 * kSecond + 10 * kMillisecond, 0.0));  // merged into a motion that the loop cuts off
+  player.push(0, sample(kSecond, 0.001));
+  player.push(0, sample(kSecond + 10 * kMillisecond, 0.002));
+  const std::vector<PlayedSample> played = drain(player);
+  ASSERT_EQ(played.size(), 1U);
+  EXPECT_TRUE(played[0].was_reset);
+  EXPECT_EQ(played[0].merged, 2);
+  EXPECT_EQ(simulator->jointPositions(0).z(), 0.002);
+}
+
+TEST(JointStatePolicy, AnInterruptedMomentOwesNothingAndTheNextGoesOnFromThere) {
+  const auto simulator = oneProbe();
+  JointStatePlayer player(*simulator);
+  player.push(0, sample(kSecond, 0.0));
+  drain(player);
+  player.setLimits({0, [&] { return simulator->stepCount() == 4; }});
+  player.push(0, sample(kSecond + 10 * kMillisecond, -0.010));
+  std::vector<PlayedSample> played = drain(player);
+  ASSERT_EQ(played.size(), 1U);
+  EXPECT_TRUE(played[0].interrupted);
+  EXPECT_TRUE(played[0].instruments.empty());
+  EXPECT_EQ(played[0].stamp_ns, kSecond + 4 * kMillisecond);
+  EXPECT_NEAR(simulator->jointPositions(0).z(), -0.004, 1e-15);
+  player.setLimits({});
+  player.push(0, sample(kSecond + 20 * kMillisecond, -0.010));
+  played = drain(player);
+  ASSERT_EQ(played.size(), 1U);
+  EXPECT_EQ(played[0].instruments, std::vector<int>{0});
+  EXPECT_EQ(simulator->stepCount(), 20);
+  EXPECT_EQ(player.merged(), 1);
+  EXPECT_EQ(player.count(Verdict::kAccepted), 2);
+}
+
+TEST(JointStatePolicy, LimitsBoundTheStepsOfEachMoment) {
+  const auto simulator = oneProbe();
+  JointStatePlayer player(*simulator);
+  player.setLimits({3, nullptr});
+  for (int i = 0; i < 5; ++i) player.push(0, sample(kSecond + i * 10 * kMillisecond, 0.0));
+  drain(player);
+  EXPECT_EQ(simulator->stepCount(), 12);
+}
+
+/// Random topics, stamps and contents, among them all that is refused.
+TEST(JointStatePolicy, CountsAddUpToWhatWasPushed) {
+  for (const StatePolicy policy : {StatePolicy::kEveryState, StatePolicy::kNewestState}) {
+    const auto simulator =
+        makeSimulator(probe("a", "/a/measured_js, /a/jaw/measured_js", -0.015) + probe("b", "/b", 0.015));
+    JointStatePlayer player(*simulator);
+    player.setPolicy(policy);
+    std::mt19937 random(7);
+    std::int64_t pushed = 0;
+    std::int64_t now = kSecond;
+    std::int64_t moments = 0;
+    const auto sum = [&] {
+      std::int64_t all = player.merged() + player.waiting();
+      for (int v = 0; v < kVerdictCount; ++v) all += player.count(static_cast<Verdict>(v));
+      return all;
+    };
+    for (int i = 0; i < 600; ++i) {
+      const unsigned dice = random() % 40;
+      now += dice == 0 ? -200 * kMillisecond : 3 * kMillisecond;
+      if (dice == 1) player.restart();
+      JointStateSample s = sample(now - static_cast<std::int64_t>(random() % 8) * kMillisecond, 0.001);
+      if (dice == 2) s.positions[2] = std::numeric_limits<double>::quiet_NaN();
+      if (dice == 3) s.names.clear();
+      player.push(static_cast<int>(random() % 3), s);
+      ++pushed;
+      EXPECT_EQ(sum(), pushed);
+      if (random() % 4 != 0) continue;
+      while (const auto played = player.playNext()) {
+        EXPECT_EQ(sum(), pushed);
+        moments += static_cast<int>(played->verdict == Verdict::kAccepted);
+      }
+    }
+    EXPECT_GT(moments, 50);
+    for (const Verdict v : {Verdict::kLate, Verdict::kNotFinite, Verdict::kBadLength}) EXPECT_GT(player.count(v), 0);
+    EXPECT_GT(player.resets(), 0);
+    EXPECT_EQ(player.merged() > 0, policy == StatePolicy::kNewestState);
+  }
+}
+
+}  // namespace
+}  // namespace tissue_contact
