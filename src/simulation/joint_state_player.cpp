@@ -125,11 +125,11 @@ std::optional<JointStatePlayer::Moment> JointStatePlayer::newestMoment() const {
 bool JointStatePlayer::mustWait(const Moment& moment) const {
   const bool is_live = policy_ == StatePolicy::kNewestState;
   const std::int64_t bound_ns = is_live ? max_lag_ns_ : max_gap_ns_;
-  if (finished_ || waiting_ > kMaxWaiting || ageOf(moment) >= bound_ns) return false;
+  if (finished_ || waiting_ > kMaxWaiting) return false;
   return std::any_of(topic_states_.begin(), topic_states_.end(), [&](const Topic& topic) {
     if (topic.last && !(*topic.last < moment)) return false;
     if (is_live && !topic.triggers) return false;
-    return ageOf(topic.last) < 2 * bound_ns;  // one interval between stamps, and as late as is waited for
+    return ageOf(topic.last) < bound_ns;
   });
 }
 
@@ -229,7 +229,7 @@ void JointStatePlayer::takeJoints(const JointStateSample& sample, const Topic& t
 void JointStatePlayer::headForNext(const Moment& moment, const Topic& topic) {
   if (!topic.taken || topic.taken->stamp_ns >= moment.stamp_ns || topic.queue.empty()) return;
   const Queued& next = topic.queue.front();
-  if (next.moment.epoch != moment.epoch || next.moment.stamp_ns - topic.taken->stamp_ns > max_gap_ns_) return;
+  if (next.moment.epoch != moment.epoch || next.moment.stamp_ns - topic.taken->stamp_ns >= max_gap_ns_) return;
   const std::int64_t from_ns = std::max(topic.taken->stamp_ns, time_ns_.value_or(topic.taken->stamp_ns));
   const double fraction =
       static_cast<double>(moment.stamp_ns - from_ns) / static_cast<double>(next.moment.stamp_ns - from_ns);

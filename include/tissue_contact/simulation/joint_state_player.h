@@ -58,14 +58,14 @@ struct PlayedSample {
 /// which no instrument is triggered makes no moment: its joints are taken at the next one.
 ///
 /// Joints. At a moment every joint is where its topic says: in its sample of that stamp; else on the straight line to
-/// its next sample, if that is here and follows within max_gap_s; else where its newest sample before put it. In
+/// its next sample, if that is here and follows in less than max_gap_s; else where its newest sample before put it. In
 /// between instruments move linearly. A joint heard for the first time since the start or a reset is placed. Joints not
 /// heard stay at the scene's initial position. The first moment of a run places instruments without any step.
 ///
 /// Waiting. A moment waits until every other topic has delivered its stamp or a later one, so that what arrives first
-/// does not matter; but no longer than until it is max_gap_s older than the newest stamp of all, and not for a topic
-/// that is 2 max_gap_s behind that (or was never heard, 2 max_gap_s after the first stamp): it is missing or stuck.
-/// Under kNewestState both bounds are of max_lag_s, and topics that only update are not waited for.
+/// does not matter. A topic is waited for only while its newest stamp is less than max_gap_s behind the newest of all (if
+/// it was never heard: that behind the first of all): beyond that it is missing or stuck. Under kNewestState the
+/// bound is max_lag_s, and topics that only update are not waited for.
 ///
 /// Time. A stamp before its topic's last by at most max_gap_s is late: refused, nothing else changes. Farther back is a
 /// loop: the first moment of it resets the scene. So does any stamp that goes back after restart(). A topic first heard
@@ -82,8 +82,9 @@ struct PlayedSample {
 /// are at most kMaxWaiting (of update-only topics: each), provided that playNext() is called until it returns nothing
 /// after every push().
 ///
-/// Under kEveryState the result depends on the stamps and positions alone; with several topics, on condition that none
-/// arrives later than max_gap_s or pauses for longer and no loop is shorter than that. Not thread-safe.
+/// Under kEveryState the result depends on the stamps and positions alone; with several topics, on condition that what
+/// arrives keeps the newest stamps of all topics within max_gap_s of each other and no loop is shorter than that. Not
+/// thread-safe.
 class JointStatePlayer {
  public:
   /// Samples that may wait for another topic: 20 s of one 500 Hz topic. Beyond it nothing waits.

@@ -60,14 +60,14 @@ TEST(JointStateMoments, AnInstrumentSampledBetweenAnothersStampsMovesEvenly) {
     const std::int64_t b = a + 3 * kMillisecond;
     player.push(0, sample(a, height(a)));
     player.push(1, sample(b, height(b)));
-    for (const PlayedSample& played : drain(player)) {
+    while (const auto played = player.playNext()) {
       ++moments;
-      ASSERT_EQ(played.instruments.size(), 1U);
-      EXPECT_EQ(simulator->jointPositions(played.instruments[0]).z(), height(played.stamp_ns));
-      const bool other_heard = played.stamp_ns > kSecond;
-      const int other = 1 - played.instruments[0];
+      ASSERT_EQ(played->instruments.size(), 1U);
+      EXPECT_EQ(simulator->jointPositions(played->instruments[0]).z(), height(played->stamp_ns));
+      if (played->stamp_ns == kSecond) continue;  // nothing of the other yet
+      const int other = 1 - played->instruments[0];
       // Round-off alone, of joints that move a centimetre.
-      if (other_heard) EXPECT_NEAR(simulator->jointPositions(other).z(), height(played.stamp_ns), 1e-15);
+      EXPECT_NEAR(simulator->jointPositions(other).z(), height(played->stamp_ns), 1e-15);
     }
   }
   EXPECT_EQ(moments, 19);  // the last of b waits
@@ -197,8 +197,7 @@ TEST(JointStateMoments, AJawThatIsNeverHeardDelaysOnlyTheStart) {
     player.push(0, arm(kSecond + i * 10 * kMillisecond, 0.0));
     played.push_back(drain(player).size());
   }
-  // max_gap_s is 50 ms: from there on samples are played so much later, after twice that at once.
-  EXPECT_EQ(played, (std::vector<std::size_t>{0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 6, 1, 1, 1, 1}));
+  EXPECT_EQ(played, (std::vector<std::size_t>{0, 0, 0, 0, 0, 6, 1, 1, 1, 1, 1, 1, 1, 1, 1}));  // max_gap_s is 50 ms
 }
 
 TEST(JointStateMoments, AJawThatFallsSilentIsWaitedForAgainWhenItComesBack) {

@@ -49,12 +49,12 @@ TEST(JointStatePolicy, NewestStateIsEveryStateForWhoKeepsUp) {
 TEST(JointStatePolicy, NewestStatePlaysStraightToTheNewestAndMergesTheRest) {
   std::int64_t merged = 0;
   const Trace every = pressInBatches(StatePolicy::kEveryState, 1, merged);
-  const Trace newest = pressInBatches(StatePolicy::kNewestState, 7, merged);
-  ASSERT_EQ(newest.stamps.size(), 6U);  // samples 0, 7, 14, 21, 28 and the last
-  EXPECT_EQ(merged, 24);
-  EXPECT_EQ(newest.stamps[1], kSecond + 70 * kMillisecond);
-  // The press is even, so that the merged motion is the same up to round-off, and a gap of 70 ms is cut to 50 ms;
-  // the end of a quasi-static press hardly depends on it. Friction and damping leave less than a per cent.
+  const Trace newest = pressInBatches(StatePolicy::kNewestState, 4, merged);
+  ASSERT_EQ(newest.stamps.size(), 9U);  // samples 0, 4, 8 to 28, and the last
+  EXPECT_EQ(merged, 21);
+  EXPECT_EQ(newest.stamps[1], kSecond + 40 * kMillisecond);
+  // The press is even and steps are 1 ms either way, so that the merged motion is the same up to round-off; what that
+  // moves within the solver's tolerance is far less than a per cent of the force.
   const double expected = every.forces[every.forces.size() - 4];
   EXPECT_GT(std::abs(expected), 0.01);
   EXPECT_NEAR(newest.forces[newest.forces.size() - 4], expected, 0.01 * std::abs(expected));
@@ -89,17 +89,14 @@ TEST(JointStatePolicy, NewestStateWaitsForATopicNoLongerThanMaxLag) {
   player.push(0, sample(kSecond, 0.0));
   EXPECT_EQ(drain(player).size(), 1U);
   player.push(0, sample(kSecond + 10 * kMillisecond, 0.0));
-  player.push(0, sample(kSecond + 29 * kMillisecond, 0.0));
+  player.push(0, sample(kSecond + 19 * kMillisecond, 0.0));
   EXPECT_TRUE(drain(player).empty());
-  player.push(0, sample(kSecond + 30 * kMillisecond, 0.0));  // max_lag_s is 20 ms
-  std::vector<PlayedSample> played = drain(player);
+  player.push(0, sample(kSecond + 20 * kMillisecond, 0.0));  // max_lag_s
+  const std::vector<PlayedSample> played = drain(player);
   ASSERT_EQ(played.size(), 1U);
-  EXPECT_EQ(played[0].stamp_ns, kSecond + 10 * kMillisecond);
-  player.push(0, sample(kSecond + 40 * kMillisecond, 0.0));  // twice that behind: no longer waited for at all
-  played = drain(player);
-  ASSERT_EQ(played.size(), 1U);
-  EXPECT_EQ(played[0].stamp_ns, kSecond + 40 * kMillisecond);
+  EXPECT_EQ(played[0].stamp_ns, kSecond + 20 * kMillisecond);
   EXPECT_EQ(played[0].merged, 2);
+  EXPECT_EQ(played[0].instruments, std::vector<int>{0});
 }
 
 TEST(JointStatePolicy, AnInstrumentThatIsAlwaysBehindStillMovesAndHasItsWrench) {
@@ -153,15 +150,15 @@ TEST(JointStatePolicy, AnInterruptedMomentOwesNothingAndTheNextGoesOnFromThere) 
   player.push(0, sample(kSecond, 0.0));
   drain(player);
   player.setLimits({0, [&] { return simulator->stepCount() == 4; }});
-  player.push(0, sample(kSecond + 10 * kMillisecond, -0.010));
+  player.push(0, sample(kSecond + 10 * kMillisecond, -0.001));
   std::vector<PlayedSample> played = drain(player);
   ASSERT_EQ(played.size(), 1U);
   EXPECT_TRUE(played[0].interrupted);
   EXPECT_TRUE(played[0].instruments.empty());
   EXPECT_EQ(played[0].stamp_ns, kSecond + 4 * kMillisecond);
-  EXPECT_NEAR(simulator->jointPositions(0).z(), -0.004, 1e-15);
+  EXPECT_NEAR(simulator->jointPositions(0).z(), -0.0004, 1e-15);
   player.setLimits({});
-  player.push(0, sample(kSecond + 20 * kMillisecond, -0.010));
+  player.push(0, sample(kSecond + 20 * kMillisecond, -0.001));
   played = drain(player);
   ASSERT_EQ(played.size(), 1U);
   EXPECT_EQ(played[0].instruments, std::vector<int>{0});
@@ -211,7 +208,7 @@ TEST(JointStatePolicy, CountsAddUpToWhatWasPushed) {
         moments += static_cast<int>(played->verdict == Verdict::kAccepted);
       }
     }
-    EXPECT_GT(moments, 50);
+    EXPECT_GT(moments, 20);
     for (const Verdict v : {Verdict::kLate, Verdict::kNotFinite, Verdict::kBadLength}) EXPECT_GT(player.count(v), 0);
     EXPECT_GT(player.resets(), 0);
     EXPECT_EQ(player.merged() > 0, policy == StatePolicy::kNewestState);
