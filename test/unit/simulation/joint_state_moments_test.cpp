@@ -1,5 +1,7 @@
 /// @file
 /// JointStatePlayer where topics give one moment together: interpolation, and topics that only update joints.
+#include <array>
+#include <random>
 #include <utility>
 
 #include "joint_state_player_fixture.h"
@@ -261,6 +263,53 @@ TEST(JointStateMoments, AJawLoopsWithItsArm) {
   // The last moment of a loop is without the jaw's next, which the others' next loop holds: both hold it.
   EXPECT_TRUE(std::equal(trace.forces.begin(), trace.forces.begin() + 180, trace.forces.begin() + 180));
   EXPECT_TRUE(std::equal(trace.forces.begin(), trace.forces.begin() + 180, trace.forces.begin() + 360));
+}
+
+/// Three topics of different rates, played twice as a looped bag, each sample up to 35 ms late: with the longest interval
+/// between stamps, 10 ms, less than max_gap_s, 50 ms.
+TEST(JointStateMoments, NoOrderOfArrivalMattersWithinMaxGap) {
+  struct Arrival {
+    std::int64_t time_ns;
+    int topic;
+    JointStateSample sample;
+  };
+  const auto play = [](unsigned seed, std::int64_t& resets) {
+    std::mt19937 random(seed);
+    std::vector<Arrival> arrivals;
+    const std::int64_t length = 300 * kMillisecond;
+    const std::array<std::int64_t, 3> periods = {10 * kMillisecond, 4 * kMillisecond, 7 * kMillisecond};
+    for (int topic = 0; topic < 3; ++topic) {
+      std::int64_t before = 0;
+      for (std::int64_t t = topic * kMillisecond; t < 2 * length; t += periods[static_cast<std::size_t>(topic)]) {
+        const std::int64_t stamp = kSecond + t % length;
+        const std::int64_t delay = seed == 0 ? 0 : static_cast<std::int64_t>(random() % 35) * kMillisecond;
+        before = std::max(before, t + delay);
+        const double way = 1e-9 * static_cast<double>(t % length);
+        const JointStateSample s = topic == 0   ? arm(stamp, 0.01 * way)
+                                   : topic == 1 ? jaw(stamp, -0.02 * way)
+                                                : sample(stamp, -0.015 * way);
+        arrivals.push_back({before, topic, s});
+      }
+    }
+    std::stable_sort(arrivals.begin(), arrivals.end(),
+                     [](const Arrival& a, const Arrival& b) { return a.time_ns < b.time_ns; });
+    Order order;
+    for (const Arrival& arrival : arrivals) order.emplace_back(arrival.topic, arrival.sample);
+    const auto simulator =
+        makeSimulator(probe("a", "/a/measured_js, /a/jaw/measured_js", -0.015) + probe("b", "/b", 0.015));
+    JointStatePlayer player(*simulator);
+    const Trace trace = run(*simulator, player, order);
+    resets = player.resets();
+    return trace;
+  };
+  std::int64_t resets = 0;
+  const Trace reference = play(0, resets);
+  EXPECT_TRUE(reference.pressed());
+  EXPECT_EQ(resets, 1);
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    EXPECT_TRUE(play(seed, resets) == reference) << seed;
+    EXPECT_EQ(resets, 1) << seed;
+  }
 }
 
 }  // namespace
