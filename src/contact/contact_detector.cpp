@@ -1,12 +1,15 @@
 #include "tissue_contact/contact/contact_detector.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "contact/conforming_gap.h"
 #include "contact/narrow_phase.h"
+#include "contact/shape_union.h"
 #include "contact/triangle_tree.h"
 #include "tissue_contact/core/check.h"
 
@@ -21,6 +24,8 @@ struct TouchingShape {
   int link;          // index into RobotModel::links()
   Pose X_LS;
   std::unique_ptr<ShapeDistance> distance;
+  double half_extent;               ///< smallest, m
+  std::vector<std::size_t> others;  ///< the other shapes of the instrument, indices into Implementation::shapes
 };
 
 struct TouchableSurface {
@@ -38,9 +43,20 @@ std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instrum
     for (std::size_t l = 0; l < links.size(); ++l) {
       for (std::size_t s = 0; s < links[l].shapes.size(); ++s) {
         const CollisionShape& shape = links[l].shapes[s];
-        result.push_back({static_cast<int>(i), static_cast<int>(l), static_cast<int>(s), links[l].link, shape.X_LS,
-                          makeShapeDistance(shape)});
+        result.push_back({static_cast<int>(i),
+                          static_cast<int>(l),
+                          static_cast<int>(s),
+                          links[l].link,
+                          shape.X_LS,
+                          makeShapeDistance(shape),
+                          smallestHalfExtent(shape),
+                          {}});
       }
+    }
+  }
+  for (std::size_t a = 0; a < result.size(); ++a) {
+    for (std::size_t b = 0; b < result.size(); ++b) {
+      if (a != b && result[a].instrument == result[b].instrument) result[a].others.push_back(b);
     }
   }
   return result;
@@ -77,6 +93,7 @@ struct ContactDetector::Implementation {
 
   void detectPair(int tissue, const NodalVectors& positions, const TouchingShape& shape, const Pose& X_WS,
                   double margin, std::vector<Contact>& contacts);
+  void unite(const TouchingShape& shape, const std::vector<Pose>& X_WL, Contact& contact) const;
 };
 
 ContactDetector::ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
@@ -115,8 +132,10 @@ void ContactDetector::detect(const std::vector<NodalVectors>& positions, const s
     self.surfaces[tissue].refitted = false;
     self.surfaces[tissue].box = boxAround(positions[tissue]);
     for (const TouchingShape& shape : self.shapes) {
+      const std::size_t first = contacts.size();
       self.detectPair(static_cast<int>(tissue), positions[tissue], shape,
                       X_WL[shape.instrument][shape.link] * shape.X_LS, margin_m, contacts);
+      for (std::size_t c = first; c < contacts.size(); ++c) self.unite(shape, X_WL[shape.instrument], contacts[c]);
     }
   }
 }
@@ -144,6 +163,29 @@ void ContactDetector::Implementation::detectPair(int tissue, const NodalVectors&
   }
 }
 
+/// Turns a contact in the groove between this shape and another one of the instrument to the groove's filling.
+void ContactDetector::Implementation::unite(const TouchingShape& shape, const std::vector<Pose>& X_WL,
+                                            Contact& contact) const {
+  constexpr double kRadius = 0.5;  // of the smaller half extent: grooves are filled, jaws keep their outline
+  const PlacedShape own{shape.distance.get(), X_WL[shape.link] * shape.X_LS};
+  std::optional<SignedDistance> before;
+  SignedDistance united;
+  for (const std::size_t index : shape.others) {
+    const TouchingShape& other = shapes[index];
+    const double radius = kRadius * std::min(shape.half_extent, other.half_extent);
+    const PlacedShape second{other.distance.get(), X_WL[other.link] * other.X_LS};
+    if (!boxAround(*other.distance, second.X_WS, radius).contains(contact.p_WC)) continue;
+    if (!before) united = *(before = distanceAt(own, contact.p_WC));
+    SignedDistance filled;
+    if (fillGroove(own, second, contact.p_WC, radius, *before, filled) && filled.distance < united.distance) {
+      united = filled;
+    }
+  }
+  if (!before || !(united.distance < before->distance)) return;
+  contact.gap_m += united.distance - before->distance;
+  contact.R_WC = contactFrame(united.normal.normalized());
+}
+
 bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL,
                               double margin_m, Contact& contact) const {
   const ContactKey& key = contact.key;
@@ -168,6 +210,7 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
     contact.p_WC = p_W;
     contact.R_WC = contactFrame(normal_W);
     contact.gap_m = gap;
+    implementation_->unite(shape, X_WL[shape.instrument], contact);
     return true;
   }
   return false;

@@ -1,0 +1,64 @@
+#include "contact/shape_union.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tissue_contact {
+namespace {
+
+/// Coefficients (s, t) with p = s a + t b + something square to both, for unit a and b that are not parallel.
+Vector2 coefficients(const Vector3& a, const Vector3& b, const Vector3& p) {
+  const double cosine = a.dot(b);
+  const double along_a = a.dot(p);
+  const double along_b = b.dot(p);
+  return Vector2(along_a - cosine * along_b, along_b - cosine * along_a) / (1.0 - cosine * cosine);
+}
+
+/// Normals nearer to parallel than this (sine squared) do not say where two shapes meet.
+constexpr double kParallel = 1e-6;
+
+}  // namespace
+
+SignedDistance distanceAt(const PlacedShape& shape, const Vector3& p_W) {
+  const Matrix3& R_WS = shape.X_WS.linear();
+  SignedDistance here = shape.distance->at(R_WS.transpose() * (p_W - shape.X_WS.translation()));
+  here.normal = R_WS * here.normal;
+  return here;
+}
+
+bool fillGroove(const PlacedShape& first, const PlacedShape& second, const Vector3& p_W, double radius_m,
+                const SignedDistance& own, SignedDistance& filled) {
+  constexpr int kSteps = 4;            // of Newton's method; from planes it takes two to a thousandth of the radius
+  constexpr double kPlaced = 0.01;     // of the radius: the ball touches both shapes
+  constexpr double kFarthest = 4.0;    // radii: a ball that far away has slipped out of the groove
+  constexpr double kNearCentre = 0.1;  // of the radius: no direction there, and nothing near to touch
+  SignedDistance a = own;
+  SignedDistance b = distanceAt(second, p_W);
+  const double closes_after = std::max(0.0, a.distance + b.distance) / (a.normal + b.normal).norm();
+  const double radius = radius_m * std::clamp(2.0 - closes_after / radius_m, 0.0, 1.0);
+  if (!(radius > 0.0) || !(a.distance < radius && b.distance < radius)) return false;
+  Vector3 centre = p_W;
+  for (int step = 0; step < kSteps; ++step) {
+    const double cosine = a.normal.dot(b.normal);
+    if (!(1.0 - cosine * cosine > kParallel)) return false;
+    const double short_a = radius - a.distance;
+    const double short_b = radius - b.distance;
+    centre +=
+        ((short_a - cosine * short_b) * a.normal + (short_b - cosine * short_a) * b.normal) / (1.0 - cosine * cosine);
+    if (!((centre - p_W).norm() < kFarthest * radius_m)) return false;
+    a = distanceAt(first, centre);
+    b = distanceAt(second, centre);
+    if (std::max(std::abs(a.distance - radius), std::abs(b.distance - radius)) < kPlaced * radius) break;
+  }
+  const double off = std::max(std::abs(a.distance - radius), std::abs(b.distance - radius));
+  const double cosine = a.normal.dot(b.normal);
+  if (!(off < kPlaced * radius) || !(1.0 - cosine * cosine > kParallel)) return false;
+  // The groove lies between the points that the ball touches.
+  if (!(coefficients(a.normal, b.normal, centre - p_W).minCoeff() > 0.0)) return false;
+  const double to_centre = (centre - p_W).norm();
+  if (!(to_centre > kNearCentre * radius) || !(radius - to_centre < own.distance)) return false;
+  filled = {radius - to_centre, (centre - p_W) / to_centre};
+  return true;
+}
+
+}  // namespace tissue_contact
