@@ -6,6 +6,7 @@
 #include <exception>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -62,6 +63,7 @@ class Replay {
                 << "; its joints stay where the scene puts them\n";
     }
     ReplayTable table(options_.csv_file);
+    if (!options_.timing_file.empty()) timing_.emplace(options_.timing_file);
     Progress progress(bag.begin(), bag.end());
     bag.forEach([&](int topic, JointStateSample sample, ros::Time recorded) {
       player_.push(topic, std::move(sample));
@@ -75,6 +77,7 @@ class Replay {
       throw std::runtime_error("no joint state of bag '" + options_.bag_file +
                                "' was accepted; the first was refused: " + first_refusal_);
     }
+    if (timing_) timing_->commit();
     table.commit();
     summarize();
   }
@@ -109,7 +112,8 @@ class Replay {
       if (!isFinite(simulator_)) {
         throw std::runtime_error("the step ending at " + stampOf(*played) + " s gave no finite answer");
       }
-      table.add(simulator_, *played, steps > 0 ? elapsed.count() / static_cast<double>(steps) : 0.0);
+      table.add(simulator_, *played);
+      if (timing_ && steps > 0) timing_->add(played->stamp_ns, elapsed.count(), steps);
     }
   }
 
@@ -146,6 +150,7 @@ class Replay {
   Scene scene_;
   Simulator simulator_;
   JointStatePlayer player_;
+  std::optional<TimingTable> timing_;
   std::string first_refusal_;
   bool dumped_ = false;
   long jumps_ = 0;
