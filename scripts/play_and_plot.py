@@ -21,6 +21,7 @@ import numpy
 import rosbag
 import rosgraph
 import roslib.packages
+import rospkg
 import rospy
 import yaml
 from geometry_msgs.msg import WrenchStamped
@@ -205,6 +206,11 @@ def finish(pyplot, figure, axes, end, path):
 def friction_of(scene_file):
     """instrument -> [(tissue, static, kinetic)] as the scene says it; only for lines in the plot."""
     table = {}
+    if scene_file.startswith("package://"):
+        package, _, rest = scene_file[len("package://"):].partition("/")
+        scene_file = os.path.join(rospkg.RosPack().get_path(package), rest)
+    elif scene_file.startswith("file://"):
+        scene_file = scene_file[len("file://"):]
     with open(scene_file, encoding="utf-8") as stream:
         for pair in (yaml.safe_load(stream) or {}).get("friction") or []:
             table.setdefault(pair["instrument"], []).append((pair["tissue"], pair["static"], pair["kinetic"]))

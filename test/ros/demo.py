@@ -89,7 +89,8 @@ class Demo(unittest.TestCase):
         harness.write_bag(bag, harness.press(20))
         master = rosgraph.Master(rospy.get_name())
         before = (master.getParam("/run_id"), sorted(rospy.get_param_names()), master.getSystemState())
-        code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + harness.SCENE,
+        code, output = self.launch("psm_bag.launch", "bag:=" + bag,
+                                   "scene:=package://tissue_contact/test/ros/press.yaml",
                                    "output:=" + os.path.join(self.directory, "plots"))
         self.assertEqual(code, 0, output)
         self.assertEqual((master.getParam("/run_id"), sorted(rospy.get_param_names()), master.getSystemState()), before)

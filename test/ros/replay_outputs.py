@@ -65,6 +65,19 @@ class ReplayOutputs(unittest.TestCase):
         self.assertEqual(code, 1, errors)
         self.assertIn("no_such_folder", errors)
 
+    def test_scene_of_a_package(self):
+        bag = os.path.join(harness.PACKAGE, "config", "press_drag.bag")
+        for name, scene in [("path.csv", os.path.join(harness.PACKAGE, "config", "press_drag.yaml")),
+                            ("uri.csv", "package://tissue_contact/config/press_drag.yaml")]:
+            code, errors = harness.replay(scene, bag, self.path(name))
+            self.assertEqual(code, 0, errors)
+        self.assertEqual(self.read("path.csv"), self.read("uri.csv"))
+
+    def test_unknown_package_is_one_message(self):
+        code, errors = harness.replay("package://no_such_package/scene.yaml", self.bag, self.path("out.csv"))
+        self.assertEqual(code, 1, errors)
+        self.assertRegex(errors, "^tissue_contact_replay: [^\n]*no_such_package[^\n]*\n$")
+
 
 if __name__ == "__main__":
     rospy.init_node("replay_outputs")
