@@ -2,6 +2,7 @@
 """Offline replay: what it writes and says when all is well."""
 import csv
 import os
+import re
 import shutil
 import sys
 import tempfile
@@ -77,6 +78,20 @@ class ReplayOutputs(unittest.TestCase):
         code, errors = harness.replay("package://no_such_package/scene.yaml", self.bag, self.path("out.csv"))
         self.assertEqual(code, 1, errors)
         self.assertRegex(errors, "^tissue_contact_replay: [^\n]*no_such_package[^\n]*\n$")
+
+    def test_a_bag_that_never_touches_says_how_near_it_came(self):
+        # press.yaml: the ball's lowest point is 1 mm above the block when all joints are 0; sample 20 is the nearest.
+        samples = [(stamp, (0.0, 0.0, 0.002 + 0.0001 * abs(i - 20))) for i, (stamp, _) in enumerate(self.samples)]
+        harness.write_bag(self.bag, samples)
+        errors = self.replay("out.csv")
+        found = re.search("no instrument touched tissue; closest approach ([^ ]+) m at ([^ ]+) s: 'probe', link 'tip', "
+                          "shape 1 of 2, to tissue 'block'", errors)
+        self.assertTrue(found, errors)
+        self.assertAlmostEqual(float(found.group(1)), 0.003, delta=1e-8)
+        self.assertEqual(found.group(2), harness.stamp_text(samples[20][0]))
+
+    def test_a_bag_that_touches_says_nothing_of_it(self):
+        self.assertNotIn("approach", self.replay("out.csv"))
 
 
 if __name__ == "__main__":
