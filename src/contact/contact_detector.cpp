@@ -179,17 +179,19 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
 double ContactDetector::Implementation::surfaceDistance(TouchableSurface& surface, const NodalVectors& positions,
                                                         const TouchingShape& shape, const Pose& X_WS, double bound) {
   const ShapeDistance& distance = *shape.distance;
-  const Matrix3 R_SW = X_WS.linear().transpose();
-  const auto inShape = [&](int node) -> Vector3 { return R_SW * (positions.col(node) - X_WS.translation()); };
-  const std::vector<Triangle>& triangles = surface.narrow_phase.triangles();
-  // Any point of the surface bounds the distance, and so the part of the tree that is looked through.
-  double nearest = std::min(bound, distance.at(inShape(triangles.front()[0])).distance);
   if (!surface.refitted) surface.tree.refit(positions);
   surface.refitted = true;
+  // The surface point nearest to the middle of the shape bounds the distance from both sides.
+  const NearestOnTriangles middle = surface.tree.nearest(X_WS * distance.boxCentre());
+  const double radius = distance.halfExtents(Matrix3::Identity()).norm();
+  if (!(std::sqrt(middle.distance_squared) - radius < bound)) return bound;
+  const Matrix3 R_SW = X_WS.linear().transpose();
+  double nearest = std::min(bound, distance.at(R_SW * (middle.point - X_WS.translation())).distance);
   surface.tree.overlapping(boxAround(distance, X_WS, std::max(nearest, 0.0)), candidates);
+  const auto inShape = [&](int node) -> Vector3 { return R_SW * (positions.col(node) - X_WS.translation()); };
   ClosestPoint closest;
   for (const int triangle : candidates) {
-    const Triangle& nodes = triangles[triangle];
+    const Triangle& nodes = surface.narrow_phase.triangles()[triangle];
     const TrianglePoints points(inShape(nodes[0]), inShape(nodes[1]), inShape(nodes[2]));
     if (distance.closest(points, nearest, closest)) nearest = std::min(nearest, closest.distance);
   }
