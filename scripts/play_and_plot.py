@@ -16,6 +16,7 @@ import subprocess
 import sys
 import threading
 import time
+from xmlrpc.client import Error, ServerProxy
 
 import numpy
 import rosbag
@@ -31,6 +32,7 @@ from tissue_contact.msg import ContactArray, ContactPoint, TissueMesh, TissueTop
 
 QUIET_S = 10.0  # so long after the last joint state the node has either answered or never will
 RVIZ_START_S = 30.0
+LAUNCH_END_S = 10.0  # roslaunch ends its nodes within this, us among them
 
 
 def fail(message):
@@ -256,6 +258,24 @@ def wait_quietly(condition, limit_s):
     return condition()
 
 
+def end_launch():
+    """Ends the roslaunch that started us as Ctrl-C would. The launch file's nodes are `required`, so that it ends when one
+    fails; were we just to return, it would call our good end a death, in red."""
+    try:
+        uris = rosgraph.Master(rospy.get_name()).getParam("/roslaunch/uris").values()
+    except rosgraph.MasterException:
+        return  # started by hand
+    for uri in uris:
+        try:
+            code, _, pid = ServerProxy(uri).get_pid()
+        except (OSError, Error):
+            continue  # a roslaunch that is gone
+        if code == 1 and pid == os.getppid():
+            os.kill(pid, signal.SIGINT)
+            wait_quietly(rospy.is_shutdown, LAUNCH_END_S)
+            return
+
+
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--bag", required=True)
@@ -302,6 +322,8 @@ def main():
         print("repeating the bag until RViz is closed", flush=True)
         start_player(arguments, topics, loop=True)
         watch(recorder, lambda: not graph.is_shown(), talk=False)
+    if not rospy.is_shutdown():
+        end_launch()
 
 
 if __name__ == "__main__":
