@@ -16,11 +16,13 @@ import subprocess
 import sys
 import threading
 import time
+from xmlrpc.client import Error, ServerProxy
 
 import numpy
 import rosbag
 import rosgraph
 import roslib.packages
+import rospkg
 import rospy
 import yaml
 from geometry_msgs.msg import WrenchStamped
@@ -30,6 +32,7 @@ from tissue_contact.msg import ContactArray, ContactPoint, TissueMesh, TissueTop
 
 QUIET_S = 10.0  # so long after the last joint state the node has either answered or never will
 RVIZ_START_S = 30.0
+LAUNCH_END_S = 10.0  # roslaunch ends its nodes within this, us among them
 
 
 def fail(message):
@@ -205,6 +208,11 @@ def finish(pyplot, figure, axes, end, path):
 def friction_of(scene_file):
     """instrument -> [(tissue, static, kinetic)] as the scene says it; only for lines in the plot."""
     table = {}
+    if scene_file.startswith("package://"):
+        package, _, rest = scene_file[len("package://"):].partition("/")
+        scene_file = os.path.join(rospkg.RosPack().get_path(package), rest)
+    elif scene_file.startswith("file://"):
+        scene_file = scene_file[len("file://"):]
     with open(scene_file, encoding="utf-8") as stream:
         for pair in (yaml.safe_load(stream) or {}).get("friction") or []:
             table.setdefault(pair["instrument"], []).append((pair["tissue"], pair["static"], pair["kinetic"]))
@@ -248,6 +256,24 @@ def wait_quietly(condition, limit_s):
     while not rospy.is_shutdown() and not condition() and time.monotonic() < end:
         rospy.rostime.wallsleep(0.05)
     return condition()
+
+
+def end_launch():
+    """Ends the roslaunch that started us as Ctrl-C would. The launch file's nodes are `required`, so that it ends when one
+    fails; were we just to return, it would call our good end a death, in red."""
+    try:
+        uris = rosgraph.Master(rospy.get_name()).getParam("/roslaunch/uris").values()
+    except rosgraph.MasterException:
+        return  # started by hand
+    for uri in uris:
+        try:
+            code, _, pid = ServerProxy(uri).get_pid()
+        except (OSError, Error):
+            continue  # a roslaunch that is gone
+        if code == 1 and pid == os.getppid():
+            os.kill(pid, signal.SIGINT)
+            wait_quietly(rospy.is_shutdown, LAUNCH_END_S)
+            return
 
 
 def parse_arguments():
@@ -296,6 +322,8 @@ def main():
         print("repeating the bag until RViz is closed", flush=True)
         start_player(arguments, topics, loop=True)
         watch(recorder, lambda: not graph.is_shown(), talk=False)
+    if not rospy.is_shutdown():
+        end_launch()
 
 
 if __name__ == "__main__":

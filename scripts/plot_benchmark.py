@@ -11,6 +11,9 @@ import math
 import os
 import sys
 
+if sys.argv[1:2] in (["--help"], ["-h"]):
+    print(__doc__)
+    sys.exit(0)
 try:
     import matplotlib
 except ImportError:

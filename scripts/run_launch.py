@@ -41,6 +41,9 @@ def run(arguments):
 
 
 if __name__ == "__main__":
+    if sys.argv[1:2] in (["--help"], ["-h"]):
+        print(__doc__)
+        sys.exit(0)
     if len(sys.argv) < 2 or not sys.argv[1].endswith(".launch"):
         sys.exit(__doc__)
     sys.exit(run(sys.argv[1:]))

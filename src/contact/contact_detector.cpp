@@ -94,6 +94,8 @@ struct ContactDetector::Implementation {
   void detectPair(int tissue, const NodalVectors& positions, const TouchingShape& shape, const Pose& X_WS,
                   double margin, std::vector<Contact>& contacts);
   void unite(const TouchingShape& shape, const std::vector<Pose>& X_WL, Contact& contact) const;
+  double surfaceDistance(TouchableSurface& surface, const NodalVectors& positions, const TouchingShape& shape,
+                         const Pose& X_WS, double bound);
 };
 
 ContactDetector::ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
@@ -214,6 +216,49 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
     return true;
   }
   return false;
+}
+
+/// Least signed distance of the shape over the surface's triangles, or `bound` if that is less.
+double ContactDetector::Implementation::surfaceDistance(TouchableSurface& surface, const NodalVectors& positions,
+                                                        const TouchingShape& shape, const Pose& X_WS, double bound) {
+  const ShapeDistance& distance = *shape.distance;
+  if (!surface.refitted) surface.tree.refit(positions);
+  surface.refitted = true;
+  // The surface point nearest to the middle of the shape bounds the distance from both sides.
+  const NearestOnTriangles middle = surface.tree.nearest(X_WS * distance.boxCentre());
+  const double radius = distance.halfExtents(Matrix3::Identity()).norm();
+  if (!(std::sqrt(middle.distance_squared) - radius < bound)) return bound;
+  const Matrix3 R_SW = X_WS.linear().transpose();
+  double nearest = std::min(bound, distance.at(R_SW * (middle.point - X_WS.translation())).distance);
+  surface.tree.overlapping(boxAround(distance, X_WS, std::max(nearest, 0.0)), candidates);
+  const auto inShape = [&](int node) -> Vector3 { return R_SW * (positions.col(node) - X_WS.translation()); };
+  ClosestPoint closest;
+  for (const int triangle : candidates) {
+    const Triangle& nodes = surface.narrow_phase.triangles()[triangle];
+    const TrianglePoints points(inShape(nodes[0]), inShape(nodes[1]), inShape(nodes[2]));
+    if (distance.closest(points, nearest, closest)) nearest = std::min(nearest, closest.distance);
+  }
+  return nearest;
+}
+
+void ContactDetector::lowerClosestApproach(const std::vector<NodalVectors>& positions,
+                                           const std::vector<std::vector<Pose>>& X_WL, Approach& closest) {
+  Implementation& self = *implementation_;
+  for (std::size_t tissue = 0; tissue < positions.size(); ++tissue) {
+    TouchableSurface& surface = self.surfaces.at(tissue);
+    if (surface.narrow_phase.triangles().empty()) continue;
+    surface.refitted = false;
+    const Eigen::AlignedBox3d box = boxAround(positions[tissue]);
+    const double half_thickness = surface.narrow_phase.halfThickness();
+    for (const TouchingShape& shape : self.shapes) {
+      const Pose X_WS = X_WL.at(shape.instrument).at(shape.link) * shape.X_LS;
+      const double bound = closest.distance_m + half_thickness;
+      if (!(box.exteriorDistance(boxAround(*shape.distance, X_WS, 0.0)) < bound)) continue;
+      const double nearest = self.surfaceDistance(surface, positions[tissue], shape, X_WS, bound);
+      if (!(nearest < bound)) continue;
+      closest = {static_cast<int>(tissue), shape.instrument, shape.contact_link, shape.shape, nearest - half_thickness};
+    }
+  }
 }
 
 }  // namespace tissue_contact

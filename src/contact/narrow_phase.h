@@ -51,6 +51,7 @@ class NarrowPhase {
                     const std::vector<int>& candidates, double margin, std::vector<ShapeContact>& contacts);
 
   double halfThickness() const { return half_thickness_; }
+  const std::vector<Triangle>& triangles() const { return topology_.triangles(); }
 
   /// Whether a surface triangle at the feature faces a shape whose contact normal is `normal_W` (unit).
   bool faces(const SurfaceFeature& feature, const Vector3& normal_W, const NodalVectors& positions) const;

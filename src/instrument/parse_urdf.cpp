@@ -226,10 +226,25 @@ class UrdfReader {
   std::map<std::string, Drive> drives_;
 };
 
+/// Whether a xacro element stands outside comments, which xacro copies to what it expands.
+bool needsXacro(const std::string& xml) {
+  std::size_t at = 0;
+  while ((at = xml.find('<', at)) != std::string::npos) {
+    if (xml.compare(at, 7, "<xacro:") == 0) return true;
+    at = xml.compare(at, 4, "<!--") == 0 ? xml.find("-->", at) : at + 1;
+    if (at == std::string::npos) break;
+  }
+  return false;
+}
+
 }  // namespace
 
 RobotModel parseUrdf(const std::string& xml, const std::string& source, const std::string& base_directory,
                      const PackagePath& package_path) {
+  if (needsXacro(xml)) {
+    throw std::invalid_argument(source + ": is a xacro file, not a URDF; expand it first: xacro FILE.urdf.xacro > " +
+                                "FILE.urdf, or load robot_description with xacro's output and name no urdf");
+  }
   const urdf::ModelInterfaceSharedPtr urdf = parseWithUrdfdom(xml, source);
   return UrdfReader(*urdf, source, base_directory, package_path).read();
 }

@@ -6,10 +6,13 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "tissue_contact/core/stand_in_file.h"
+
 namespace tissue_contact {
 
 void requireRegularFile(const std::string& file, const std::string& what, std::uintmax_t max_bytes) {
   const std::string start = what + " '" + file + "' ";
+  if (const std::string problem = standInProblem(file); !problem.empty()) throw std::invalid_argument(start + problem);
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
   if (status.type() == std::filesystem::file_type::not_found) throw std::invalid_argument(start + "does not exist");

@@ -2,9 +2,9 @@
 /// Room `ros`: see environment.h.
 #include "tissue_contact/ros/environment.h"
 
-#include <ros/package.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
+#include <rospack/rospack.h>
 #include <tf2/buffer_core.h>
 #include <tf2/exceptions.h>
 #include <tf2_msgs/TFMessage.h>
@@ -18,6 +18,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/ros/conversions.h"
@@ -101,7 +102,16 @@ Pose frameInBag(const std::string& frame, const std::string& world_frame, const 
 
 }  // namespace
 
-std::string packagePath(const std::string& package) { return ros::package::getPath(package); }
+std::string packagePath(const std::string& package) {
+  // Not ros::package::getPath(): it prints two lines of its own before the caller's message says what is wrong.
+  rospack::Rospack rospack;
+  rospack.setQuiet(true);
+  std::vector<std::string> search_path;
+  rospack.getSearchPathFromEnv(search_path);
+  rospack.crawl(search_path, false);
+  std::string path;
+  return rospack.find(package, path) ? path : std::string();
+}
 
 SceneEnvironment nodeEnvironment(const ros::NodeHandle& private_node, const std::string& world_frame) {
   double timeout_s = 10.0;

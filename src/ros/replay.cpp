@@ -2,10 +2,13 @@
 /// Room `ros`: see replay.h.
 #include "tissue_contact/ros/replay.h"
 
+#include <unistd.h>
+
 #include <chrono>
 #include <exception>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -14,6 +17,7 @@
 #include "tissue_contact/ros/conversions.h"
 #include "tissue_contact/ros/environment.h"
 #include "tissue_contact/ros/joint_state_bag.h"
+#include "tissue_contact/ros/replay_progress.h"
 #include "tissue_contact/ros/replay_table.h"
 #include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/simulation/joint_state_player.h"
@@ -25,24 +29,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Says every few seconds how far a long replay has come, in whole lines that also read well in a log file.
-class Progress {
- public:
-  Progress(ros::Time begin, ros::Time end) : begin_(begin), length_s_((end - begin).toSec()) {}
-
-  void at(ros::Time time) {
-    constexpr std::chrono::seconds kPeriod(3);
-    if (Clock::now() - last_ < kPeriod || !(length_s_ > 0.0)) return;
-    last_ = Clock::now();
-    const auto percent = static_cast<int>(100.0 * (time - begin_).toSec() / length_s_);
-    std::cerr << "tissue_contact_replay: " << percent << " % of " << length_s_ << " s\n";
-  }
-
- private:
-  ros::Time begin_;
-  double length_s_;
-  Clock::time_point last_ = Clock::now();
-};
+constexpr const char* kPrefix = "tissue_contact_replay: ";
 
 class Replay {
  public:
@@ -51,38 +38,56 @@ class Replay {
         scene_(loadScene(options.scene_file, packagePath)),
         simulator_(scene_, bagEnvironment(options.bag_file, options.urdf_file, scene_.world_frame)),
         player_(simulator_) {
-    for (const std::string& line : simulator_.advice()) std::cerr << "tissue_contact_replay: advisor: " << line << "\n";
-    if (options_.dump_step > 0) simulator_.setStepObserver([this] { dumpIfWanted(); });
+    for (const std::string& line : simulator_.advice()) std::cerr << kPrefix << "advisor: " << line << "\n";
+    simulator_.setStepObserver([this] { stepTaken(); });
   }
 
   void run() {
     const JointStateBag bag(options_.bag_file, player_.topics());
     if (!bag.missingTopics().empty()) {
-      std::cerr << "tissue_contact_replay: warning: the bag has no message on " << joinedNames(bag.missingTopics())
+      std::cerr << kPrefix << "warning: the bag has no message on " << joinedNames(bag.missingTopics())
                 << "; its joints stay where the scene puts them\n";
     }
     ReplayTable table(options_.csv_file);
-    Progress progress(bag.begin(), bag.end());
+    if (!options_.timing_file.empty()) timing_.emplace(options_.timing_file);
+    start_ = Clock::now();
+    length_s_ = (bag.end() - bag.begin()).toSec();
+    progress_.emplace(std::cerr, isatty(STDERR_FILENO) == 1, kPrefix, length_s_);
     bag.forEach([&](int topic, JointStateSample sample, ros::Time recorded) {
+      played_s_ = (recorded - bag.begin()).toSec();
       player_.push(topic, std::move(sample));
       playAll(table);
-      progress.at(recorded);
     });
     player_.finish();
     playAll(table);
+    progress_.reset();
     requireDumped();
     if (player_.count(Verdict::kAccepted) == 0) {
       throw std::runtime_error("no joint state of bag '" + options_.bag_file +
                                "' was accepted; the first was refused: " + first_refusal_);
     }
+    if (timing_) timing_->commit();
     table.commit();
     summarize();
   }
 
  private:
+  double wallTime() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+  /// After every implicit step, since one interval may take long.
+  void stepTaken() {
+    dumpIfWanted();
+    if (!touched_) {
+      for (const SolvedContact& contact : simulator_.contacts()) {
+        touched_ |= contact.contact.key.instrument >= 0 && contact.state != ContactState::kOpen;
+      }
+    }
+    if (progress_) progress_->at(played_s_, wallTime());
+  }
+
   /// Writes the contact problem of the step asked for, the first time it is taken.
   void dumpIfWanted() {
-    if (dumped_ || simulator_.stepCount() != options_.dump_step) return;
+    if (options_.dump_step == 0 || dumped_ || simulator_.stepCount() != options_.dump_step) return;
     std::ofstream stream(options_.dump_file);
     writeContactProblem(stream, makeDelassusProblem(simulator_.lastProblem()), simulator_.lastSolution().states);
     stream.flush();
@@ -107,10 +112,18 @@ class Replay {
       note(*played, steps);
       if (played->verdict != Verdict::kAccepted) continue;
       if (!isFinite(simulator_)) {
-        throw std::runtime_error("the step ending at " + stampOf(*played) + " s gave no finite answer");
+        throw std::runtime_error("the step ending at " + stampText(played->stamp_ns) + " s gave no finite answer");
       }
-      table.add(simulator_, *played, steps > 0 ? elapsed.count() / static_cast<double>(steps) : 0.0);
+      if (!touched_) noteApproach(played->stamp_ns);
+      table.add(simulator_, *played);
+      if (timing_ && steps > 0) timing_->add(played->stamp_ns, elapsed.count(), steps);
     }
+  }
+
+  void noteApproach(std::int64_t stamp_ns) {
+    const double before = approach_.distance_m;
+    simulator_.lowerClosestApproach(approach_);
+    if (approach_.distance_m < before) approach_ns_ = stamp_ns;
   }
 
   void note(const PlayedSample& played, long steps) {
@@ -124,28 +137,54 @@ class Replay {
     not_converged_ += static_cast<long>(report.stop != StopReason::kTolerance);
   }
 
-  static std::string stampOf(const PlayedSample& played) {
+  static std::string stampText(std::int64_t stamp_ns) {
     std::ostringstream text;
-    text << toTime(played.stamp_ns);
+    text << toTime(stamp_ns);
     return text.str();
   }
 
   void summarize() const {
-    std::cerr << "tissue_contact_replay: " << player_.count(Verdict::kAccepted) << " joint states accepted";
+    std::cerr << kPrefix << player_.count(Verdict::kAccepted) << " joint states accepted";
     for (int v = 1; v < kVerdictCount; ++v) {
       const auto verdict = static_cast<Verdict>(v);
       if (player_.count(verdict) > 0) std::cerr << ", " << player_.count(verdict) << " " << verdictText(verdict);
     }
     std::cerr << "; " << player_.resets() << " resets, " << player_.gaps() << " gaps, " << jumps_ << " jumps, "
               << not_converged_ << " intervals not converged, " << discarded_ << " without a finite answer -> "
-              << options_.csv_file << "\n";
-    if (!first_refusal_.empty()) std::cerr << "tissue_contact_replay: first refusal: " << first_refusal_ << "\n";
+              << options_.csv_file << "\n"
+              << kPrefix << length_s_ << " s of recording in " << wallTime() << " s\n";
+    if (!first_refusal_.empty()) std::cerr << kPrefix << "first refusal: " << first_refusal_ << "\n";
+    if (!touched_) summarizeApproach();
+  }
+
+  /// Most often a pose in the scene is wrong, so say how far and between what.
+  void summarizeApproach() const {
+    std::cerr << kPrefix << "no instrument touched tissue";
+    if (approach_.instrument >= 0) {
+      const Instrument& instrument = simulator_.instruments()[static_cast<std::size_t>(approach_.instrument)];
+      const ContactLink& link = instrument.contactLinks()[static_cast<std::size_t>(approach_.link)];
+      std::cerr << "; closest approach " << approach_.distance_m << " m at " << stampText(approach_ns_) << " s: '"
+                << instrument.name() << "', link '"
+                << instrument.model().links()[static_cast<std::size_t>(link.link)].name << "', shape "
+                << approach_.shape + 1 << " of " << link.shapes.size() << ", to tissue '"
+                << scene_.tissues[static_cast<std::size_t>(approach_.tissue)].name
+                << "'; check base_pose and the tissue's pose";
+    }
+    std::cerr << "\n";
   }
 
   ReplayOptions options_;
   Scene scene_;
   Simulator simulator_;
   JointStatePlayer player_;
+  std::optional<TimingTable> timing_;
+  std::optional<ReplayProgress> progress_;
+  Clock::time_point start_;
+  double length_s_ = 0.0;  ///< of the recording
+  double played_s_ = 0.0;  ///< how much of it is played
+  bool touched_ = false;   ///< an instrument has, since the start
+  Approach approach_;      ///< until then
+  std::int64_t approach_ns_ = 0;
   std::string first_refusal_;
   bool dumped_ = false;
   long jumps_ = 0;
@@ -167,7 +206,7 @@ int runReplay(int argc, char** argv) {
     }
     return 0;
   } catch (const std::exception& error) {
-    std::cerr << "tissue_contact_replay: " << error.what() << "\n";
+    std::cerr << kPrefix << error.what() << "\n";
     return 1;
   }
 }

@@ -24,16 +24,17 @@ long stepNumber(const std::string& text) {
 
 std::string replayUsage() {
   return "usage: tissue_contact_replay --scene SCENE.yaml --bag IN.bag --csv OUT.csv [--urdf ROBOT.urdf]\n"
-         "         [--dump-step N --dump-file PROBLEM.txt]\n"
+         "         [--timing TIMES.csv] [--dump-step N --dump-file PROBLEM.txt]\n"
          "\n"
          "Plays the joint states of a bag through a scene, with the stepping of tissue_contact_node but without a\n"
-         "roscore, and writes one CSV line per accepted joint state and instrument.\n"
+         "roscore, and writes one CSV line per accepted joint state and instrument: the same bytes every time.\n"
          "\n"
          "  --scene FILE  the scene (doc/scene.md)\n"
          "  --bag FILE    a ROS bag with the scene's joint-state topics; tf frames are taken from its /tf_static and "
          "/tf\n"
          "  --csv FILE    the result; replaced when the replay is complete, untouched when it fails\n"
          "  --urdf FILE   text for the robot_description parameter that the scene takes its URDF from\n"
+         "  --timing FILE   wall times of this run, one line per simulated interval; replaced or untouched as the CSV\n"
          "  --dump-step N   with --dump-file: write the contact problem of implicit step N (from 1), for "
          "tissue_contact_solve\n"
          "  --help        this text\n"
@@ -44,9 +45,10 @@ std::string replayUsage() {
 ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
   ReplayOptions options;
   std::string dump_step;
-  const std::map<std::string, std::string*> keys = {
-      {"--scene", &options.scene_file}, {"--bag", &options.bag_file}, {"--csv", &options.csv_file},
-      {"--urdf", &options.urdf_file},   {"--dump-step", &dump_step},  {"--dump-file", &options.dump_file}};
+  const std::map<std::string, std::string*> keys = {{"--scene", &options.scene_file},   {"--bag", &options.bag_file},
+                                                    {"--csv", &options.csv_file},       {"--urdf", &options.urdf_file},
+                                                    {"--timing", &options.timing_file}, {"--dump-step", &dump_step},
+                                                    {"--dump-file", &options.dump_file}};
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (arguments[i] == "--help" || arguments[i] == "-h") {
       options.help = true;
@@ -65,6 +67,9 @@ ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
   requireGiven(options.scene_file, "--scene");
   requireGiven(options.bag_file, "--bag");
   requireGiven(options.csv_file, "--csv");
+  if (options.timing_file == options.csv_file) {
+    throw std::invalid_argument("--timing and --csv name the same file '" + options.csv_file + "'; give two");
+  }
   if (!dump_step.empty() || !options.dump_file.empty()) {
     requireGiven(dump_step, "--dump-step");
     requireGiven(options.dump_file, "--dump-file");

@@ -114,7 +114,10 @@ Scene parseScene(const std::string& yaml, const std::string& file, const Package
 }
 
 Scene loadScene(const std::string& file, const PackagePath& package_path) {
-  return parseScene(readText(file), file, package_path);
+  // Only URIs: messages and Scene::file keep a plain path as it was given.
+  const bool is_uri = file.find("://") != std::string::npos;
+  const std::string path = is_uri ? resolvePath(file, "", package_path) : file;
+  return parseScene(readText(path), path, package_path);
 }
 
 }  // namespace tissue_contact

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "scene_sections.h"
+#include "tissue_contact/core/stand_in_file.h"
 
 namespace tissue_contact {
 namespace {
@@ -96,7 +97,16 @@ std::string parseFile(const YamlCursor& cursor, const PathContext& paths, const 
   std::string allowed;
   for (const std::string& extension : extensions) allowed += (allowed.empty() ? "" : ", ") + extension;
   if (std::find(extensions.begin(), extensions.end(), lowerExtension(file)) == extensions.end()) {
+    if (lowerExtension(file) == ".xacro") {
+      const std::string urdf = uri.substr(0, uri.size() - std::string(".xacro").size());
+      cursor.fail("file " + inQuotes(uri) + " is a xacro file; expand it first: xacro " + uri + " > " + urdf +
+                  (lowerExtension(urdf) == ".urdf" ? "" : ".urdf") +
+                  ", or name none and load its output into the parameter robot_description");
+    }
     cursor.fail("file " + inQuotes(uri) + " has none of the allowed endings: " + allowed);
+  }
+  if (const std::string problem = standInProblem(file); !problem.empty()) {
+    cursor.fail("file \"" + file + "\" " + problem);
   }
   std::error_code error;
   if (!fs::exists(file, error)) {

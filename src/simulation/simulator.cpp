@@ -202,6 +202,9 @@ const NodalVectors& Simulator::velocities(int tissue) const { return implementat
 const std::vector<SolvedContact>& Simulator::contacts() const { return implementation_->solved; }
 const StepReport& Simulator::report() const { return implementation_->report; }
 long Simulator::stepCount() const { return implementation_->step_count; }
+void Simulator::lowerClosestApproach(Approach& closest) {
+  implementation_->detector.lowerClosestApproach(implementation_->x, implementation_->motion.startPoses(), closest);
+}
 const ContactProblem& Simulator::lastProblem() const { return implementation_->problem; }
 const ContactSolution& Simulator::lastSolution() const { return implementation_->solution; }
 void Simulator::setStepObserver(std::function<void()> observer) { implementation_->observer = std::move(observer); }

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "tissue_contact/core/check.h"
+#include "tissue_contact/core/stand_in_file.h"
 #include "tissue_contact/tissue/tet_mesh.h"
 
 namespace tissue_contact {
@@ -25,6 +26,9 @@ namespace {
 constexpr std::uintmax_t kMaximumFileBytes = std::uintmax_t{1} << 30U;
 
 std::string readWholeFile(const std::string& file) {
+  if (const std::string problem = standInProblem(file); !problem.empty()) {
+    throw std::invalid_argument("mesh file '" + file + "' " + problem);
+  }
   std::error_code error;
   // Anything else (a directory, a pipe, /dev/zero) might block or never end.
   if (!std::filesystem::is_regular_file(file, error)) {

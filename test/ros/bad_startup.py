@@ -46,6 +46,7 @@ class BadStartup(unittest.TestCase):
             node.output.seek(0)
             output = node.output.read()
         self.assertEqual(output.count("[FATAL]"), 1, output)
+        self.assertNotIn("rospack", output)  # says nothing that the message does not
         for word in words:
             self.assertIn(word, output)
         publishers = rosgraph.Master("/test").getSystemState()[0]

@@ -44,6 +44,7 @@ class Demo(unittest.TestCase):
         plots = os.path.join(self.directory, "plots")
         code, output = self.launch("demo.launch", "output:=" + plots)
         self.assertEqual(code, 0, output)
+        self.assertNotIn("has died", output)  # it ended well, so it must not read like a failure
         self.assert_pictures(["probe_force.png", "probe_friction.png"])
         self.assertIn("wrote " + plots, output)
         lines = re.findall(r"^t +([\d.]+) s  force probe ([\d.]+) N  contacts (\d+) static (\d+) kinetic  "
@@ -51,6 +52,15 @@ class Demo(unittest.TestCase):
         self.assertGreaterEqual(len(lines), 2, output)
         self.assertGreater(max(float(force) for _, force, _, _, _ in lines), 0.05, output)
         self.assertGreater(max(float(depth) for _, _, _, _, depth in lines), 1.0, output)
+
+    def test_bare_roslaunch_ends_well_too(self):
+        plots = os.path.join(self.directory, "plots")
+        done = subprocess.run(["roslaunch", "tissue_contact", "demo.launch", "rviz:=false", "output:=" + plots, "rate:=3"],
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              universal_newlines=True, timeout=2 * harness.DEADLINE_S, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertNotIn("has died", done.stdout)
+        self.assert_pictures(["probe_force.png", "probe_friction.png"])
 
     def test_psm_launch_takes_any_bag_and_scene(self):
         bag = os.path.join(self.directory, "my press.bag")  # with blanks, as people name their files
@@ -60,6 +70,42 @@ class Demo(unittest.TestCase):
         code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + scene, "output:=" + plots)
         self.assertEqual(code, 0, output)
         self.assert_pictures(["probe_force.png", "probe_friction.png"])
+
+    def scene_without_urdf(self):
+        with open(harness.SCENE, encoding="utf-8") as stream:
+            text = stream.read()
+        line = "    urdf: package://tissue_contact/urdf/probe.urdf\n"
+        self.assertEqual(text.count(line), 1)
+        path = os.path.join(self.directory, "no urdf.yaml")
+        with open(path, "w", encoding="utf-8") as stream:
+            stream.write(text.replace(line, ""))
+        return path
+
+    def test_model_goes_to_a_scene_that_names_none(self):
+        bag = os.path.join(self.directory, "press.bag")
+        harness.write_bag(bag, harness.press(20))
+        code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + self.scene_without_urdf(),
+                                   "model:=package://tissue_contact/urdf/probe.urdf",
+                                   "output:=" + os.path.join(self.directory, "plots"))
+        self.assertEqual(code, 0, output)
+        self.assert_pictures(["probe_force.png", "probe_friction.png"])
+
+    def test_model_that_cannot_be_used_is_said_without_a_trace(self):
+        bag = os.path.join(self.directory, "press.bag")
+        harness.write_bag(bag, harness.press(5))
+        xacro = os.path.join(self.directory, "robot.urdf.xacro")
+        with open(xacro, "w", encoding="utf-8") as stream:
+            stream.write("<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:nonsense/></robot>")
+        cases = [(harness.SCENE, "package://tissue_contact/urdf/probe.urdf", "without the key urdf of 'probe'"),
+                 (self.scene_without_urdf(), xacro, "robot.urdf.xacro"),
+                 (self.scene_without_urdf(), "none.urdf", "none.urdf does not exist")]
+        for scene, model, words in cases:
+            code, output = self.launch("play_bag.launch", "bag:=" + bag, "scene:=" + scene, "model:=" + model,
+                                       "output:=" + os.path.join(self.directory, "plots"))
+            self.assertEqual(code, 1, output)
+            self.assertIn(words, output)
+            self.assertIn("read_model.py: ", output)
+            self.assertNotIn("Traceback", output)
 
     def test_bag_without_the_topic_ends_with_its_name(self):
         bag = os.path.join(self.directory, "other.bag")
@@ -81,6 +127,7 @@ class Demo(unittest.TestCase):
         code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=no_such_scene.yaml", "output:=" + plots)
         self.assertEqual(code, 1, output)
         self.assertIn("no_such_scene.yaml", output)
+        self.assertIn("REQUIRED process [tissue_contact-", output)
         code, output = self.launch("no_such.launch")
         self.assertEqual(code, 1, output)
 
@@ -89,7 +136,8 @@ class Demo(unittest.TestCase):
         harness.write_bag(bag, harness.press(20))
         master = rosgraph.Master(rospy.get_name())
         before = (master.getParam("/run_id"), sorted(rospy.get_param_names()), master.getSystemState())
-        code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + harness.SCENE,
+        code, output = self.launch("psm_bag.launch", "bag:=" + bag,
+                                   "scene:=package://tissue_contact/test/ros/press.yaml",
                                    "output:=" + os.path.join(self.directory, "plots"))
         self.assertEqual(code, 0, output)
         self.assertEqual((master.getParam("/run_id"), sorted(rospy.get_param_names()), master.getSystemState()), before)

@@ -3,6 +3,7 @@
 /// out.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -18,6 +19,15 @@ struct TissueSurface {
   std::vector<bool> fixed;  ///< per node; contacts whose weighted nodes are all fixed are dropped: nothing can move
   /// > 0: an open sheet, touched from both sides, half the thickness before its triangles. 0: the boundary of a volume.
   double thickness_m = 0.0;
+};
+
+/// How near a shape is to a tissue's surface.
+struct Approach {
+  int tissue = -1;  ///< -1: none was near enough
+  int instrument = -1;
+  int link = -1;                                                ///< index into Instrument::contactLinks()
+  int shape = -1;                                               ///< index into ContactLink::shapes
+  double distance_m = std::numeric_limits<double>::infinity();  ///< < 0: the surface is inside the shape
 };
 
 class ContactDetector {
@@ -46,6 +56,12 @@ class ContactDetector {
   /// surface does not face the shape; and for a contact between tissues, which this detector does not know.
   bool measure(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL, double margin_m,
                Contact& contact) const;
+
+  /// Lowers `closest` to the nearest shape and tissue surface (less half the thickness of a sheet), if any is nearer
+  /// than what `closest` holds. Exact, whatever the distance. Pairs whose bounding boxes are farther apart than that cost
+  /// next to nothing, so keep `closest` from call to call. Sizes as for detect(). Not thread-safe.
+  void lowerClosestApproach(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL,
+                            Approach& closest);
 
  private:
   struct Implementation;

@@ -18,7 +18,7 @@ using PackagePath = std::function<std::string(const std::string& package)>;
 /// @throws std::invalid_argument naming the uri when the package is unknown or the scheme is not one of these.
 std::string resolvePath(const std::string& uri, const std::string& base_directory, const PackagePath& package_path);
 
-/// Reads, checks and completes a scene. Paths in it may be `package://`, `file://`, absolute or relative to the file.
+/// Reads, checks and completes a scene. `file` may be a path or a `package://` or `file://` URI. Paths in it may be `package://`, `file://`, absolute or relative to the file.
 /// @throws std::invalid_argument "<file>:<line>: <key path>: <what is wrong, the allowed range and the fix>" for
 /// unknown
 ///   keys, wrong types, values out of range, duplicate or unknown names and missing files.

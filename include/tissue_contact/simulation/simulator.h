@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tissue_contact/contact/contact.h"
+#include "tissue_contact/contact/contact_detector.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/friction/coulomb.h"
 #include "tissue_contact/instrument/instrument.h"
@@ -92,6 +93,10 @@ class Simulator {
   const std::vector<SolvedContact>& contacts() const;
   const StepReport& report() const;
   long stepCount() const;  ///< implicit steps since the last reset
+
+  /// Lowers `closest` to where an instrument is nearest to a tissue's surface now, if that is nearer than what it holds;
+  /// for a run in which nothing touches. Costs nothing unless called; see ContactDetector::lowerClosestApproach().
+  void lowerClosestApproach(Approach& closest);
 
   /// The contact problem of the last step and its answer, e.g. for writeContactProblem().
   const ContactProblem& lastProblem() const;

@@ -8,7 +8,9 @@ namespace tissue_contact {
 
 /// Worst values over all contacts of one step.
 struct Residuals {
-  double momentum = 0.0;  ///< |A v - b - J'lambda| / |J'lambda|, dimensionless; over loadScale() without contact
+  /// |A v - b - J'lambda| / |J'lambda|, dimensionless; without contact over the load and the tissues' weight of one step,
+  /// so that 1 is an unbalanced force as large as these.
+  double momentum = 0.0;
   double momentum_defect_n_s = 0.0;  ///< |A v - b - J'lambda|, N s
   double penetration_m = 0.0;        ///< how deep the linearised gap at the end of the step is below 0, m
   double adhesion_n = 0.0;           ///< pulling normal force, N

@@ -71,6 +71,72 @@ bool sameBits(const std::vector<Contact>& a, const std::vector<Contact>& b) {
   return true;
 }
 
+/// Every triangle of every tissue, by brute force.
+double slowApproach(const TwoByTwo& scene, int instrument) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const CollisionShape& shape : scene.instruments[instrument].contactLinks()[0].shapes) {
+    const Pose X_SW = (scene.X_WL[instrument][1] * shape.X_LS).inverse();
+    const auto distance = makeShapeDistance(shape);
+    for (std::size_t tissue = 0; tissue < scene.surfaces.size(); ++tissue) {
+      const NodalVectors& x = scene.positions[tissue];
+      for (const Triangle& t : scene.surfaces[tissue].triangles) {
+        const TrianglePoints points(X_SW * Vector3(x.col(t[0])), X_SW * Vector3(x.col(t[1])),
+                                    X_SW * Vector3(x.col(t[2])));
+        nearest = std::min(nearest, contact_test::bruteForceMinimum(*distance, points));
+      }
+    }
+  }
+  return nearest;
+}
+
+TEST(ContactDetector, ClosestApproachIsExactAtAnyDistance) {
+  TwoByTwo scene = makeScene();
+  ContactDetector detector(scene.instruments, scene.surfaces, scene.positions);
+  Random random(7);
+  for (int trial = 0; trial < 4; ++trial) {
+    for (std::vector<Pose>& poses : scene.X_WL) {
+      poses[1] = random.pose(trial % 2 == 0 ? 0.03 : 1.0);
+      poses[1].translation().z() += trial % 2 == 0 ? 0.06 : 3.0;
+    }
+    Approach closest;
+    detector.lowerClosestApproach(scene.positions, scene.X_WL, closest);
+    const double expected = std::min(slowApproach(scene, 0), slowApproach(scene, 1));
+    EXPECT_NEAR(closest.distance_m, expected, 1e-8) << trial;  // what the slow search leaves
+    ASSERT_GE(closest.instrument, 0);
+    EXPECT_NEAR(slowApproach(scene, closest.instrument), expected, 1e-8) << trial;
+  }
+}
+
+TEST(ContactDetector, ClosestApproachOnlyFallsAndNamesThePair) {
+  TwoByTwo scene = makeScene();
+  ContactDetector detector(scene.instruments, scene.surfaces, scene.positions);
+  for (std::vector<Pose>& poses : scene.X_WL) poses[1] = at({0.0, 0.0, 0.1});
+  scene.X_WL[1][1] = at({0.0, 0.0, 0.03});  // the box's lower face is 5 mm below, the tissues' upper face at 20 mm
+  Approach closest;
+  detector.lowerClosestApproach(scene.positions, scene.X_WL, closest);
+  EXPECT_NEAR(closest.distance_m, 0.005, 1e-12);
+  EXPECT_EQ(closest.instrument, 1);
+  EXPECT_EQ(closest.link, 0);
+  const Approach before = closest;
+  for (std::vector<Pose>& poses : scene.X_WL) poses[1] = at({0.0, 0.0, 0.031});
+  detector.lowerClosestApproach(scene.positions, scene.X_WL, closest);
+  EXPECT_EQ(closest.distance_m, before.distance_m);
+  scene.X_WL[0][1] = at({0.02, 0.0, 0.024});  // now the left one's box, over the right tissue
+  detector.lowerClosestApproach(scene.positions, scene.X_WL, closest);
+  EXPECT_LT(closest.distance_m, before.distance_m);
+  EXPECT_EQ(closest.instrument, 0);
+}
+
+TEST(ContactDetector, ClosestApproachCountsTheThicknessOfASheet) {
+  TwoByTwo scene = makeScene();
+  for (TissueSurface& surface : scene.surfaces) surface.thickness_m = 0.002;
+  for (std::vector<Pose>& poses : scene.X_WL) poses[1] = at({0.0, 0.0, 0.03});
+  ContactDetector detector(scene.instruments, scene.surfaces, scene.positions);
+  Approach closest;
+  detector.lowerClosestApproach(scene.positions, scene.X_WL, closest);
+  EXPECT_NEAR(closest.distance_m, 0.004, 1e-12);
+}
+
 TEST(ContactDetector, NamesTissueInstrumentLinkAndShape) {
   TwoByTwo scene = makeScene();
   ContactDetector detector(scene.instruments, scene.surfaces, scene.positions);

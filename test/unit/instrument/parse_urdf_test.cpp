@@ -255,6 +255,13 @@ TEST(ParseUrdf, MeshesThatCannotBePlacedAreKeptAsWritten) {
   EXPECT_EQ(std::get<MeshGeometry>(model.links()[0].geometry.visual[1].geometry).file, "a.stl");
 }
 
+TEST(ParseUrdf, XacroIsCalledThatUnlessItIsInAComment) {
+  const std::string macro = "<xacro:property name=\"r\" value=\"0.1\"/>";
+  expectContains(refusal([&] { parse("<link name=\"a\"/>" + macro); }),
+                 {"xacro FILE.urdf.xacro >", "robot_description"});
+  EXPECT_EQ(parse("<!-- " + macro + " --><link name=\"a\"/>").links().size(), 1u);
+}
+
 TEST(LoadUrdf, RelativeMeshesAreBesideTheFile) {
   const TemporaryDirectory directory;
   const std::string file = directory.write(

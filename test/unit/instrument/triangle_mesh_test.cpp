@@ -43,6 +43,18 @@ TEST_F(LoadTriangleMesh, Dae) {
   expectTetrahedron(load("a.dae", dae("1", "Z_UP", "<node><instance_geometry url=\"#g\"/></node>")));
 }
 
+TEST_F(LoadTriangleMesh, PointersOfLfsAndAnnexAreCalledThat) {
+  const std::string lfs =
+      "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a214614ab2935c943f9e0ff69d22e\nsize 9\n";
+  for (const char* name : {"a.stl", "a.dae", "a.obj"})
+    expectContains(refusalOf(name, lfs), {"git-lfs", "git lfs pull"});
+  const std::string annex = "/annex/objects/SHA256E-s9--4d7a.stl\n";
+  expectContains(refusalOf("b.stl", annex), {"git-annex", "git annex get"});
+  const std::string link = directory_.path("c.stl");
+  std::filesystem::create_symlink(".git/annex/objects/Xx/SHA256E-s9--4d7a.stl", link);
+  expectContains(refusal([&] { loadTriangleMesh(link, kNoScale); }), {link, "git annex get"});
+}
+
 TEST_F(LoadTriangleMesh, ObjPolygonsAreCutIntoTriangles) {
   const TriangleMesh mesh = load("a.obj",
                                  "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"

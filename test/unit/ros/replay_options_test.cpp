@@ -31,7 +31,7 @@ TEST(ReplayOptions, TakesBothSpellingsInAnyOrder) {
 TEST(ReplayOptions, HelpNeedsNothingElse) {
   EXPECT_TRUE(parseReplayOptions({"--help"}).help);
   EXPECT_TRUE(parseReplayOptions({"--bag", "b", "-h"}).help);
-  for (const char* key : {"--scene", "--bag", "--csv", "--urdf", "--help"}) {
+  for (const char* key : {"--scene", "--bag", "--csv", "--urdf", "--timing", "--help"}) {
     EXPECT_NE(replayUsage().find(key), std::string::npos) << key;
   }
 }
@@ -43,6 +43,7 @@ TEST(ReplayOptions, RefusalsNameTheArgument) {
   EXPECT_NE(refusal({"--scene", "s", "--bag", "b", "--csv"}).find("--csv"), std::string::npos);
   EXPECT_NE(refusal({"--scene", "s", "--bag", "b", "--csv="}).find("--csv"), std::string::npos);
   EXPECT_NE(refusal({"--scene", "s", "--scene", "t"}).find("twice"), std::string::npos);
+  EXPECT_NE(refusal({"--scene", "s", "--bag", "b", "--csv", "c", "--timing", "c"}).find("--timing"), std::string::npos);
   EXPECT_NE(refusal({"--sceen", "s"}).find("'--sceen'"), std::string::npos);
   EXPECT_NE(refusal({"in.bag"}).find("'in.bag'"), std::string::npos);
 }

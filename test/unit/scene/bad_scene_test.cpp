@@ -157,6 +157,8 @@ const BadScene kFiles[] = {
     {"file: organ.vtk", "file: organ.stl", "29: tissues[1].mesh.file", "allowed endings: .msh, .vtk"},
     {"urdf: package://tissue_contact/arm.urdf", "urdf: package://tissue_contact/leg.urdf", "36: instruments[0].urdf",
      "leg.urdf\" does not exist"},
+    {"urdf: package://tissue_contact/arm.urdf", "urdf: arm.urdf.xacro", "36: instruments[0].urdf",
+     "is a xacro file; expand it first: xacro arm.urdf.xacro > arm.urdf, or"},
     {"urdf: package://tissue_contact/arm.urdf", "urdf: package://nowhere/arm.urdf", "36: instruments[0].urdf",
      "ROS package \"nowhere\""},
     {"urdf: package://tissue_contact/arm.urdf", "urdf: http://host/arm.urdf", "36: instruments[0].urdf",

@@ -219,6 +219,16 @@ TEST_F(SceneTest, LoadsFromAFile) {
   EXPECT_EQ(scene.file, path("scene.yaml"));
 }
 
+TEST_F(SceneTest, LoadsFromAPackage) {
+  write("scene.yaml", kSmallestScene);
+  const auto package_path = [this](const std::string& package) {
+    return package == "known" ? directory_.string() : std::string();
+  };
+  EXPECT_EQ(loadScene("package://known/scene.yaml", package_path).file, path("scene.yaml"));
+  EXPECT_EQ(loadScene("file://" + path("scene.yaml"), package_path).file, path("scene.yaml"));
+  EXPECT_THROW(loadScene("package://unknown/scene.yaml", package_path), std::invalid_argument);
+}
+
 TEST_F(SceneTest, RefusesWhatIsNotAReadableFile) {
   for (const std::string& file : {path("absent.yaml"), directory_.string(), std::string("/dev/zero")}) {
     try {

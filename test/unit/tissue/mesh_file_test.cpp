@@ -35,6 +35,12 @@ TEST(MeshFile, RefusesPathsThatAreNoFile) {
   expectPathRefused("", "does not exist");
 }
 
+TEST(MeshFile, PointersOfLfsAndAnnexAreCalledThat) {
+  expectRefused("version https://git-lfs.github.com/spec/v1\noid sha256:4d7a214614ab\nsize 12345\n",
+                {"git-lfs", "git lfs pull"});
+  expectRefused("/annex/objects/SHA256E-s9--4d7a.vtk\n", {"git-annex", "git annex get"});
+}
+
 TEST(MeshFile, DoesNotWaitForAPipe) {
   const std::string pipe = testing::TempDir() + "tissue_contact_pipe_" + std::to_string(getpid());
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

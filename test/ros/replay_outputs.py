@@ -1,0 +1,99 @@
+#!/usr/bin/python3
+"""Offline replay: what it writes and says when all is well."""
+import csv
+import os
+import re
+import shutil
+import sys
+import tempfile
+import unittest
+
+import rospy
+import rostest
+
+import harness
+
+
+class ReplayOutputs(unittest.TestCase):
+    def setUp(self):
+        self.directory = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.directory)
+        self.bag = self.path("press.bag")
+        self.samples = harness.press(40)
+        harness.write_bag(self.bag, self.samples)
+
+    def path(self, name):
+        return os.path.join(self.directory, name)
+
+    def read(self, name):
+        with open(self.path(name), "rb") as stream:
+            return stream.read()
+
+    def replay(self, name, *more, scene=harness.SCENE):
+        code, errors = harness.replay(scene, self.bag, self.path(name), *more)
+        self.assertEqual(code, 0, errors)
+        return errors
+
+    def test_two_replays_give_the_same_file(self):
+        self.replay("first.csv")
+        self.replay("second.csv", "--timing", self.path("second_timing.csv"))
+        self.assertEqual(self.read("first.csv"), self.read("second.csv"))
+
+    def test_times_go_to_a_file_of_their_own(self):
+        self.replay("out.csv", "--timing", self.path("timing.csv"))
+        with open(self.path("timing.csv"), newline="", encoding="ascii") as stream:
+            rows = list(csv.DictReader(stream))
+        # The first joint state only places the instrument: no interval ends there.
+        self.assertEqual([row["stamp_s"] for row in rows], [harness.stamp_text(stamp) for stamp, _ in self.samples[1:]])
+        for row in rows:
+            self.assertEqual(list(row), ["stamp_s", "step_time_s", "steps"])
+            self.assertGreater(float(row["step_time_s"]), 0.0)
+            self.assertGreaterEqual(int(row["steps"]), 1)
+        self.assertEqual(sorted(os.listdir(self.directory)), ["out.csv", "press.bag", "timing.csv"])
+
+    def test_no_half_file_of_times(self):
+        for name in ["out.csv", "timing.csv"]:
+            with open(self.path(name), "w", encoding="ascii") as stream:
+                stream.write("what was there before")
+        harness.write_bag(self.bag, [(stamp, (0.0, float("nan"), 0.0)) for stamp, _ in self.samples])
+        code, errors = harness.replay(harness.SCENE, self.bag, self.path("out.csv"), "--timing",
+                                      self.path("timing.csv"))
+        self.assertEqual(code, 1, errors)
+        self.assertEqual(self.read("timing.csv"), b"what was there before")
+        self.assertEqual(sorted(os.listdir(self.directory)), ["out.csv", "press.bag", "timing.csv"])
+        code, errors = harness.replay(harness.SCENE, self.bag, self.path("out.csv"), "--timing",
+                                      self.path("no_such_folder/timing.csv"))
+        self.assertEqual(code, 1, errors)
+        self.assertIn("no_such_folder", errors)
+
+    def test_scene_of_a_package(self):
+        bag = os.path.join(harness.PACKAGE, "config", "press_drag.bag")
+        for name, scene in [("path.csv", os.path.join(harness.PACKAGE, "config", "press_drag.yaml")),
+                            ("uri.csv", "package://tissue_contact/config/press_drag.yaml")]:
+            code, errors = harness.replay(scene, bag, self.path(name))
+            self.assertEqual(code, 0, errors)
+        self.assertEqual(self.read("path.csv"), self.read("uri.csv"))
+
+    def test_unknown_package_is_one_message(self):
+        code, errors = harness.replay("package://no_such_package/scene.yaml", self.bag, self.path("out.csv"))
+        self.assertEqual(code, 1, errors)
+        self.assertRegex(errors, "^tissue_contact_replay: [^\n]*no_such_package[^\n]*\n$")
+
+    def test_a_bag_that_never_touches_says_how_near_it_came(self):
+        # press.yaml: the ball's lowest point is 1 mm above the block when all joints are 0; sample 20 is the nearest.
+        samples = [(stamp, (0.0, 0.0, 0.002 + 0.0001 * abs(i - 20))) for i, (stamp, _) in enumerate(self.samples)]
+        harness.write_bag(self.bag, samples)
+        errors = self.replay("out.csv")
+        found = re.search("no instrument touched tissue; closest approach ([^ ]+) m at ([^ ]+) s: 'probe', link 'tip', "
+                          "shape 1 of 2, to tissue 'block'", errors)
+        self.assertTrue(found, errors)
+        self.assertAlmostEqual(float(found.group(1)), 0.003, delta=1e-8)
+        self.assertEqual(found.group(2), harness.stamp_text(samples[20][0]))
+
+    def test_a_bag_that_touches_says_nothing_of_it(self):
+        self.assertNotIn("approach", self.replay("out.csv"))
+
+
+if __name__ == "__main__":
+    rospy.init_node("replay_outputs")
+    rostest.rosrun("tissue_contact", "replay_outputs", ReplayOutputs, sys.argv)
