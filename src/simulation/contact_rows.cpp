@@ -12,6 +12,16 @@ constexpr double kRecoveryPerStep = 0.1;
 /// More of a static contact's slip than this share of an edge is no error of the solver any more and is let go.
 constexpr double kMostSlipPerEdge = 0.01;
 
+/// What a contact without a history moved tangentially before it touched, as a velocity over the step, contact plane, m/s:
+/// up to then, tissue and tool go on as they did at the start. `v`: of the tissues at the start of the step.
+Vector2 velocityBeforeTouch(const ContactRow& row, const std::vector<NodalVectors>& v, double dt) {
+  if (!(row.gap_m > 0.0)) return Vector2::Zero();
+  const Vector3 u = relativeVelocity(row, v);
+  const double closes = -dt * u[0];
+  const double share = closes > row.gap_m ? row.gap_m / closes : 1.0;  // of the step
+  return share * u.tail<2>();
+}
+
 }  // namespace
 
 void Simulator::Implementation::assembleContacts(double dt) {
@@ -20,6 +30,7 @@ void Simulator::Implementation::assembleContacts(double dt) {
   solution.impulses.resize(contacts.size());
   solution.states.resize(contacts.size());
   taken_back.resize(contacts.size());
+  before_touch.resize(contacts.size());
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];
     const ContactMemory::Inherited& before = answers[c];
@@ -28,6 +39,9 @@ void Simulator::Implementation::assembleContacts(double dt) {
     row.was_sliding = before.state == ContactState::kKinetic;
     const double speed = row.was_sliding && last_dt > 0.0 ? before.slip_W.norm() / last_dt : 0.0;
     row.law = friction.at(contact, x, motion.startPoses(), speed);
+    before_touch[c].setZero();
+    if (before.state == ContactState::kOpen) before_touch[c] = velocityBeforeTouch(row, solution.v, dt);
+    row.u_tool.tail<2>() += before_touch[c];
     taken_back[c].setZero();
     if (before.state == ContactState::kStatic) {
       // Not faster than it came: a short step after a long one could not hold it.
@@ -84,12 +98,15 @@ void Simulator::Implementation::recordContacts(double dt) {
   memory.remember(contacts, answers);
 }
 
-/// Tangential way of a contact in this step, m, world frame; of a static one with what earlier steps have left.
+/// Tangential way of a contact in this step, m, world frame; of a static one since it touched, with what earlier steps
+/// have left.
 Vector3 Simulator::Implementation::slipOf(std::size_t c, double dt) const {
   const Contact& contact = contacts[c];
-  const Vector2 true_velocity = relativeVelocity(problem.contacts[c], solution.v).tail<2>() - taken_back[c];
-  Vector3 slip = dt * (contact.R_WC.rightCols<2>() * true_velocity);
-  if (solution.states[c] != ContactState::kStatic) return slip;
+  Vector2 velocity = relativeVelocity(problem.contacts[c], solution.v).tail<2>() - taken_back[c];
+  const bool held = solution.states[c] == ContactState::kStatic;
+  if (!held) velocity += before_touch[c];
+  Vector3 slip = dt * (contact.R_WC.rightCols<2>() * velocity);
+  if (!held) return slip;
   slip += contact.R_WC.rightCols<2>() * taken_back[c] * std::max(dt, last_dt);
   const double most = kMostSlipPerEdge * mean_edge;
   return slip.norm() > most ? Vector3(slip * (most / slip.norm())) : slip;

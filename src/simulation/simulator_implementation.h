@@ -54,6 +54,7 @@ struct Simulator::Implementation {
   ContactMemory memory;
   std::vector<ContactMemory::Inherited> answers;  ///< per contact: inherited before the solve, found after it
   std::vector<Vector2> taken_back;  ///< per contact: part of the tool's velocity that undoes a slip, contact plane, m/s
+  std::vector<Vector2> before_touch;  ///< per contact: see velocityBeforeTouch(); 0 for one that touched before the step
   ContactProblem problem;
   ContactSolution solution;  ///< v is the tissues' velocity
   std::unique_ptr<ContactSolver> solver;
