@@ -12,14 +12,12 @@ constexpr double kRecoveryPerStep = 0.1;
 /// More of a static contact's slip than this share of an edge is no error of the solver any more and is let go.
 constexpr double kMostSlipPerEdge = 0.01;
 
-/// What a contact without a history moved tangentially before it touched, as a velocity over the step, contact plane, m/s:
-/// up to then, tissue and tool go on as they did at the start. `v`: of the tissues at the start of the step.
-Vector2 velocityBeforeTouch(const ContactRow& row, const std::vector<NodalVectors>& v, double dt) {
-  if (!(row.gap_m > 0.0)) return Vector2::Zero();
-  const Vector3 u = relativeVelocity(row, v);
-  const double closes = -dt * u[0];
-  const double share = closes > row.gap_m ? row.gap_m / closes : 1.0;  // of the step
-  return share * u.tail<2>();
+/// The share of the step that is over when a contact without a history touches, by the velocities `v` of the tissues at the
+/// start of the step: tissue and tool go on with them until then.
+double shareBeforeTouch(const ContactRow& row, const std::vector<NodalVectors>& v, double dt) {
+  if (!(row.gap_m > 0.0)) return 0.0;
+  const double closes = -dt * relativeVelocity(row, v)[0];
+  return closes > row.gap_m ? row.gap_m / closes : 1.0;
 }
 
 }  // namespace
@@ -39,9 +37,6 @@ void Simulator::Implementation::assembleContacts(double dt) {
     row.was_sliding = before.state == ContactState::kKinetic;
     const double speed = row.was_sliding && last_dt > 0.0 ? before.slip_W.norm() / last_dt : 0.0;
     row.law = friction.at(contact, x, motion.startPoses(), speed);
-    before_touch[c].setZero();
-    if (before.state == ContactState::kOpen) before_touch[c] = velocityBeforeTouch(row, solution.v, dt);
-    row.u_tool.tail<2>() += before_touch[c];
     taken_back[c].setZero();
     if (before.state == ContactState::kStatic) {
       // Not faster than it came: a short step after a long one could not hold it.
@@ -51,6 +46,37 @@ void Simulator::Implementation::assembleContacts(double dt) {
     solution.impulses[c] = dt * (contact.R_WC.transpose() * before.force_W);
     solution.states[c] = before.state;
   }
+  landContacts(dt);
+}
+
+/// A contact that begins within the step slides from then on only: what it moved tangentially before it touched goes into
+/// the velocity of its tool, for every solver alike (doc/method.md, "Landing").
+void Simulator::Implementation::landContacts(double dt) {
+  touch_shares.resize(contacts.size());
+  patches.clear();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const bool touched = answers[c].state != ContactState::kOpen;
+    touch_shares[c] = touched ? 0.0 : shareBeforeTouch(problem.contacts[c], solution.v, dt);
+    double& first = firstTouch(contacts[c].key);
+    first = std::min(first, touch_shares[c]);
+  }
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    before_touch[c].setZero();
+    if (touch_shares[c] == 0.0) continue;
+    ContactRow& row = problem.contacts[c];
+    const double share = 0.5 * (firstTouch(contacts[c].key) + touch_shares[c]);
+    before_touch[c] = share * relativeVelocity(row, solution.v).tail<2>();
+    row.u_tool.tail<2>() += before_touch[c];
+  }
+}
+
+/// When the patch of a contact touches first, as a share of the step; 1 for a new patch.
+double& Simulator::Implementation::firstTouch(const ContactKey& key) {
+  const auto same = [&](const Patch& patch) { return sameShapes(patch.key, key); };
+  const auto known = std::find_if(patches.rbegin(), patches.rend(), same);  // contacts of a shape follow one another
+  if (known != patches.rend()) return known->first_touch;
+  patches.push_back({key, 1.0});
+  return patches.back().first_touch;
 }
 
 /// Nodes, frame, gap and tool velocity of a contact.
