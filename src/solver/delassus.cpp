@@ -50,7 +50,7 @@ int solveBySweeps(const DelassusProblem& problem, const SolverDescription& descr
   // A rival's answer is not one of the true cone: it is done when it repeats itself.
   const double settled = description.method == SolverMethod::kPredictorCorrector ? 0.0 : 0.1 * description.tolerance;
   ContactSweeps sweeps(problem, description, solution);
-  const SweepsReport report = iterate(sweeps, 0.5 * description.tolerance, settled, description.iterations);
+  const SweepsReport report = sweeps.iterate(0.5 * description.tolerance, settled, description.iterations);
   solution.r = sweeps.impulses();
   solution.u = problem.W * solution.r + problem.q;
   solution.states = sweeps.states();

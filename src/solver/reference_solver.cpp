@@ -77,7 +77,7 @@ int solveReference(const DelassusProblem& problem, const SolverDescription& desc
     } else if (turn > 0) {
       ++idle;
     }
-    iterations += iterate(sweeps, aim, 0.0, length).iterations;
+    iterations += sweeps.iterate(aim, 0.0, length).iterations;
     offer(answerOf(problem, sweeps));
     length = std::min(2 * length, kMostSweeps);
     if (best <= tolerance || !with_newton) continue;
