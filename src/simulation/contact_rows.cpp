@@ -13,11 +13,14 @@ constexpr double kRecoveryPerStep = 0.1;
 constexpr double kMostSlipPerEdge = 0.01;
 
 /// The share of the step that is over when a contact without a history touches, by the velocities `v` of the tissues at the
-/// start of the step: tissue and tool go on with them until then.
+/// start of the step: tissue and tool go on with them until then. If they would not touch that way, something else brings
+/// them together (weight, say, on tissue that lies on a table but for round-off), and the gap counts for as long as it takes
+/// to move by it in any direction.
 double shareBeforeTouch(const ContactRow& row, const std::vector<NodalVectors>& v, double dt) {
   if (!(row.gap_m > 0.0)) return 0.0;
-  const double closes = -dt * relativeVelocity(row, v)[0];
-  return closes > row.gap_m ? row.gap_m / closes : 1.0;
+  const Vector3 u = relativeVelocity(row, v);
+  const double way = -dt * u[0] > row.gap_m ? -dt * u[0] : dt * u.norm();
+  return way > row.gap_m ? row.gap_m / way : 1.0;
 }
 
 }  // namespace
