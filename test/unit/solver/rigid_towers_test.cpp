@@ -21,36 +21,12 @@ TEST(RigidTowers, PredictorCorrectorSolvesThem) {
     const DelassusProblem problem = towerProblem(0.3, seed);
     SolverDescription description;
     description.tolerance = 1e-6;
-    description.iterations = 1000;  // twice what the slowest needs
+    description.iterations = 1000;  // the slowest of these seeds needs about 600
     DelassusSolution solution;
     const DelassusReport report = solveDelassus(problem, description, solution);
     EXPECT_TRUE(report.converged) << "seed " << seed;
     EXPECT_LE(computeResiduals(problem, solution.r).scaled_natural_map, 1e-6) << "seed " << seed;
     EXPECT_LE(report.iterations, description.iterations) << "seed " << seed;
-  }
-}
-
-/// The contacts in another order.
-DelassusProblem reversed(const DelassusProblem& problem) {
-  DelassusProblem result = problem;
-  const int last = problem.contacts() - 1;
-  for (int i = 0; i <= last; ++i) {
-    result.q.segment<3>(3 * i) = problem.q.segment<3>(3 * (last - i));
-    for (int j = 0; j <= last; ++j) {
-      result.W.block<3, 3>(3 * i, 3 * j) = problem.W.block<3, 3>(3 * (last - i), 3 * (last - j));
-    }
-  }
-  return result;
-}
-
-TEST(RigidTowers, FromTopToBottomAsFromBottomToTop) {
-  for (unsigned seed = 0; seed < kSeeds; ++seed) {
-    const DelassusProblem problem = towerProblem(0.3, seed);
-    SolverDescription description;
-    description.tolerance = 1e-6;
-    description.iterations = 1000;
-    DelassusSolution solution;
-    EXPECT_TRUE(solveDelassus(reversed(problem), description, solution).converged) << "seed " << seed;
   }
 }
 
