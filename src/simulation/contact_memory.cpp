@@ -7,11 +7,6 @@ namespace {
 
 bool keyBefore(const Contact& a, const Contact& b) { return a.key < b.key; }
 
-bool sameShapes(const ContactKey& a, const ContactKey& b) {
-  return a.tissue == b.tissue && a.instrument == b.instrument && a.link == b.link && a.shape == b.shape &&
-         a.other_tissue == b.other_tissue;
-}
-
 ContactKey withSlot(ContactKey key, int slot) {
   key.slot = slot;
   return key;

@@ -12,6 +12,17 @@ constexpr double kRecoveryPerStep = 0.1;
 /// More of a static contact's slip than this share of an edge is no error of the solver any more and is let go.
 constexpr double kMostSlipPerEdge = 0.01;
 
+/// The share of the step that is over when a contact without a history touches, by the velocities `v` of the tissues at the
+/// start of the step: tissue and tool go on with them until then. If they would not touch that way, something else brings
+/// them together (weight, say, on tissue that lies on a table but for round-off), and the gap counts for as long as it takes
+/// to move by it in any direction.
+double shareBeforeTouch(const ContactRow& row, const std::vector<NodalVectors>& v, double dt) {
+  if (!(row.gap_m > 0.0)) return 0.0;
+  const Vector3 u = relativeVelocity(row, v);
+  const double way = -dt * u[0] > row.gap_m ? -dt * u[0] : dt * u.norm();
+  return way > row.gap_m ? row.gap_m / way : 1.0;
+}
+
 }  // namespace
 
 void Simulator::Implementation::assembleContacts(double dt) {
@@ -20,6 +31,7 @@ void Simulator::Implementation::assembleContacts(double dt) {
   solution.impulses.resize(contacts.size());
   solution.states.resize(contacts.size());
   taken_back.resize(contacts.size());
+  before_touch.resize(contacts.size());
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];
     const ContactMemory::Inherited& before = answers[c];
@@ -37,6 +49,37 @@ void Simulator::Implementation::assembleContacts(double dt) {
     solution.impulses[c] = dt * (contact.R_WC.transpose() * before.force_W);
     solution.states[c] = before.state;
   }
+  landContacts(dt);
+}
+
+/// A contact that begins within the step slides from then on only: what it moved tangentially before it touched goes into
+/// the velocity of its tool, for every solver alike (doc/method.md, "Landing").
+void Simulator::Implementation::landContacts(double dt) {
+  touch_shares.resize(contacts.size());
+  patches.clear();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const bool touched = answers[c].state != ContactState::kOpen;
+    touch_shares[c] = touched ? 0.0 : shareBeforeTouch(problem.contacts[c], solution.v, dt);
+    double& first = firstTouch(contacts[c].key);
+    first = std::min(first, touch_shares[c]);
+  }
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    before_touch[c].setZero();
+    if (touch_shares[c] == 0.0) continue;
+    ContactRow& row = problem.contacts[c];
+    const double share = 0.5 * (firstTouch(contacts[c].key) + touch_shares[c]);
+    before_touch[c] = share * relativeVelocity(row, solution.v).tail<2>();
+    row.u_tool.tail<2>() += before_touch[c];
+  }
+}
+
+/// When the patch of a contact touches first, as a share of the step; 1 for a new patch.
+double& Simulator::Implementation::firstTouch(const ContactKey& key) {
+  const auto same = [&](const Patch& patch) { return sameShapes(patch.key, key); };
+  const auto known = std::find_if(patches.rbegin(), patches.rend(), same);  // contacts of a shape follow one another
+  if (known != patches.rend()) return known->first_touch;
+  patches.push_back({key, 1.0});
+  return patches.back().first_touch;
 }
 
 /// Nodes, frame, gap and tool velocity of a contact.
@@ -84,12 +127,15 @@ void Simulator::Implementation::recordContacts(double dt) {
   memory.remember(contacts, answers);
 }
 
-/// Tangential way of a contact in this step, m, world frame; of a static one with what earlier steps have left.
+/// Tangential way of a contact in this step, m, world frame; of a static one since it touched, with what earlier steps
+/// have left.
 Vector3 Simulator::Implementation::slipOf(std::size_t c, double dt) const {
   const Contact& contact = contacts[c];
-  const Vector2 true_velocity = relativeVelocity(problem.contacts[c], solution.v).tail<2>() - taken_back[c];
-  Vector3 slip = dt * (contact.R_WC.rightCols<2>() * true_velocity);
-  if (solution.states[c] != ContactState::kStatic) return slip;
+  Vector2 velocity = relativeVelocity(problem.contacts[c], solution.v).tail<2>() - taken_back[c];
+  const bool held = solution.states[c] == ContactState::kStatic;
+  if (!held) velocity += before_touch[c];
+  Vector3 slip = dt * (contact.R_WC.rightCols<2>() * velocity);
+  if (!held) return slip;
   slip += contact.R_WC.rightCols<2>() * taken_back[c] * std::max(dt, last_dt);
   const double most = kMostSlipPerEdge * mean_edge;
   return slip.norm() > most ? Vector3(slip * (most / slip.norm())) : slip;

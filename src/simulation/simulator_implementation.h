@@ -26,6 +26,8 @@ struct Simulator::Implementation {
   void assembleContacts(double dt);
   void solveContacts(double dt);
   bool wakeHeld(double dt, int repeats);
+  void landContacts(double dt);
+  double& firstTouch(const ContactKey& key);
   void placeRow(const Contact& contact, double dt, ContactRow& row) const;
   void moveTissues(double dt);
   void restTissues(double dt);
@@ -54,6 +56,13 @@ struct Simulator::Implementation {
   ContactMemory memory;
   std::vector<ContactMemory::Inherited> answers;  ///< per contact: inherited before the solve, found after it
   std::vector<Vector2> taken_back;  ///< per contact: part of the tool's velocity that undoes a slip, contact plane, m/s
+  std::vector<Vector2> before_touch;  ///< per contact: part of u_tool that landContacts() has added, contact plane, m/s
+  struct Patch {
+    ContactKey key;  ///< of one of its contacts: those of a shape (or tissue) on a tissue
+    double first_touch = 1.0;
+  };
+  std::vector<Patch> patches;        ///< scratch of landContacts()
+  std::vector<double> touch_shares;  ///< per contact, the same
   ContactProblem problem;
   ContactSolution solution;  ///< v is the tissues' velocity
   std::unique_ptr<ContactSolver> solver;

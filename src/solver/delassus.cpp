@@ -46,15 +46,44 @@ void requireMethod(const DelassusProblem& problem, const SolverDescription& desc
   }
 }
 
+/// Newton's method from where the passes are; at the first two attempts also from the answers under linearised cones, for
+/// passes may circle in a valley of the residual. @return it met the tolerance: then `solution` is its answer.
+bool finish(const DelassusProblem& problem, double tolerance, int attempt, int& iterations,
+            DelassusSolution& solution) {
+  DelassusSolution start = solution;
+  bool another = true;
+  for (bool cones = false; another; cones = true) {
+    DelassusSolution answer;
+    iterations += finishByNewton(problem, tolerance, start, answer);
+    if (computeResiduals(problem, answer.r).scaled_natural_map <= tolerance) {
+      solution = answer;
+      return true;
+    }
+    another = !cones && startFromCones(problem, attempt, start);
+  }
+  return false;
+}
+
+/// Passes. Where they stall, Newton tries to finish, ever more rarely; where it fails, they go on as if nothing had been.
 int solveBySweeps(const DelassusProblem& problem, const SolverDescription& description, DelassusSolution& solution) {
+  constexpr int kPatience = 100;  // iterations; what converges at all mostly needs fewer
+  const bool true_cone = description.method == SolverMethod::kPredictorCorrector;
   // A rival's answer is not one of the true cone: it is done when it repeats itself.
-  const double settled = description.method == SolverMethod::kPredictorCorrector ? 0.0 : 0.1 * description.tolerance;
+  const double settled = true_cone ? 0.0 : 0.1 * description.tolerance;
   ContactSweeps sweeps(problem, description, solution);
-  const SweepsReport report = iterate(sweeps, 0.5 * description.tolerance, settled, description.iterations);
-  solution.r = sweeps.impulses();
-  solution.u = problem.W * solution.r + problem.q;
-  solution.states = sweeps.states();
-  return report.iterations;
+  int iterations = 0;
+  int turn = description.iterations;
+  // Newton factors a matrix of all unknowns: where there are many, passes get more time before.
+  if (true_cone && isotropic(problem)) turn = std::max(kPatience, 3 * problem.contacts());
+  for (int attempt = 1;; ++attempt) {
+    turn = std::min(turn, description.iterations - iterations);
+    const SweepsReport report = sweeps.iterate(0.5 * description.tolerance, settled, turn);
+    iterations += report.iterations;
+    solution = {sweeps.impulses(), problem.W * sweeps.impulses() + problem.q, sweeps.states()};
+    const bool ended = report.converged || report.iterations < turn || iterations >= description.iterations;
+    if (ended || finish(problem, description.tolerance, attempt, iterations, solution)) return iterations;
+    turn = iterations;
+  }
 }
 
 }  // namespace

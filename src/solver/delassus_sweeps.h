@@ -5,9 +5,15 @@
 
 #include <vector>
 
+#include "solver/anderson.h"
 #include "solver/natural_map.h"
 
 namespace tissue_contact {
+
+struct SweepsReport {
+  int iterations = 0;
+  bool converged = false;  ///< the natural map met the tolerance
+};
 
 /// The velocity a contact has without its own impulse predicts how it slides; the one-contact solver corrects; W
 /// carries the change to all others at once. Each contact's answer is exact, so what repeats itself solves the problem.
@@ -18,11 +24,9 @@ class ContactSweeps {
   /// The four-sided cone is aligned once, along the tangential velocity of the warm start's u, or else of q.
   ContactSweeps(const DelassusProblem& problem, const SolverDescription& description, const DelassusSolution& solution);
 
-  /// Sets the impulses, and u = W r + q with them.
-  void restart(const VectorX& r);
-
-  /// Visits every contact `passes` times, forwards and backwards in turn.
-  void sweep(int passes);
+  /// Repeats two passes under Anderson's acceleration until the scaled natural map is <= tolerance, nothing changes any
+  /// more by more than `settled` (relative), or `iterations` are used up. Called again, it goes on.
+  SweepsReport iterate(double tolerance, double settled, int iterations);
 
   const VectorX& impulses() const { return r_; }
   const VectorX& velocities() const { return u_; }
@@ -32,6 +36,8 @@ class ContactSweeps {
   double naturalMapNorm() const;
 
  private:
+  void restart(const VectorX& r);  ///< sets the impulses, and u = W r + q with them
+  void pass();                     ///< visits every contact
   void correct(Eigen::Index contact);
 
   const DelassusProblem& problem_;
@@ -43,15 +49,7 @@ class ContactSweeps {
   std::vector<ContactState> states_;
   std::vector<int> flips_;                 ///< changes between static and kinetic, per contact
   std::vector<Vector2> previous_sliding_;  ///< m/s, per contact
+  AndersonMixing mixing_;
 };
-
-struct SweepsReport {
-  int iterations = 0;
-  bool converged = false;  ///< the natural map met the tolerance
-};
-
-/// Repeats passes forth and back under Anderson's acceleration until the scaled natural map is <= tolerance, nothing
-/// changes any more by more than `settled` (relative), or `iterations` are used up.
-SweepsReport iterate(ContactSweeps& sweeps, double tolerance, double settled, int iterations);
 
 }  // namespace tissue_contact

@@ -15,28 +15,32 @@ constexpr int kFirstSweeps = 20;  // most problems are near enough for Newton af
 constexpr int kMostSweeps = 1280;
 constexpr int kNewtonSteps = 20;
 
+DelassusSolution answerOf(const DelassusProblem& problem, const ContactSweeps& sweeps) {
+  return {sweeps.impulses(), problem.W * sweeps.impulses() + problem.q, sweeps.states()};
+}
+
+}  // namespace
+
 bool isotropic(const DelassusProblem& problem) {
   return std::all_of(problem.laws.begin(), problem.laws.end(),
                      [](const CoulombLaw& law) { return law.anisotropic == nullptr; });
 }
 
-/// Newton from the sweeps' answer, contacts changing over to their kinetic coefficient until all are consistent.
-int polish(const DelassusProblem& problem, double tolerance, VectorX& mu, VectorX& r) {
+int finishByNewton(const DelassusProblem& problem, double tolerance, const DelassusSolution& start,
+                   DelassusSolution& answer) {
+  const double aim = 0.1 * tolerance;
+  VectorX mu = chooseCoefficients(problem, start.states);
+  VectorX r = start.r;
   int steps = 0;
   NewtonReport newton;
   do {
-    newton = solveByNewton(problem, mu, tolerance, kNewtonSteps, r);
+    newton = solveByNewton(problem, mu, aim, kNewtonSteps, r);
     steps += newton.steps;
-  } while (newton.natural_map <= tolerance && releaseSliding(problem, r, tolerance, mu));
+  } while (newton.natural_map <= aim && releaseSliding(problem, r, aim, mu));
+  answer = answerWith(problem, mu, r, tolerance);
   return steps;
 }
 
-DelassusSolution answerOf(const DelassusProblem& problem, const ContactSweeps& sweeps) {
-  return {sweeps.impulses(), problem.W * sweeps.impulses() + problem.q, sweeps.states()};
-}
-
-/// Another start for Newton where sweeps keep circling: the answer under ever finer polyhedral cones, which a pivoting
-/// method finds wherever one is. @return false: too large for that.
 bool startFromCones(const DelassusProblem& problem, int turn, DelassusSolution& start) {
   constexpr int kMostUnknowns = 1000;
   SolverDescription description;
@@ -45,8 +49,6 @@ bool startFromCones(const DelassusProblem& problem, int turn, DelassusSolution& 
   solveCondensedLcp(problem, description, start);
   return true;
 }
-
-}  // namespace
 
 int solveReference(const DelassusProblem& problem, const SolverDescription& description, double tolerance,
                    DelassusSolution& solution) {
@@ -61,10 +63,9 @@ int solveReference(const DelassusProblem& problem, const SolverDescription& desc
   };
   int iterations = 0;
   const auto polishAndOffer = [&](const DelassusSolution& start) {
-    VectorX mu = chooseCoefficients(problem, start.states);
-    VectorX r = start.r;
-    iterations += polish(problem, aim, mu, r);
-    offer(answerWith(problem, mu, r, tolerance));
+    DelassusSolution answer;
+    iterations += finishByNewton(problem, tolerance, start, answer);
+    offer(answer);
   };
   constexpr int kPatience = 8;  // turns without halving the residual: there is no answer to be had, or none for us
   double halved = best;
@@ -77,7 +78,7 @@ int solveReference(const DelassusProblem& problem, const SolverDescription& desc
     } else if (turn > 0) {
       ++idle;
     }
-    iterations += iterate(sweeps, aim, 0.0, length).iterations;
+    iterations += sweeps.iterate(aim, 0.0, length).iterations;
     offer(answerOf(problem, sweeps));
     length = std::min(2 * length, kMostSweeps);
     if (best <= tolerance || !with_newton) continue;

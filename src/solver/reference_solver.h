@@ -14,4 +14,15 @@ namespace tissue_contact {
 int solveReference(const DelassusProblem& problem, const SolverDescription& description, double tolerance,
                    DelassusSolution& solution);
 
+/// Semismooth Newton from `start`, contacts changing over to their kinetic coefficient until all are consistent. Isotropic
+/// laws only. @param answer of Newton, also where it has not met the tolerance. @return steps made.
+int finishByNewton(const DelassusProblem& problem, double tolerance, const DelassusSolution& start,
+                   DelassusSolution& answer);
+
+/// Another start for Newton where passes keep circling: the answer under 16-sided (turn 1) and 64-sided (turn 2) cones,
+/// which a pivoting method finds wherever one is. @return false: too large for that, or no such turn.
+bool startFromCones(const DelassusProblem& problem, int turn, DelassusSolution& start);
+
+bool isotropic(const DelassusProblem& problem);  ///< all laws are
+
 }  // namespace tissue_contact

@@ -19,8 +19,8 @@ constexpr const char* kUsage =
 Solves a frictional contact problem file ("FC3D 1": u = W r + q, Coulomb friction).
   --solver NAME    predictor_corrector (default), reference, cone4, polyhedral, condensed_lcp
   --tolerance T    of the scaled natural map, default 1e-8; the reference is never solved to less than 1e-10
-  --iterations N   at most this many: passes over the contacts forth and back, turns of the reference, pivots of the
-                   condensed LCP per unknown; default 10000
+  --iterations N   at most this many: two passes over the contacts (or a Newton step, where those stall), turns of the
+                   reference, pivots of the condensed LCP per unknown; default 10000
   --sides K        of the cones of polyhedral and condensed_lcp: even, 4 to 64, default 8
   --json           one JSON object instead of text; impulses in N s, velocities in m/s
 The text is a solution file: comments with residuals, then `r` and 3n impulses, `u` and 3n velocities, n states.

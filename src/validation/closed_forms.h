@@ -19,6 +19,7 @@ void validateElasticModels(Report& report);
 void validateMembrane(Report& report);
 void validateLayerIndentation(Report& report);
 void validatePartialSlip(Report& report);
+void validateLanding(Report& report);
 void validateBenchmarkBlock(Report& report);
 void validateCoarsePress(Report& report);
 void validateGrasp(Report& report);

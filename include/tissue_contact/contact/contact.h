@@ -36,6 +36,12 @@ struct ContactKey {
   }
 };
 
+/// Both contacts are of the same shape, or other tissue, on the same tissue.
+inline bool sameShapes(const ContactKey& a, const ContactKey& b) {
+  return a.tissue == b.tissue && a.instrument == b.instrument && a.link == b.link && a.shape == b.shape &&
+         a.other_tissue == b.other_tissue;
+}
+
 /// A closest-point pair between a tissue surface point and an instrument shape, or a point of another tissue's surface
 /// that takes the shape's place: n then points from `other_tissue` into `tissue`.
 struct Contact {

@@ -44,7 +44,9 @@ struct ContactRow {
   Matrix3 R_WC = Matrix3::Identity();  ///< columns (n, t1, t2), n from the instrument into the tissue
   double gap_m = 0.0;                  ///< at the start of the step
   double required_u_n = 0.0;           ///< u_n must be at least this, m/s: -gap/dt, limited when penetrating deeply
-  Vector3 u_tool = Vector3::Zero();    ///< velocity of the instrument's material point, contact frame, m/s
+  Vector3 u_tool =
+      Vector3::Zero();  ///< velocity of the instrument's material point, contact frame, m/s; tangentially with what
+                        ///< the simulation lets the contact do besides (a landing, a slip taken back)
   CoulombLaw law;
   bool was_sliding = false;  ///< it was kinetic at the end of the previous step
 };
