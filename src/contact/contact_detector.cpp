@@ -24,8 +24,7 @@ struct TouchingShape {
   int link;          // index into RobotModel::links()
   Pose X_LS;
   std::unique_ptr<ShapeDistance> distance;
-  double half_extent;               ///< smallest, m
-  std::vector<std::size_t> others;  ///< the other shapes of the instrument, indices into Implementation::shapes
+  double half_extent;  ///< smallest, m
 };
 
 struct TouchableSurface {
@@ -43,20 +42,9 @@ std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instrum
     for (std::size_t l = 0; l < links.size(); ++l) {
       for (std::size_t s = 0; s < links[l].shapes.size(); ++s) {
         const CollisionShape& shape = links[l].shapes[s];
-        result.push_back({static_cast<int>(i),
-                          static_cast<int>(l),
-                          static_cast<int>(s),
-                          links[l].link,
-                          shape.X_LS,
-                          makeShapeDistance(shape),
-                          smallestHalfExtent(shape),
-                          {}});
+        result.push_back({static_cast<int>(i), static_cast<int>(l), static_cast<int>(s), links[l].link, shape.X_LS,
+                          makeShapeDistance(shape), smallestHalfExtent(shape)});
       }
-    }
-  }
-  for (std::size_t a = 0; a < result.size(); ++a) {
-    for (std::size_t b = 0; b < result.size(); ++b) {
-      if (a != b && result[a].instrument == result[b].instrument) result[a].others.push_back(b);
     }
   }
   return result;
@@ -90,10 +78,11 @@ struct ContactDetector::Implementation {
   std::vector<std::size_t> link_counts;  ///< per instrument
   std::vector<int> candidates;
   std::vector<ShapeContact> found;
+  int pinched = 0;  ///< contacts left out by the last detect(), because there is no room for them
 
   void detectPair(int tissue, const NodalVectors& positions, const TouchingShape& shape, const Pose& X_WS,
                   double margin, std::vector<Contact>& contacts);
-  void unite(const TouchingShape& shape, const std::vector<Pose>& X_WL, Contact& contact) const;
+  bool besideOthers(const TouchingShape& shape, const std::vector<std::vector<Pose>>& X_WL, Contact& contact) const;
   double surfaceDistance(TouchableSurface& surface, const NodalVectors& positions, const TouchingShape& shape,
                          const Pose& X_WS, double bound);
 };
@@ -128,16 +117,21 @@ void ContactDetector::detect(const std::vector<NodalVectors>& positions, const s
     requireSameSize("link poses of instrument", static_cast<int>(i), X_WL[i].size(), self.link_counts[i]);
   }
   contacts.clear();
+  self.pinched = 0;
   for (std::size_t tissue = 0; tissue < positions.size(); ++tissue) {
     requireSameSize("nodes of tissue", static_cast<int>(tissue), positions[tissue].cols(),
                     self.surfaces[tissue].node_count);
     self.surfaces[tissue].refitted = false;
     self.surfaces[tissue].box = boxAround(positions[tissue]);
     for (const TouchingShape& shape : self.shapes) {
-      const std::size_t first = contacts.size();
+      const auto first = static_cast<std::ptrdiff_t>(contacts.size());
       self.detectPair(static_cast<int>(tissue), positions[tissue], shape,
                       X_WL[shape.instrument][shape.link] * shape.X_LS, margin_m, contacts);
-      for (std::size_t c = first; c < contacts.size(); ++c) self.unite(shape, X_WL[shape.instrument], contacts[c]);
+      if (self.shapes.size() == 1) continue;
+      const auto pinched = std::remove_if(contacts.begin() + first, contacts.end(),
+                                          [&](Contact& contact) { return !self.besideOthers(shape, X_WL, contact); });
+      self.pinched += static_cast<int>(contacts.end() - pinched);
+      contacts.erase(pinched, contacts.end());
     }
   }
 }
@@ -165,28 +159,41 @@ void ContactDetector::Implementation::detectPair(int tissue, const NodalVectors&
   }
 }
 
-/// Turns a contact in the groove between this shape and another one of the instrument to the groove's filling.
-void ContactDetector::Implementation::unite(const TouchingShape& shape, const std::vector<Pose>& X_WL,
-                                            Contact& contact) const {
-  constexpr double kRadius = 0.5;  // of the smaller half extent: grooves are filled, jaws keep their outline
-  const PlacedShape own{shape.distance.get(), X_WL[shape.link] * shape.X_LS};
+/// Heeds the other shapes near a contact: turns it to the filling of the groove between this shape and another of the
+/// instrument. @return false where it is pinched: shapes that touch each other press its point from opposed sides. There
+/// is no room for tissue then and no force that would make any, so the point is let go.
+bool ContactDetector::Implementation::besideOthers(const TouchingShape& shape,
+                                                   const std::vector<std::vector<Pose>>& X_WL, Contact& contact) const {
+  constexpr double kRadius = 0.5;      // of the smaller half extent: grooves are filled, jaws keep their outline
+  constexpr double kRoom = 0.05;       // of that radius: shapes that near touch each other
+  constexpr double kSheetRoom = 0.25;  // of a sheet's thickness, if that is less
+  const double half_thickness = surfaces[contact.key.tissue].narrow_phase.halfThickness();
+  const PlacedShape own{shape.distance.get(), X_WL[shape.instrument][shape.link] * shape.X_LS};
   std::optional<SignedDistance> before;
   SignedDistance united;
-  for (const std::size_t index : shape.others) {
-    const TouchingShape& other = shapes[index];
+  for (const TouchingShape& other : shapes) {
+    if (&other == &shape) continue;
     const double radius = kRadius * std::min(shape.half_extent, other.half_extent);
-    const PlacedShape second{other.distance.get(), X_WL[other.link] * other.X_LS};
+    const PlacedShape second{other.distance.get(), X_WL[other.instrument][other.link] * other.X_LS};
     if (!boxAround(*other.distance, second.X_WS, radius).contains(contact.p_WC)) continue;
     if (!before) united = *(before = distanceAt(own, contact.p_WC));
+    const SignedDistance there = distanceAt(second, contact.p_WC);
+    const double room =
+        half_thickness > 0.0 ? std::min(kRoom * radius, 2.0 * kSheetRoom * half_thickness) : kRoom * radius;
+    if (areOpposed(*before, there) && before->distance + there.distance < room) return false;
     SignedDistance filled;
-    if (fillGroove(own, second, contact.p_WC, radius, *before, filled) && filled.distance < united.distance) {
+    if (other.instrument == shape.instrument && fillGroove(own, second, contact.p_WC, radius, *before, there, filled) &&
+        filled.distance < united.distance) {
       united = filled;
     }
   }
-  if (!before || !(united.distance < before->distance)) return;
+  if (!before || !(united.distance < before->distance)) return true;
   contact.gap_m += united.distance - before->distance;
   contact.R_WC = contactFrame(united.normal.normalized());
+  return true;
 }
+
+int ContactDetector::pinchedContacts() const { return implementation_->pinched; }
 
 bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL,
                               double margin_m, Contact& contact) const {
@@ -212,8 +219,7 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
     contact.p_WC = p_W;
     contact.R_WC = contactFrame(normal_W);
     contact.gap_m = gap;
-    implementation_->unite(shape, X_WL[shape.instrument], contact);
-    return true;
+    return implementation_->shapes.size() == 1 || implementation_->besideOthers(shape, X_WL, contact);
   }
   return false;
 }

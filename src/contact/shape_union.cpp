@@ -26,14 +26,19 @@ SignedDistance distanceAt(const PlacedShape& shape, const Vector3& p_W) {
   return here;
 }
 
+bool areOpposed(const SignedDistance& first, const SignedDistance& second) {
+  constexpr double kOpposed = -0.9;  // cosine: 26 degrees from each other's opposite
+  return first.normal.dot(second.normal) < kOpposed;
+}
+
 bool fillGroove(const PlacedShape& first, const PlacedShape& second, const Vector3& p_W, double radius_m,
-                const SignedDistance& own, SignedDistance& filled) {
+                const SignedDistance& at_first, const SignedDistance& at_second, SignedDistance& filled) {
   constexpr int kSteps = 4;            // of Newton's method; from planes it takes two to a thousandth of the radius
   constexpr double kPlaced = 0.01;     // of the radius: the ball touches both shapes
   constexpr double kFarthest = 4.0;    // radii: a ball that far away has slipped out of the groove
   constexpr double kNearCentre = 0.1;  // of the radius: no direction there, and nothing near to touch
-  SignedDistance a = own;
-  SignedDistance b = distanceAt(second, p_W);
+  SignedDistance a = at_first;
+  SignedDistance b = at_second;
   const double closes_after = std::max(0.0, a.distance + b.distance) / (a.normal + b.normal).norm();
   const double radius = radius_m * std::clamp(2.0 - closes_after / radius_m, 0.0, 1.0);
   if (!(radius > 0.0) || !(a.distance < radius && b.distance < radius)) return false;
@@ -56,7 +61,7 @@ bool fillGroove(const PlacedShape& first, const PlacedShape& second, const Vecto
   // The groove lies between the points that the ball touches.
   if (!(coefficients(a.normal, b.normal, centre - p_W).minCoeff() > 0.0)) return false;
   const double to_centre = (centre - p_W).norm();
-  if (!(to_centre > kNearCentre * radius) || !(radius - to_centre < own.distance)) return false;
+  if (!(to_centre > kNearCentre * radius) || !(radius - to_centre < at_first.distance)) return false;
   filled = {radius - to_centre, (centre - p_W) / to_centre};
   return true;
 }

@@ -26,10 +26,13 @@ struct PlacedShape {
 /// Signed distance at a point of the world; the normal in the world frame.
 SignedDistance distanceAt(const PlacedShape& shape, const Vector3& p_W);
 
+/// Whether what presses a point away from one shape presses it towards the other.
+bool areOpposed(const SignedDistance& first, const SignedDistance& second);
+
 /// The distance to the filled groove between two shapes.
-/// @param own what distanceAt(first, p_W) says. @param radius_m rho > 0.
-/// @param filled overwritten when the groove is nearer than `own`. @return whether it is.
+/// @param at_first, at_second what distanceAt() says of the shapes at p_W. @param radius_m rho > 0.
+/// @param filled overwritten when the groove is nearer than the first shape. @return whether it is.
 bool fillGroove(const PlacedShape& first, const PlacedShape& second, const Vector3& p_W, double radius_m,
-                const SignedDistance& own, SignedDistance& filled);
+                const SignedDistance& at_first, const SignedDistance& at_second, SignedDistance& filled);
 
 }  // namespace tissue_contact

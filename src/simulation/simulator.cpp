@@ -63,7 +63,8 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       mean_edge(meanSurfaceEdge(tissues)),
       motion(instruments),
       detector(instruments, surfacesOf(tissues), restPositionsOf(tissues)),
-      solver(makeContactSolver(scene.solver, environment.clock)) {
+      solver(makeContactSolver(scene.solver, environment.clock)),
+      load_watch(scene, tissues) {
   requireMethodForLaws(scene);
   requirePositive("step.max_step_s", scene.step.max_step_s, "s");
   requireNonNegative("advisor.sleep_error", scene.advisor.sleep_error);
@@ -128,6 +129,7 @@ void Simulator::Implementation::detectContacts(double dt) {
   constexpr double kMostEdges = 1e6;
   margin = std::min(margin, kMostEdges * mean_edge);
   detector.detect(x, motion.startPoses(), margin, contacts);
+  report.pinched_contacts = detector.pinchedContacts();
   if (pair_detector) {
     const double pair_margin = std::min(margin + kMarginFactor * tissue_travel, kMostPairEdges * mean_edge);
     pair_detector->detect(x, pair_margin, folds.apart(x, margin), contacts);
@@ -190,6 +192,7 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
   }
   report.advanced_s = report.interrupted ? report.substeps * dt : duration_s;
   all.sumWrenches();
+  all.load_watch.look(all.solved, all.x, report.implausible_load);
 }
 
 Wrench Simulator::wrench(int instrument) const { return implementation_->wrenches.at(instrument); }

@@ -69,6 +69,7 @@ struct Simulator::Implementation {
   std::vector<int> touched_nodes;  ///< scratch
   std::vector<SolvedContact> solved;
   std::vector<Wrench> wrenches;  ///< per instrument
+  LoadWatch load_watch;
   StepReport report;
   long step_count = 0;
   double last_dt = 0.0;  ///< of the step before, s

@@ -51,6 +51,10 @@ class ContactDetector {
   void detect(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL, double margin_m,
               std::vector<Contact>& contacts);
 
+  /// Contacts that the last detect() left out, because two shapes that touch each other press the point from opposed
+  /// sides: there is no room for it.
+  int pinchedContacts() const;
+
   /// Brings a contact found earlier up to date: the same material point (key, nodes, weights) against the same shape.
   /// Sets its p_WC, R_WC and gap_m. @return false when it is no contact any more: farther than `margin_m`, or its
   /// surface does not face the shape; and for a contact between tissues, which this detector does not know.

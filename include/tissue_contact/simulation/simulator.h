@@ -15,6 +15,7 @@
 #include "tissue_contact/instrument/instrument.h"
 #include "tissue_contact/scene/scene.h"
 #include "tissue_contact/simulation/build_scene.h"
+#include "tissue_contact/simulation/load_watch.h"
 #include "tissue_contact/solver/contact_solver.h"
 #include "tissue_contact/tissue/tissue.h"
 
@@ -42,6 +43,8 @@ struct StepReport {
   int open_contacts = 0;
   int static_contacts = 0;
   int kinetic_contacts = 0;
+  int pinched_contacts = 0;          ///< left out of the last step: shapes that touch each other leave them no room
+  ImplausibleLoad implausible_load;  ///< of its last step
 };
 
 /// Bounds on the work of one advance, for a caller that has to keep up with time.

@@ -1,0 +1,128 @@
+#include "tissue_contact/simulation/load_watch.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "tissue_contact/simulation/simulator.h"
+#include "tissue_contact/tissue/sheet_mesh.h"
+#include "tissue_contact/tissue/tet_mesh.h"
+
+namespace tissue_contact {
+namespace {
+
+double largestModulus(const TissueDescription& description) {
+  double largest = description.material.youngs_modulus_pa;
+  for (const TissueRegion& region : description.regions) {
+    largest = std::max(largest, region.material.youngs_modulus_pa);
+  }
+  return largest;
+}
+
+std::vector<double> nodeAreas(const Tissue& tissue) {
+  std::vector<double> areas(tissue.nodeCount(), 0.0);
+  for (const Triangle& triangle : tissue.surface()) {
+    const double third = triangleArea(tissue.restPositions(), triangle) / 3.0;
+    for (const int node : triangle) areas[node] += third;
+  }
+  return areas;
+}
+
+}  // namespace
+
+LoadWatch::LoadWatch(const Scene& scene, const std::vector<Tissue>& tissues) {
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    const std::vector<Tetrahedron>& elements = tissues[t].tetrahedra();
+    const auto nodes = static_cast<std::size_t>(tissues[t].nodeCount());
+    Body& body = bodies_.emplace_back();
+    body.tissue = &tissues[t];
+    body.modulus_pa = largestModulus(scene.tissues[t]);
+    body.node_area = nodeAreas(tissues[t]);
+    body.node_seen.assign(nodes, 0);
+    body.element_seen.assign(elements.size(), 0);
+    body.first_of_node.assign(nodes + 1, 0);
+    for (const Tetrahedron& element : elements) {
+      for (const int node : element) ++body.first_of_node[node + 1];
+    }
+    for (std::size_t i = 0; i < nodes; ++i) body.first_of_node[i + 1] += body.first_of_node[i];
+    body.elements_of_node.resize(body.first_of_node.back());
+    std::vector<int> next(body.first_of_node.begin(), body.first_of_node.end() - 1);
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      for (const int node : elements[e]) body.elements_of_node[next[node]++] = static_cast<int>(e);
+    }
+  }
+}
+
+void LoadWatch::look(const std::vector<SolvedContact>& contacts, const std::vector<NodalVectors>& positions,
+                     ImplausibleLoad& load) {
+  load = ImplausibleLoad();
+  worst_volume_ = 0.0;
+  for (std::size_t first = 0, end = 0; first < contacts.size(); first = end) {
+    const ContactKey& key = contacts[first].contact.key;
+    Body& body = bodies_[key.tissue];
+    const NodalVectors& x = positions[key.tissue];
+    ++looks_;
+    double force = 0.0;
+    double area = 0.0;
+    std::size_t strongest = first;
+    for (end = first; end < contacts.size(); ++end) {
+      const SolvedContact& contact = contacts[end];
+      if (contact.contact.key.tissue != key.tissue || contact.contact.key.instrument != key.instrument) break;
+      if (contact.state == ContactState::kOpen) continue;
+      force += contact.force_on_tissue_n.norm();
+      if (contact.force_on_tissue_n.norm() > contacts[strongest].force_on_tissue_n.norm()) strongest = end;
+      for (int i = 0; i < 3; ++i) {
+        const int node = contact.contact.nodes[i];
+        if (contact.contact.weights[i] == 0.0 || body.node_seen[node] == looks_) continue;
+        body.node_seen[node] = looks_;
+        area += body.node_area[node];
+        lookAtElements(body, node, x, key.instrument, key.tissue, load);
+      }
+    }
+    if (!(area > 0.0)) continue;
+    const double pressure = force / area;
+    if (!(pressure > load.pressure_pa)) continue;
+    load.pressure_pa = pressure;
+    load.modulus_pa = body.modulus_pa;
+    if (!(pressure > kMostPressure * body.modulus_pa) || load.inverted_elements > 0) continue;
+    load.found = true;
+    load.tissue = key.tissue;
+    load.instrument = key.instrument;
+    load.p_W = contacts[strongest].contact.p_WC;
+  }
+}
+
+void LoadWatch::lookAtElements(Body& body, int node, const NodalVectors& x, int instrument, int tissue,
+                               ImplausibleLoad& load) {
+  const std::vector<Tetrahedron>& elements = body.tissue->tetrahedra();
+  for (int i = body.first_of_node[node]; i < body.first_of_node[node + 1]; ++i) {
+    const int e = body.elements_of_node[i];
+    if (body.element_seen[e] == looks_) continue;
+    body.element_seen[e] = looks_;
+    const double volume = signedVolume(x, elements[e]) / signedVolume(body.tissue->restPositions(), elements[e]);
+    if (!(volume < 0.0)) continue;
+    ++load.inverted_elements;
+    if (!(volume < worst_volume_)) continue;
+    worst_volume_ = volume;
+    load.found = true;
+    load.tissue = tissue;
+    load.instrument = instrument;
+    load.p_W = Vector3::Zero();
+    for (const int corner : elements[e]) load.p_W += 0.25 * x.col(corner);
+  }
+}
+
+std::string implausibleLoadText(const ImplausibleLoad& load, const std::string& instrument, const std::string& tissue) {
+  std::ostringstream text;
+  text.precision(3);
+  text << "tissue '" << tissue << "' cannot bear what "
+       << (instrument.empty() ? "another tissue" : "'" + instrument + "'") << " does to it at (" << load.p_W.x() << ", "
+       << load.p_W.y() << ", " << load.p_W.z() << ") m: ";
+  if (load.inverted_elements > 0) text << load.inverted_elements << " of its elements are turned inside out";
+  if (load.inverted_elements > 0 && load.pressure_pa > 0.0) text << ", ";
+  text << "mean contact pressure " << load.pressure_pa << " Pa beside a Young's modulus of " << load.modulus_pa
+       << " Pa. The forces are not to be trusted. Is the tool where it should be (base_pose, joint_names, units)? "
+          "Deep or wide motion needs material.model neo_hookean and smaller cells under the tool";
+  return text.str();
+}
+
+}  // namespace tissue_contact
