@@ -180,7 +180,8 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
   StepReport& report = all.report;
   report.discarded = false;
   report.interrupted = false;
-  const int steps = all.motion.begin(duration_s, all.scene.step.max_step_s, joint_positions, limits.most_steps);
+  const double longest_s = limits.longest_step_s > 0.0 ? limits.longest_step_s : all.scene.step.max_step_s;
+  const int steps = all.motion.begin(duration_s, longest_s, joint_positions, limits.most_steps);
   report.jumped = all.motion.jumped();
   const double dt = duration_s / steps;
   for (report.substeps = 0; report.substeps < steps && !report.interrupted;) {
@@ -191,6 +192,8 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
   report.advanced_s = report.interrupted ? report.substeps * dt : duration_s;
   all.sumWrenches();
 }
+
+void Simulator::setSolverDeadline(double clock_s) { implementation_->solver->setDeadline(clock_s); }
 
 Wrench Simulator::wrench(int instrument) const { return implementation_->wrenches.at(instrument); }
 const VectorX& Simulator::jointPositions(int instrument) const { return implementation_->motion.positions(instrument); }
