@@ -17,6 +17,11 @@ Vector2 coefficients(const Vector3& a, const Vector3& b, const Vector3& p) {
 /// Normals nearer to parallel than this (sine squared) do not say where two shapes meet.
 constexpr double kParallel = 1e-6;
 
+/// Whether a ball around the point where the shapes are that far away touches both, to a hundredth of its radius.
+bool isPlaced(const SignedDistance& a, const SignedDistance& b, double radius) {
+  return std::max(std::abs(a.distance - radius), std::abs(b.distance - radius)) < 0.01 * radius;
+}
+
 }  // namespace
 
 SignedDistance distanceAt(const PlacedShape& shape, const Vector3& p_W) {
@@ -33,8 +38,7 @@ bool areOpposed(const SignedDistance& first, const SignedDistance& second) {
 
 bool fillGroove(const PlacedShape& first, const PlacedShape& second, const Vector3& p_W, double radius_m,
                 const SignedDistance& at_first, const SignedDistance& at_second, SignedDistance& filled) {
-  constexpr int kSteps = 4;            // of Newton's method; from planes it takes two to a thousandth of the radius
-  constexpr double kPlaced = 0.01;     // of the radius: the ball touches both shapes
+  constexpr int kSteps = 8;            // of Newton's method, none longer than the radius
   constexpr double kFarthest = 4.0;    // radii: a ball that far away has slipped out of the groove
   constexpr double kNearCentre = 0.1;  // of the radius: no direction there, and nothing near to touch
   SignedDistance a = at_first;
@@ -43,7 +47,7 @@ bool fillGroove(const PlacedShape& first, const PlacedShape& second, const Vecto
   const double radius = radius_m * std::clamp(2.0 - closes_after / radius_m, 0.0, 1.0);
   if (!(radius > 0.0) || !(a.distance < radius && b.distance < radius)) return false;
   Vector3 centre = p_W;
-  for (int step = 0; step < kSteps; ++step) {
+  for (int k = 0; k < kSteps; ++k) {
     const double cosine = a.normal.dot(b.normal);
     if (!(1.0 - cosine * cosine > kParallel)) return false;
     const double short_a = radius - a.distance;
@@ -53,11 +57,10 @@ bool fillGroove(const PlacedShape& first, const PlacedShape& second, const Vecto
     if (!((centre - p_W).norm() < kFarthest * radius_m)) return false;
     a = distanceAt(first, centre);
     b = distanceAt(second, centre);
-    if (std::max(std::abs(a.distance - radius), std::abs(b.distance - radius)) < kPlaced * radius) break;
+    if (isPlaced(a, b, radius)) break;
   }
-  const double off = std::max(std::abs(a.distance - radius), std::abs(b.distance - radius));
   const double cosine = a.normal.dot(b.normal);
-  if (!(off < kPlaced * radius) || !(1.0 - cosine * cosine > kParallel)) return false;
+  if (!isPlaced(a, b, radius) || !(1.0 - cosine * cosine > kParallel)) return false;
   // The groove lies between the points that the ball touches.
   if (!(coefficients(a.normal, b.normal, centre - p_W).minCoeff() > 0.0)) return false;
   const double to_centre = (centre - p_W).norm();

@@ -120,18 +120,18 @@ void fillTopology(const Tissue& tissue, TissueTopology& message) {
   }
 }
 
-void fillMesh(const Simulator& simulator, int tissue, std::int64_t stamp_ns, TissueMesh& message) {
-  message.header.stamp = toTime(stamp_ns);
-  message.step = static_cast<std::uint64_t>(simulator.stepCount());
-  fillPoints(simulator.positions(tissue), message.positions);
+void fillMesh(const SceneSnapshot& snapshot, int tissue, TissueMesh& message) {
+  message.header.stamp = toTime(snapshot.stamp_ns);
+  message.step = static_cast<std::uint64_t>(snapshot.step);
+  fillPoints(snapshot.positions[static_cast<std::size_t>(tissue)], message.positions);
 }
 
-void fillContacts(const Simulator& simulator, std::int64_t stamp_ns, ContactArray& message) {
-  message.header.stamp = toTime(stamp_ns);
-  message.step = static_cast<std::uint64_t>(simulator.stepCount());
-  message.contacts.resize(simulator.contacts().size());
+void fillContacts(const Simulator& simulator, const SceneSnapshot& snapshot, ContactArray& message) {
+  message.header.stamp = toTime(snapshot.stamp_ns);
+  message.step = static_cast<std::uint64_t>(snapshot.step);
+  message.contacts.resize(snapshot.contacts.size());
   for (std::size_t i = 0; i < message.contacts.size(); ++i) {
-    const SolvedContact& solved = simulator.contacts()[i];
+    const SolvedContact& solved = snapshot.contacts[i];
     const ContactKey& key = solved.contact.key;
     auto& contact = message.contacts[i];
     contact.tissue = simulator.tissues()[static_cast<std::size_t>(key.tissue)].name();

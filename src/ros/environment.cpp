@@ -26,11 +26,6 @@
 namespace tissue_contact {
 namespace {
 
-double secondsSinceStart() {
-  static const auto start = std::chrono::steady_clock::now();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 std::string urdfParameter(const ros::NodeHandle& private_node, const std::string& parameter) {
   const std::string tried_first = private_node.resolveName(parameter);
   std::string name = tried_first;
@@ -102,6 +97,11 @@ Pose frameInBag(const std::string& frame, const std::string& world_frame, const 
 
 }  // namespace
 
+double steadySeconds() {
+  static const auto start = std::chrono::steady_clock::now();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 std::string packagePath(const std::string& package) {
   // Not ros::package::getPath(): it prints two lines of its own before the caller's message says what is wrong.
   rospack::Rospack rospack;
@@ -122,7 +122,7 @@ SceneEnvironment nodeEnvironment(const ros::NodeHandle& private_node, const std:
   requireNonNegative("parameter '" + private_node.resolveName("tf_timeout_s") + "'", timeout_s, "s");
   SceneEnvironment environment;
   environment.package_path = packagePath;
-  environment.clock = secondsSinceStart;
+  environment.clock = steadySeconds;
   environment.urdf_text = [private_node](const std::string& parameter) {
     return urdfParameter(private_node, parameter);
   };
@@ -136,7 +136,7 @@ SceneEnvironment bagEnvironment(const std::string& bag_file, const std::string& 
                                 const std::string& world_frame) {
   SceneEnvironment environment;
   environment.package_path = packagePath;
-  environment.clock = secondsSinceStart;
+  environment.clock = steadySeconds;
   environment.urdf_text = [urdf_file](const std::string& parameter) {
     if (urdf_file.empty()) {
       throw std::invalid_argument("the scene takes a URDF from parameter '" + parameter +

@@ -4,11 +4,54 @@
 
 #include <ros/console.h>
 
+#include <algorithm>
 #include <sstream>
+#include <utility>
 
 #include "tissue_contact/ros/conversions.h"
+#include "tissue_contact/ros/environment.h"
 
 namespace tissue_contact {
+namespace {
+
+int nodesOf(const Simulator& simulator) {
+  int nodes = 0;
+  for (const Tissue& tissue : simulator.tissues()) nodes += tissue.nodeCount();
+  return nodes;
+}
+
+void addFigures(const LiveFigures& figures, double worst_lag_s, diagnostic_updater::DiagnosticStatusWrapper& status) {
+  status.add("policy", figures.newest_state ? "newest_state" : "every_state");
+  status.add("lag_s", worst_lag_s);
+  status.add("largest lag_s", figures.largest_lag_s);
+  status.add("real_time_factor", figures.real_time_factor);
+  status.add("step cost_s", figures.step_cost_s);
+  status.add("joint states: received", figures.received);
+  for (int v = 0; v < kVerdictCount; ++v) {
+    status.add(std::string("joint states: ") + verdictText(static_cast<Verdict>(v)),
+               figures.by_verdict[static_cast<std::size_t>(v)]);
+  }
+  status.add("joint states: merged", figures.merged);
+  status.add("joint states: dropped", figures.dropped);
+  status.add("joint states: waiting", figures.waiting);
+  status.add("joint states: behind_s", figures.behind_s);
+  status.add("wrenches published", figures.wrenches);
+  status.add("steps", figures.steps);
+  status.add("intervals with lengthened steps", figures.lengthened);
+  status.add("resets", figures.resets);
+  status.add("gaps", figures.gaps);
+  status.add("jumps", figures.jumps);
+  status.add("intervals without a finite answer", figures.not_finite);
+  status.add("intervals not converged", figures.not_converged);
+  status.add("intervals out of time", figures.out_of_time);
+  status.add("last not converged", figures.last_not_converged);
+  status.add("snapshots dropped", figures.snapshots_dropped);
+}
+
+}  // namespace
+
+Health::Health(const Simulator& simulator, const JointStatePlayer& player, const JointStateInbox& inbox)
+    : simulator_(simulator), player_(player), inbox_(inbox) {}
 
 bool Health::Throttle::pass() {
   constexpr std::chrono::seconds kPeriod(5);
@@ -18,12 +61,30 @@ bool Health::Throttle::pass() {
   return true;
 }
 
-bool Health::note(const PlayedSample& played, bool stepped) {
+void Health::noteWork(std::optional<double> received_s) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  working_on_s_ = received_s;
+  held_by_player_ = player_.waiting();
+}
+
+bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
   warn(played);
-  if (played.verdict != Verdict::kAccepted) return false;
-  if (played.was_reset) broken_ = false;
-  const bool finite = isFinite(simulator_);
-  if (stepped) noteStep(played, finite);
+  const bool accepted = played.verdict == Verdict::kAccepted;
+  const bool finite = accepted && isFinite(simulator_);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (int v = 0; v < kVerdictCount; ++v) {
+    figures_.by_verdict[static_cast<std::size_t>(v)] = player_.count(static_cast<Verdict>(v));
+  }
+  figures_.accepted = player_.count(Verdict::kAccepted);
+  figures_.merged = player_.merged();
+  figures_.resets = player_.resets();
+  figures_.gaps = player_.gaps();
+  held_by_player_ = player_.waiting();
+  figures_.step_cost_s = step_cost_s;
+  if (!accepted) return false;
+  if (played.was_reset) figures_.broken = false;
+  played_stamp_ns_ = played.stamp_ns;
+  if (steps > 0) noteSteps(played, steps, finite);
   return finite;
 }
 
@@ -44,28 +105,35 @@ void Health::warn(const PlayedSample& played) {
                                                                      << " s: simulated as "
                                                                      << simulator_.scene().step.max_gap_s << " s");
   }
+  if (simulator_.report().jumped && jumps_.pass()) {
+    ROS_WARN_STREAM("an instrument moved too far before " << toTime(played.stamp_ns)
+                                                          << " s to be swept: it was placed at its new position");
+  }
 }
 
-void Health::noteStep(const PlayedSample& played, bool finite) {
+/// What an interval with steps in it did to the figures. The lock is held.
+void Health::noteSteps(const PlayedSample& played, int steps, bool finite) {
   const StepReport& report = simulator_.report();
-  if (report.jumped) {
-    ++jump_count_;
-    if (jumps_.pass()) {
-      ROS_WARN_STREAM("an instrument moved too far before " << toTime(played.stamp_ns)
-                                                            << " s to be swept: it was placed at its new position");
-    }
-  }
+  figures_.steps += steps;
+  figures_.simulated_s += report.advanced_s;
+  real_time_factor_.note(steadySeconds(), report.advanced_s);
+  constexpr double kRoundOff = 1e-9;  // of stamps, as a share of a step: such a step is no longer one
+  if (report.advanced_s >
+      (1.0 + kRoundOff) * steps * longestStep(figures_.newest_state, simulator_.scene().step.max_step_s))
+    ++figures_.lengthened;
+  if (report.jumped) ++figures_.jumps;
   if (report.stop != StopReason::kTolerance) {
-    ++not_converged_count_;
+    ++figures_.not_converged;
+    if (report.stop == StopReason::kTimeBudget) ++figures_.out_of_time;
     std::ostringstream text;
     text << toTime(played.stamp_ns) << " s: momentum " << report.residuals.momentum << ", penetration "
          << report.residuals.penetration_m << " m, cone " << report.residuals.cone_violation_n << " N after "
          << report.iterations << " iterations";
-    last_not_converged_ = text.str();
+    figures_.last_not_converged = text.str();
   }
   if (!report.discarded && finite) return;
-  ++not_finite_count_;
-  if (!broken_) {
+  ++figures_.not_finite;
+  if (!figures_.broken) {
     ROS_ERROR_STREAM("a step of the interval ending at "
                      << toTime(played.stamp_ns) << " s had no finite answer; "
                      << (finite ? "the tissues were stopped where they were and its contact forces, so also the wrench "
@@ -73,37 +141,105 @@ void Health::noteStep(const PlayedSample& played, bool finite) {
                                 : "nothing is published for it")
                      << ". Look for very stiff or very light tissue, or lower step.max_step_s");
   }
-  broken_ = true;
+  figures_.broken = true;
 }
 
-std::int64_t Health::troubles() const {
-  std::int64_t sum = player_.gaps() + jump_count_ + not_finite_count_;
-  for (int v = 1; v < kVerdictCount; ++v) sum += player_.count(static_cast<Verdict>(v));
-  return sum;
+void Health::noteWrenches(std::size_t count, std::optional<double> lag_s) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  figures_.wrenches += static_cast<std::int64_t>(count);
+  if (!lag_s) return;
+  figures_.lag_s = *lag_s;
+  figures_.largest_lag_s = std::max(figures_.largest_lag_s, *lag_s);
+  worst_lag_s_ = std::max(worst_lag_s_, *lag_s);
 }
 
-void Health::fill(diagnostic_updater::DiagnosticStatusWrapper& status) {
+void Health::noteSnapshotsDropped(std::int64_t dropped) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  figures_.snapshots_dropped = dropped;
+}
+
+void Health::notePolicy(bool newest_state) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  figures_.newest_state = newest_state;
+}
+
+LiveFigures Health::figures() const {
+  const JointStateInbox::Counts inbox = inbox_.counts();
+  const double now_s = steadySeconds();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  LiveFigures figures = figures_;
+  figures.received = inbox.received;
+  figures.dropped = inbox.dropped;
+  figures.waiting = static_cast<std::int64_t>(inbox.waiting) + held_by_player_;
+  figures.real_time_factor = real_time_factor_.value(now_s);
+  // A wrench that is due and has not gone out is late already.
+  if (working_on_s_) figures.lag_s = std::max(figures.lag_s, now_s - *working_on_s_);
+  if (!figures.newest_state && inbox.waiting > 0)
+    figures.lag_s = std::max(figures.lag_s, now_s - inbox.oldest_received_s);
+  if (inbox.waiting > 0)
+    figures.behind_s = std::max(0.0, 1e-9 * static_cast<double>(inbox.newest_stamp_ns - played_stamp_ns_));
+  return figures;
+}
+
+void Health::addTo(Status& status) const {
+  const LiveFigures figures = this->figures();
+  const auto count = [](std::int64_t value) { return static_cast<std::uint64_t>(value); };
+  const auto refused = [&](Verdict verdict) { return count(figures.by_verdict[static_cast<std::size_t>(verdict)]); };
+  status.policy = figures.newest_state ? Status::POLICY_NEWEST_STATE : Status::POLICY_EVERY_STATE;
+  status.lag = figures.lag_s;
+  status.real_time_factor = figures.real_time_factor;
+  status.joint_states_received = count(figures.received);
+  status.joint_states_merged = count(figures.merged);
+  status.joint_states_dropped = count(figures.dropped);
+  status.joint_states_waiting = count(figures.waiting);
+  status.refused_duplicate_stamp = refused(Verdict::kDuplicateStamp);
+  status.refused_bad_stamp = refused(Verdict::kBadStamp);
+  status.refused_not_finite = refused(Verdict::kNotFinite);
+  status.refused_bad_length = refused(Verdict::kBadLength);
+  status.refused_no_known_joint = refused(Verdict::kNoKnownJoint);
+  status.refused_late = refused(Verdict::kLate);
+  status.lengthened_intervals = count(figures.lengthened);
+}
+
+/// The largest since the last call: of wrenches that went out, and of one that is still due.
+double Health::worstLag(const LiveFigures& figures) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  double worst = std::exchange(worst_lag_s_, 0.0);
+  if (working_on_s_ || figures.waiting > 0) worst = std::max(worst, figures.lag_s);
+  return worst;
+}
+
+void Health::fill(std::int64_t missing, diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const LiveFigures now = figures();
+  const double worst_lag_s = worstLag(now);
+  summarize(now, worst_lag_s, status);
+  addFigures(now, worst_lag_s, status);
+  status.add("joint states: missing by header.seq", missing);
+  told_ = now;
+}
+
+void Health::summarize(const LiveFigures& now, double worst_lag_s,
+                       diagnostic_updater::DiagnosticStatusWrapper& status) {
   using Level = diagnostic_msgs::DiagnosticStatus;
-  const std::int64_t sum = troubles();
-  const bool any_new = sum > troubles_told_;
-  troubles_told_ = sum;
-  if (broken_) {
+  const StepDescription& step = simulator_.scene().step;
+  const double bound_s = lagBound(now, step.max_lag_s);
+  const LagVerdict lag = judgeLag(worst_lag_s, bound_s);
+  const bool is_strained = now.newest_state && now.lengthened > told_.lengthened;
+  if (now.broken) {
     status.summary(Level::ERROR, "a step had no finite answer");
-  } else if (any_new) {
-    status.summary(Level::WARN, "joint states refused, or motion cut short");
+  } else if (lag != LagVerdict::kWithinBound) {
+    status.summaryf(lag == LagVerdict::kFarOverBound ? Level::ERROR : Level::WARN,
+                    "wrenches late by up to %.3g s, more than %.3g s", worst_lag_s, bound_s);
+  } else if (is_strained) {
+    status.summary(Level::WARN, "steps lengthened, since the machine does not keep up with max_step_s");
+  } else if (now.troubles() > told_.troubles()) {
+    status.summary(Level::WARN, "joint states refused or dropped, or motion cut short");
   } else {
-    status.summary(Level::OK, player_.count(Verdict::kAccepted) > 0 ? "running" : "no joint state yet");
+    status.summary(Level::OK, now.accepted > 0 ? "running" : "no joint state yet");
   }
-  for (int v = 0; v < kVerdictCount; ++v) {
-    const auto verdict = static_cast<Verdict>(v);
-    status.add(std::string("joint states: ") + verdictText(verdict), player_.count(verdict));
-  }
-  status.add("resets", player_.resets());
-  status.add("gaps", player_.gaps());
-  status.add("jumps", jump_count_);
-  status.add("intervals without a finite answer", not_finite_count_);
-  status.add("intervals not converged", not_converged_count_);
-  status.add("last not converged", last_not_converged_);
+  if (advised_ || (lag == LagVerdict::kWithinBound && !is_strained)) return;
+  advised_ = true;
+  ROS_WARN_STREAM("does not keep up: " << keepUpAdvice(now, step.max_step_s, step.max_lag_s, nodesOf(simulator_)));
 }
 
 }  // namespace tissue_contact

@@ -2,9 +2,14 @@
 /// Room `ros`: see node.h.
 #include "tissue_contact/ros/node.h"
 
+#include <ros/callback_queue.h>
+#include <ros/console.h>
 #include <ros/init.h>
+#include <ros/time.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <exception>
 #include <stdexcept>
 #include <string>
@@ -15,9 +20,9 @@
 namespace tissue_contact {
 namespace {
 
-/// Every joint state must give a wrench, so none may be dropped while a step takes long: a bag played too fast for this
+/// Where every joint state gives a wrench none may be dropped while a step takes long: a bag played too fast for this
 /// machine waits here. Bounded, because nothing may grow for ever: 200 s of a 500 Hz topic, about 60 MB.
-constexpr int kJointStateQueue = 100000;
+constexpr std::size_t kJointStateQueue = 100000;
 
 Simulator makeSimulator(const ros::NodeHandle& private_node) {
   const std::string parameter = private_node.resolveName("scene");
@@ -38,63 +43,100 @@ Simulator makeSimulator(const ros::NodeHandle& private_node) {
 
 }  // namespace
 
-Node::Node()
-    : private_node_("~"),
+Node::Node(ShutdownGuard& guard)
+    : guard_(guard),
+      private_node_("~"),
       simulator_(makeSimulator(private_node_)),
       player_(simulator_),
-      outputs_(private_node_, simulator_, player_),
-      health_(simulator_, player_) {
+      inbox_(kJointStateQueue),
+      health_(simulator_, player_, inbox_),
+      outputs_(private_node_, simulator_, player_, health_),
+      stepper_(simulator_, player_, inbox_, outputs_, health_, ros::Time::isSimTime()),
+      receiver_(inbox_) {
   for (const std::string& line : simulator_.advice()) ROS_INFO_STREAM("advisor: " << line);
   updater_.setHardwareID("none");
-  updater_.add("tissue contact", [this](diagnostic_updater::DiagnosticStatusWrapper& status) { health_.fill(status); });
-  // By the wall clock: with simulated time a bag that is paused or over would silence the diagnostics.
-  diagnostics_timer_ =
-      node_.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_.force_update(); });
-  subscribe();
+  updater_.add("tissue contact", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    health_.fill(receiver_.missing(), status);
+  });
 }
 
-void Node::subscribe() {
-  for (std::size_t i = 0; i < player_.topics().size(); ++i) {
-    const auto callback = [this, i](const sensor_msgs::JointStateConstPtr& message) {
-      handle(static_cast<int>(i), *message);
-    };
-    subscribers_.push_back(node_.subscribe<sensor_msgs::JointState>(
-        player_.topics()[i], kJointStateQueue, callback, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
+Node::~Node() {
+  guard_.setLastWords(nullptr);
+  stop();
+}
+
+int Node::run() {
+  guard_.setLastWords([this] {
+    tellCounts();
+    ros::shutdown();  // so that the master forgets us
+  });
+  outputs_.start([this] { inbox_.wake(); });
+  stepper_.start();
+  receiver_.start(player_.topics());
+  diagnostics_thread_ = std::thread([this] { tellDiagnostics(); });
+  constexpr double kWakeUp = 0.05;  // s: how long a signal may go unseen
+  while (ros::ok() && !guard_.asked() && !stepper_.failed()) {
+    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(kWakeUp));
   }
+  if (!stepper_.failed()) guard_.ask();  // rosnode kill: nothing may hang then either
+  stop();
+  tellCounts();
+  return stepper_.failed() ? 1 : 0;
 }
 
-void Node::handle(int topic, const sensor_msgs::JointState& message) {
-  player_.push(topic, toSample(message));
-  while (playNext()) {
+void Node::stop() {
+  stepper_.stop();
+  receiver_.stop();
+  {
+    const std::lock_guard<std::mutex> lock(diagnostics_mutex_);
+    diagnostics_stop_ = true;
   }
+  diagnostics_changed_.notify_all();
+  if (diagnostics_thread_.joinable()) diagnostics_thread_.join();
 }
 
-/// Plays and publishes one sample; false when none is ready.
-bool Node::playNext() {
+/// By the wall clock: with simulated time a bag that is paused or over would silence the diagnostics.
+void Node::tellDiagnostics() {
   using Clock = std::chrono::steady_clock;
-  const long steps_before = simulator_.stepCount();
-  const Clock::time_point start = Clock::now();
-  const auto played = player_.playNext();
-  if (!played) return false;
-  const std::chrono::duration<double> elapsed = Clock::now() - start;
-  const auto steps = static_cast<int>(simulator_.stepCount() - (played->was_reset ? 0 : steps_before));
-  if (health_.note(*played, steps > 0)) {
-    outputs_.publish(*played, steps, steps > 0 ? elapsed.count() / steps : 0.0);
+  constexpr std::chrono::seconds kPeriod(1);
+  std::unique_lock<std::mutex> lock(diagnostics_mutex_);
+  for (Clock::time_point next = Clock::now() + kPeriod;
+       !diagnostics_changed_.wait_until(lock, next, [this] { return diagnostics_stop_; });
+       next = std::max(next + kPeriod, Clock::now())) {
+    lock.unlock();
+    updater_.force_update();
+    lock.lock();
   }
-  return true;
+}
+
+void Node::tellCounts() {
+  if (counts_told_.exchange(true)) return;
+  const std::string line = countsLine(health_.figures());
+  if (ros::ok()) {
+    ROS_INFO_STREAM(line);
+  } else {
+    std::printf("%s\n", line.c_str());  // after rosnode kill the log is closed
+    std::fflush(stdout);
+  }
 }
 
 int runNode(int argc, char** argv) {
-  ros::init(argc, argv, "tissue_contact");
-  const ros::NodeHandle keep_alive;  // so that the fatal message still reaches /rosout
+  ShutdownGuard guard;
+  ros::init(argc, argv, "tissue_contact", ros::init_options::NoSigintHandler);
+  int code = 1;
   try {
-    const Node node;
-    ros::spin();
-    return 0;
+    const ros::NodeHandle keep_alive;  // so that the fatal message still reaches /rosout
+    try {
+      code = Node(guard).run();
+    } catch (const std::exception& error) {
+      if (guard.asked()) return 0;  // what was waited for need not be there any more
+      ROS_FATAL_STREAM(error.what());
+    }
   } catch (const std::exception& error) {
     ROS_FATAL_STREAM(error.what());
-    return 1;
   }
+  ros::shutdown();
+  return code;
 }
 
 }  // namespace tissue_contact

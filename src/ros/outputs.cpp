@@ -7,15 +7,13 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace tissue_contact {
 namespace {
 
 /// Wrenches must not be lost to a subscriber that stalls: 20 s of 500 Hz.
 constexpr int kWrenchQueue = 10000;
-/// The others are samples of a state; a subscriber that stalls wants the newest.
-constexpr int kStateQueue = 10;
-
 double numberParameter(const ros::NodeHandle& node, const std::string& name, double otherwise) {
   double value = otherwise;
   if (node.hasParam(name) && !node.getParam(name, value)) {
@@ -65,11 +63,13 @@ void checkNames(const Simulator& simulator) {
 
 }  // namespace
 
-Outputs::Outputs(const ros::NodeHandle& private_node, const Simulator& simulator, const JointStatePlayer& player)
+Outputs::Outputs(const ros::NodeHandle& private_node, const Simulator& simulator, const JointStatePlayer& player,
+                 const Health& health)
     : node_(private_node),
       simulator_(simulator),
       player_(player),
-      scene_markers_(simulator, markerStyle(node_)),
+      health_(health),
+      bulky_(simulator, markerStyle(node_)),
       mesh_rate_(simulator.scene().publish.mesh_rate_hz),
       contacts_rate_(simulator.scene().publish.contacts_rate_hz),
       status_rate_(simulator.scene().publish.status_rate_hz),
@@ -79,55 +79,68 @@ Outputs::Outputs(const ros::NodeHandle& private_node, const Simulator& simulator
     wrenches_.emplace_back();
     wrenches_.back().header.frame_id = instrument.model().links()[static_cast<std::size_t>(instrument.tipLink())].name;
   }
-  for (const Tissue& tissue : simulator.tissues()) {
-    meshes_.emplace_back();
-    meshes_.back().header.frame_id = simulator.scene().world_frame;
-    meshes_.back().tissue = tissue.name();
-  }
-  contacts_.header.frame_id = simulator.scene().world_frame;
-  status_.header.frame_id = simulator.scene().world_frame;
-  advertise();
 }
 
-void Outputs::advertise() {
-  const PublishDescription& publish = simulator_.scene().publish;
+void Outputs::start(std::function<void()> on_newcomer) {
   for (const Instrument& instrument : simulator_.instruments()) {
     wrench_publishers_.push_back(
         node_.advertise<geometry_msgs::WrenchStamped>(instrument.name() + "/wrench", kWrenchQueue));
   }
   for (const Tissue& tissue : simulator_.tissues()) {
     topology_publishers_.push_back(node_.advertise<TissueTopology>(tissue.name() + "/topology", 1, true));
-    if (publish.mesh_rate_hz > 0.0) {
-      mesh_publishers_.push_back(node_.advertise<TissueMesh>(tissue.name() + "/mesh", kStateQueue));
-    }
   }
-  if (publish.contacts_rate_hz > 0.0) contacts_publisher_ = node_.advertise<ContactArray>("contacts", kStateQueue);
-  if (publish.status_rate_hz > 0.0) status_publisher_ = node_.advertise<Status>("status", kStateQueue);
-  if (publish.markers_rate_hz > 0.0) {
-    markers_publisher_ = node_.advertise<visualization_msgs::MarkerArray>(
-        "markers", kStateQueue, [this](const ros::SingleSubscriberPublisher&) { showToNewcomer(); });
-  }
-  if (publish.tf) broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
+  if (simulator_.scene().publish.tf) broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
+  bulky_.start(node_, std::move(on_newcomer));
 }
 
-/// RViz opened before or between recordings should not stay empty.
-void Outputs::showToNewcomer() {
-  if (isFinite(simulator_)) markers_publisher_.publish(scene_markers_.update(last_stamp_ns_));
+void Outputs::publishWrenches(const PlayedSample& played) {
+  for (const int i : played.instruments) {
+    const auto index = static_cast<std::size_t>(i);
+    fillWrench(simulator_.wrench(i), played.stamp_ns, wrenches_[index]);
+    wrench_publishers_[index].publish(wrenches_[index]);
+  }
 }
 
-void Outputs::publish(const PlayedSample& played, int substeps, double step_time_s) {
+void Outputs::publishState(const PlayedSample& played, int substeps, double step_time_s) {
   if (played.was_reset) {
     for (MessageTimeRate* rate : {&mesh_rate_, &contacts_rate_, &status_rate_, &markers_rate_}) rate->reset();
   }
   const bool is_new_stamp = played.stamp_ns != last_stamp_ns_;
   last_stamp_ns_ = played.stamp_ns;
   if (!topologies_published_) publishTopologies(played.stamp_ns);
-  publishWrenches(played);
-  if (mesh_rate_.due(played.stamp_ns)) publishMeshes(played.stamp_ns);
-  if (contacts_rate_.due(played.stamp_ns)) publishContacts(played.stamp_ns);
-  if (status_rate_.due(played.stamp_ns)) publishStatus(played.stamp_ns, substeps, step_time_s);
-  if (markers_rate_.due(played.stamp_ns)) publishMarkers(played.stamp_ns);
+  publishSnapshot(played.stamp_ns, substeps, step_time_s);
   if (broadcaster_ && is_new_stamp) publishTransforms(played.stamp_ns);  // tf2 warns about repeated stamps
+}
+
+void Outputs::publishSnapshot(std::int64_t stamp_ns, int substeps, double step_time_s) {
+  const bool mesh = mesh_rate_.due(stamp_ns) && bulky_.meshIsWanted();
+  const bool contacts = contacts_rate_.due(stamp_ns) && bulky_.contactsAreWanted();
+  const bool status = status_rate_.due(stamp_ns) && bulky_.statusIsWanted();
+  const bool markers = markers_rate_.due(stamp_ns) && bulky_.markersAreWanted();
+  if (!mesh && !contacts && !status && !markers) return;
+  std::unique_ptr<SceneSnapshot> snapshot = bulky_.queue().buffer();
+  snapshot->mesh = mesh;
+  snapshot->contact_array = contacts;
+  snapshot->with_status = status;
+  snapshot->markers = markers;
+  takeSnapshot(simulator_, stamp_ns, *snapshot);
+  if (status) {
+    snapshot->status.header.frame_id = simulator_.scene().world_frame;
+    fillStatus(simulator_, player_, stamp_ns, snapshot->status);
+    health_.addTo(snapshot->status);
+    snapshot->status.substeps = static_cast<std::uint32_t>(substeps);
+    snapshot->status.step_time = step_time_s;
+  }
+  bulky_.queue().put(std::move(snapshot));
+}
+
+/// RViz opened before or between recordings should not stay empty.
+void Outputs::showToNewcomer() {
+  if (!bulky_.takeNewcomer() || !isFinite(simulator_)) return;
+  std::unique_ptr<SceneSnapshot> snapshot = bulky_.queue().buffer();
+  snapshot->markers = true;
+  takeSnapshot(simulator_, last_stamp_ns_, *snapshot);
+  bulky_.queue().put(std::move(snapshot));
 }
 
 void Outputs::publishTopologies(std::int64_t stamp_ns) {
@@ -139,41 +152,6 @@ void Outputs::publishTopologies(std::int64_t stamp_ns) {
     topology_publishers_[t].publish(message);
   }
   topologies_published_ = true;
-}
-
-void Outputs::publishWrenches(const PlayedSample& played) {
-  for (const int i : played.instruments) {
-    const auto index = static_cast<std::size_t>(i);
-    fillWrench(simulator_.wrench(i), played.stamp_ns, wrenches_[index]);
-    wrench_publishers_[index].publish(wrenches_[index]);
-  }
-}
-
-void Outputs::publishMeshes(std::int64_t stamp_ns) {
-  for (std::size_t t = 0; t < mesh_publishers_.size(); ++t) {
-    if (mesh_publishers_[t].getNumSubscribers() == 0) continue;
-    fillMesh(simulator_, static_cast<int>(t), stamp_ns, meshes_[t]);
-    mesh_publishers_[t].publish(meshes_[t]);
-  }
-}
-
-void Outputs::publishContacts(std::int64_t stamp_ns) {
-  if (contacts_publisher_.getNumSubscribers() == 0) return;
-  fillContacts(simulator_, stamp_ns, contacts_);
-  contacts_publisher_.publish(contacts_);
-}
-
-void Outputs::publishStatus(std::int64_t stamp_ns, int substeps, double step_time_s) {
-  if (status_publisher_.getNumSubscribers() == 0) return;
-  fillStatus(simulator_, player_, stamp_ns, status_);
-  status_.substeps = static_cast<std::uint32_t>(substeps);
-  status_.step_time = step_time_s;
-  status_publisher_.publish(status_);
-}
-
-void Outputs::publishMarkers(std::int64_t stamp_ns) {
-  if (markers_publisher_.getNumSubscribers() == 0) return;
-  markers_publisher_.publish(scene_markers_.update(stamp_ns));
 }
 
 void Outputs::publishTransforms(std::int64_t stamp_ns) {

@@ -179,21 +179,21 @@ void SceneMarkers::addShape(int instrument, int link, const ShapeDescription& sh
   message_.markers.push_back(marker);
 }
 
-const visualization_msgs::MarkerArray& SceneMarkers::update(std::int64_t stamp_ns) {
-  for (std::size_t t = 0; t < simulator_.tissues().size(); ++t) updateTissue(static_cast<int>(t));
+const visualization_msgs::MarkerArray& SceneMarkers::update(const SceneSnapshot& snapshot) {
+  for (std::size_t t = 0; t < snapshot.positions.size(); ++t) updateTissue(static_cast<int>(t), snapshot.positions[t]);
   for (const ShapeMarker& shape : shapes_) {
-    const Pose& X_WL = simulator_.linkPoses(shape.instrument)[static_cast<std::size_t>(shape.link)];
+    const Pose& X_WL =
+        snapshot.link_poses[static_cast<std::size_t>(shape.instrument)][static_cast<std::size_t>(shape.link)];
     message_.markers[shape.marker].pose = toPose(X_WL * shape.X_LS);
   }
-  updateForces();
-  for (Marker& marker : message_.markers) marker.header.stamp = toTime(stamp_ns);
+  updateForces(snapshot.contacts);
+  for (Marker& marker : message_.markers) marker.header.stamp = toTime(snapshot.stamp_ns);
   return message_;
 }
 
-void SceneMarkers::updateTissue(int tissue) {
+void SceneMarkers::updateTissue(int tissue, const NodalVectors& x) {
   const auto t = static_cast<std::size_t>(tissue);
   const Tissue& model = simulator_.tissues()[t];
-  const NodalVectors& x = simulator_.positions(tissue);
   sumNormals(model.surface(), x, normals_[t]);
   Marker& marker = message_.markers[t];
   std::size_t corner = 0;
@@ -213,11 +213,11 @@ void SceneMarkers::updateTissue(int tissue) {
 }
 
 /// Arrows that are no longer needed are sent once more as deletions, then forgotten.
-void SceneMarkers::updateForces() {
+void SceneMarkers::updateForces(const std::vector<SolvedContact>& contacts) {
   std::vector<Marker>& markers = message_.markers;
   while (markers.size() > first_arrow_ && markers.back().action == Marker::DELETE) markers.pop_back();
   std::size_t used = first_arrow_;
-  for (const SolvedContact& contact : simulator_.contacts()) {
+  for (const SolvedContact& contact : contacts) {
     if (contact.state == ContactState::kOpen || !(contact.force_on_tissue_n.norm() > 0.0)) continue;
     setArrow(used++, contact);
   }

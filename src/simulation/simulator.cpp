@@ -182,7 +182,8 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
   StepReport& report = all.report;
   report.discarded = false;
   report.interrupted = false;
-  const int steps = all.motion.begin(duration_s, all.scene.step.max_step_s, joint_positions, limits.most_steps);
+  const double longest_s = limits.longest_step_s > 0.0 ? limits.longest_step_s : all.scene.step.max_step_s;
+  const int steps = all.motion.begin(duration_s, longest_s, joint_positions, limits.most_steps);
   report.jumped = all.motion.jumped();
   const double dt = duration_s / steps;
   for (report.substeps = 0; report.substeps < steps && !report.interrupted;) {
@@ -194,6 +195,8 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
   all.sumWrenches();
   all.load_watch.look(all.solved, all.x, report.implausible_load);
 }
+
+void Simulator::setSolverDeadline(double clock_s) { implementation_->solver->setDeadline(clock_s); }
 
 Wrench Simulator::wrench(int instrument) const { return implementation_->wrenches.at(instrument); }
 const VectorX& Simulator::jointPositions(int instrument) const { return implementation_->motion.positions(instrument); }

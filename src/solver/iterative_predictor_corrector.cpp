@@ -1,5 +1,8 @@
 #include "tissue_contact/solver/iterative_predictor_corrector.h"
 
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "solver/relaxation.h"
@@ -25,6 +28,14 @@ IterativePredictorCorrector::~IterativePredictorCorrector() = default;
 
 void IterativePredictorCorrector::reset() { relaxation_->reset(); }
 
+void IterativePredictorCorrector::setDeadline(double clock_s) {
+  if (std::isnan(clock_s)) throw std::invalid_argument("the solver's deadline is not a number");
+  if (!clock_ && std::isfinite(clock_s)) {
+    throw std::invalid_argument("the solver has a deadline, but there is no clock here; give the simulator a clock");
+  }
+  deadline_s_ = clock_s;
+}
+
 bool IterativePredictorCorrector::converged(double momentum_change, double impulse_change,
                                             const ContactSolution& solution) const {
   const double impulses = impulseNorm(solution.impulses);
@@ -33,7 +44,9 @@ bool IterativePredictorCorrector::converged(double momentum_change, double impul
 }
 
 SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, ContactSolution& solution) {
-  const double start = clock_ ? clock_() : 0.0;
+  // With neither budget nor deadline the clock has no say.
+  const double until =
+      description_.time_budget_s > 0.0 ? std::min(deadline_s_, clock_() + description_.time_budget_s) : deadline_s_;
   scratch_.resize(problem.bodies.size());
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     scratch_[k].resize(3, problem.bodies[k].K->rows());
@@ -52,7 +65,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
       report.stop = StopReason::kTolerance;
     } else if (report.iterations >= description_.iterations) {
       report.stop = StopReason::kIterations;
-    } else if (description_.time_budget_s > 0.0 && clock_() - start >= description_.time_budget_s) {
+    } else if (std::isfinite(until) && clock_() >= until) {
       report.stop = StopReason::kTimeBudget;
     } else {
       stop = false;

@@ -17,6 +17,7 @@
 #include "tissue_contact/Status.h"
 #include "tissue_contact/TissueMesh.h"
 #include "tissue_contact/TissueTopology.h"
+#include "tissue_contact/ros/scene_snapshot.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 #include "tissue_contact/simulation/simulator.h"
 
@@ -42,13 +43,13 @@ void fillWrench(const Wrench& wrench, std::int64_t stamp_ns, geometry_msgs::Wren
 /// Rest positions, tetrahedra, surface and fixed nodes; all but the header.
 void fillTopology(const Tissue& tissue, TissueTopology& message);
 
-/// Positions now and the step; all but frame_id and tissue, which do not change.
-void fillMesh(const Simulator& simulator, int tissue, std::int64_t stamp_ns, TissueMesh& message);
+/// Positions and step of a snapshot; all but frame_id and tissue, which do not change.
+void fillMesh(const SceneSnapshot& snapshot, int tissue, TissueMesh& message);
 
-/// All contacts of the last step; all but frame_id.
-void fillContacts(const Simulator& simulator, std::int64_t stamp_ns, ContactArray& message);
+/// All contacts of a snapshot's step; all but frame_id. @param simulator for the names alone.
+void fillContacts(const Simulator& simulator, const SceneSnapshot& snapshot, ContactArray& message);
 
-/// The last step's report and the player's counts; all but substeps and step_time, which only the caller can measure.
+/// The last step's report and the player's counts; all but what only a clock or the caller's own counts can tell.
 void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std::int64_t stamp_ns, Status& message);
 
 bool isFinite(const Residuals& residuals);

@@ -10,6 +10,9 @@
 
 namespace tissue_contact {
 
+/// Seconds of wall time on a clock that never goes back: the one nodeEnvironment() and bagEnvironment() give to solvers.
+double steadySeconds();
+
 /// Directory of a package through rospack; empty where it is not found.
 std::string packagePath(const std::string& package);
 

@@ -1,5 +1,5 @@
 /// @file
-/// Room `ros`: what goes wrong while running: counted, told to /diagnostics and, sparingly, to the console.
+/// Room `ros`: how a live run goes: counted, timed, told to /diagnostics, Status and, sparingly, to the console.
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -7,29 +7,57 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
 
+#include "tissue_contact/Status.h"
+#include "tissue_contact/ros/joint_state_inbox.h"
+#include "tissue_contact/ros/live_figures.h"
+#include "tissue_contact/ros/real_time_factor.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
 
+/// One thread steps and notes; any thread may ask for the figures, and waits no longer than a copy of them takes.
 class Health {
  public:
-  /// @param simulator and @param player must outlive this.
-  Health(const Simulator& simulator, const JointStatePlayer& player) : simulator_(simulator), player_(player) {}
+  /// All must outlive this. Only the stepping thread's calls read `simulator` and `player`.
+  Health(const Simulator& simulator, const JointStatePlayer& player, const JointStateInbox& inbox);
 
-  /// Notes one played sample. Warns about each kind of refusal, and about gaps and jumps, at most every 5 s of wall
+  // ------------------------------------------------------------------------------------ the stepping thread
+
+  /// The newest of the states that are now played was received then, or: nothing is played any more.
+  void noteWork(std::optional<double> received_s);
+
+  /// Notes one played moment. Warns about each kind of refusal, and about gaps and jumps, at most every 5 s of wall
   /// time; about every reset once; reports an error when a step gave no finite answer, once until the next reset.
-  /// @param stepped whether this sample moved the simulator forward. @return whether the result is finite and so may
-  ///   be published.
-  bool note(const PlayedSample& played, bool stepped);
+  /// @param steps implicit steps it took. @param step_cost_s usual wall time of one. @return whether the result is
+  ///   finite and so may be published.
+  bool note(const PlayedSample& played, int steps, double step_cost_s);
 
-  /// Summary and counts. OK; WARN when a joint state was refused, or a gap or jump was cut short, since the last call;
-  /// ERROR when a step gave no finite answer since the last reset. Steps that used up their iterations are counted but
-  /// are no alarm: a fixed budget per step is how the solver keeps real time.
-  void fill(diagnostic_updater::DiagnosticStatusWrapper& status);
+  /// `count` wrenches went out, `lag_s` after the receipt of the state they answer.
+  void noteWrenches(std::size_t count, std::optional<double> lag_s);
+
+  void noteSnapshotsDropped(std::int64_t dropped);
+  void notePolicy(bool newest_state);
+
+  /// The part of a Status that LiveFigures have.
+  void addTo(Status& status) const;
+
+  // ------------------------------------------------------------------------------------ any thread
+
+  LiveFigures figures() const;
+
+  // ------------------------------------------------------------------------------------ the diagnostics thread
+
+  /// Summary and counts. ERROR when a step gave no finite answer since the last reset, or the lag was far over its bound
+  /// since the last call; WARN when it was over it, steps were lengthened to hold it, a joint state was refused or
+  /// dropped, or a gap or jump was cut short. Steps that used up their iterations are counted but are no alarm: a fixed
+  /// budget per step is how the solver keeps real time. The log says once what to change when the machine does not keep
+  /// up. @param missing see Receiver::missing().
+  void fill(std::int64_t missing, diagnostic_updater::DiagnosticStatusWrapper& status);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -43,20 +71,30 @@ class Health {
   };
 
   void warn(const PlayedSample& played);
-  void noteStep(const PlayedSample& played, bool finite);
-  std::int64_t troubles() const;
+  void noteSteps(const PlayedSample& played, int steps, bool finite);
+  double worstLag(const LiveFigures& figures);
+  void summarize(const LiveFigures& now, double worst_lag_s, diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const Simulator& simulator_;
   const JointStatePlayer& player_;
+  const JointStateInbox& inbox_;
+
+  // The stepping thread's alone.
   std::array<Throttle, kVerdictCount> refusals_;
   Throttle gaps_;
   Throttle jumps_;
-  std::int64_t jump_count_ = 0;           ///< intervals in which an instrument moved too far for sub-stepping
-  std::int64_t not_finite_count_ = 0;     ///< intervals whose result was not finite
-  std::int64_t not_converged_count_ = 0;  ///< intervals whose last step missed the tolerance
-  std::string last_not_converged_ = "never";
-  bool broken_ = false;  ///< not finite since the last reset
-  std::int64_t troubles_told_ = 0;
+
+  mutable std::mutex mutex_;  ///< guards the six below
+  LiveFigures figures_;
+  RealTimeFactor real_time_factor_;
+  std::int64_t played_stamp_ns_ = 0;
+  std::int64_t held_by_player_ = 0;
+  std::optional<double> working_on_s_;  ///< receipt of the newest state that is being played
+  double worst_lag_s_ = 0.0;            ///< of wrenches since the diagnostics were last told
+
+  // The diagnostics thread's alone.
+  LiveFigures told_;
+  bool advised_ = false;
 };
 
 }  // namespace tissue_contact

@@ -4,15 +4,18 @@
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
-#include <ros/subscriber.h>
-#include <ros/timer.h>
-#include <sensor_msgs/JointState.h>
 
-#include <memory>
-#include <vector>
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
 
 #include "tissue_contact/ros/health.h"
+#include "tissue_contact/ros/joint_state_inbox.h"
 #include "tissue_contact/ros/outputs.h"
+#include "tissue_contact/ros/receiver.h"
+#include "tissue_contact/ros/shutdown_guard.h"
+#include "tissue_contact/ros/stepper.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 #include "tissue_contact/simulation/simulator.h"
 
@@ -21,29 +24,52 @@ namespace tissue_contact {
 /// Private parameters: ~scene (path of the scene file, required), ~tf_timeout_s (see environment.h),
 /// ~markers/displacement_full_scale_m and ~markers/force_arrow_m_per_n (see scene_markers.h), and the URDF parameters
 /// that the scene names. Topics: see outputs.h; diagnostics on /diagnostics once per second of wall time.
+///
+/// Threads, and what is between them:
+///   receiving    Receiver: joint states into inbox_, which is locked for a move at a time
+///   stepping     Stepper: inbox_ -> player_ -> simulator_ -> wrenches; alone in touching player_, simulator_ and outputs_
+///   publishing   SnapshotPublisher inside outputs_: snapshots through a locked queue; of simulator_ only what is const
+///   diagnostics  here: LiveFigures of health_, which is locked for a copy at a time
+///   main         callbacks of roscpp: a subscriber came (an atomic flag, and inbox_ wakes the stepping thread)
+/// None waits for another's work.
 class Node {
  public:
-  /// Builds the scene, then advertises and subscribes. Nothing is advertised if it throws.
+  /// Builds the scene; advertises and subscribes nothing yet. @param guard must outlive this.
   /// @throws std::exception naming the parameter or file at fault and what to do.
-  Node();
+  explicit Node(ShutdownGuard& guard);
+  ~Node();
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  /// Advertises, subscribes and works until asked to stop; then prints the counts. @return exit code.
+  int run();
 
  private:
-  void subscribe();
-  void handle(int topic, const sensor_msgs::JointState& message);
-  bool playNext();
+  void tellDiagnostics();
+  void tellCounts();
+  void stop();
 
+  ShutdownGuard& guard_;
   ros::NodeHandle node_;
   ros::NodeHandle private_node_;
   Simulator simulator_;
   JointStatePlayer player_;
-  Outputs outputs_;
+  JointStateInbox inbox_;
   Health health_;
+  Outputs outputs_;
+  Stepper stepper_;
+  Receiver receiver_;
+  std::atomic<bool> counts_told_{false};
+
   diagnostic_updater::Updater updater_;
-  ros::WallTimer diagnostics_timer_;
-  std::vector<ros::Subscriber> subscribers_;
+  std::mutex diagnostics_mutex_;
+  std::condition_variable diagnostics_changed_;
+  bool diagnostics_stop_ = false;  ///< guarded by diagnostics_mutex_
+  std::thread diagnostics_thread_;
 };
 
-/// Runs the node until it is asked to stop. @return exit code: 0, or 1 after one fatal message when it cannot start.
+/// Runs the node until it is asked to stop. @return exit code: 0, or 1 after one fatal message when it cannot start or
+/// go on.
 int runNode(int argc, char** argv);
 
 }  // namespace tissue_contact

@@ -9,56 +9,62 @@
 #include <tf2_ros/transform_broadcaster.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "tissue_contact/ros/conversions.h"
+#include "tissue_contact/ros/health.h"
 #include "tissue_contact/ros/message_time_rate.h"
-#include "tissue_contact/ros/scene_markers.h"
+#include "tissue_contact/ros/snapshot_publisher.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 
 namespace tissue_contact {
 
 /// Topics, all below the node's private namespace:
-///   <instrument>/wrench  every accepted joint state of that instrument; at and in the tip link
+///   <instrument>/wrench  one for every arm state the simulator was stepped to; at and in the tip link
 ///   <tissue>/topology    once, latched, with the first joint state
 ///   <tissue>/mesh, contacts, status, markers   at the scene's rates of message time (0: not advertised)
-///   /tf                  on request, every accepted joint state: world -> root link -> every link
-/// What nobody subscribes to is not even filled in.
+///   /tf                  on request, every moment stepped to: world -> root link -> every link
+/// What nobody subscribes to is not even filled in. The stepping thread calls all but start(); wrenches, topologies and
+/// /tf leave from it, the others from the thread of SnapshotPublisher.
 class Outputs {
  public:
-  /// Refuses the scene before anything is advertised. @param simulator and @param player must outlive this.
+  /// Refuses the scene before anything is advertised. All must outlive this.
   /// @throws std::invalid_argument: a name that cannot be part of a topic, tf of two links with one name, a bad private
   ///   parameter ~markers/displacement_full_scale_m or ~markers/force_arrow_m_per_n.
-  Outputs(const ros::NodeHandle& private_node, const Simulator& simulator, const JointStatePlayer& player);
+  Outputs(const ros::NodeHandle& private_node, const Simulator& simulator, const JointStatePlayer& player,
+          const Health& health);
 
-  /// Publishes what is due after an accepted sample. @param step_time_s wall time per implicit step of this interval.
+  /// Advertises. @param on_newcomer called from another thread when showToNewcomer() should be.
+  void start(std::function<void()> on_newcomer);
+
+  /// The wrenches an accepted moment owes.
+  void publishWrenches(const PlayedSample& played);
+
+  /// All else that is due after it. @param step_time_s wall time per implicit step of this interval.
   /// @param substeps implicit steps taken in it.
-  void publish(const PlayedSample& played, int substeps, double step_time_s);
+  void publishState(const PlayedSample& played, int substeps, double step_time_s);
+
+  /// Shows the scene as it is to who has subscribed to the markers since.
+  void showToNewcomer();
+
+  std::int64_t snapshotsDropped() { return bulky_.queue().dropped(); }
 
  private:
-  void advertise();
+  void publishSnapshot(std::int64_t stamp_ns, int substeps, double step_time_s);
   void publishTopologies(std::int64_t stamp_ns);
-  void publishWrenches(const PlayedSample& played);
-  void publishMeshes(std::int64_t stamp_ns);
-  void publishContacts(std::int64_t stamp_ns);
-  void publishStatus(std::int64_t stamp_ns, int substeps, double step_time_s);
-  void publishMarkers(std::int64_t stamp_ns);
   void publishTransforms(std::int64_t stamp_ns);
-  void showToNewcomer();
 
   ros::NodeHandle node_;
   const Simulator& simulator_;
   const JointStatePlayer& player_;
-  SceneMarkers scene_markers_;
+  const Health& health_;
+  SnapshotPublisher bulky_;
   std::int64_t last_stamp_ns_ = 0;
 
-  std::vector<ros::Publisher> wrench_publishers_;    ///< one per instrument
-  std::vector<ros::Publisher> topology_publishers_;  ///< one per tissue
-  std::vector<ros::Publisher> mesh_publishers_;      ///< one per tissue
-  ros::Publisher contacts_publisher_;
-  ros::Publisher status_publisher_;
-  ros::Publisher markers_publisher_;
+  std::vector<ros::Publisher> wrench_publishers_;               ///< one per instrument
+  std::vector<ros::Publisher> topology_publishers_;             ///< one per tissue
   std::unique_ptr<tf2_ros::TransformBroadcaster> broadcaster_;  ///< null: not asked for
 
   bool topologies_published_ = false;
@@ -68,9 +74,6 @@ class Outputs {
   MessageTimeRate markers_rate_;
 
   std::vector<geometry_msgs::WrenchStamped> wrenches_;
-  std::vector<TissueMesh> meshes_;
-  ContactArray contacts_;
-  Status status_;
   std::vector<geometry_msgs::TransformStamped> transforms_;
 };
 

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "tissue_contact/ros/scene_snapshot.h"
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
@@ -31,11 +32,13 @@ std_msgs::ColorRGBA displacementColor(double fraction);
 /// held contacts blue, sliding ones red).
 class SceneMarkers {
  public:
-  /// @throws std::invalid_argument when a number of `style` is not finite and > 0. @param simulator must outlive this.
+  /// @throws std::invalid_argument when a number of `style` is not finite and > 0. @param simulator must outlive this; only what never changes
+  ///   is read of it.
   SceneMarkers(const Simulator& simulator, const MarkerStyle& style);
 
-  /// The scene as it is now. The answer belongs to this object and is overwritten by the next call.
-  const visualization_msgs::MarkerArray& update(std::int64_t stamp_ns);
+  /// The scene as it was in the snapshot, taken with `markers`. The answer belongs to this object and is overwritten by the
+  /// next call.
+  const visualization_msgs::MarkerArray& update(const SceneSnapshot& snapshot);
 
  private:
   struct ShapeMarker {
@@ -48,8 +51,8 @@ class SceneMarkers {
   void addTissues();
   void addInstrument(int instrument);
   void addShape(int instrument, int link, const ShapeDescription& shape, const TriangleMesh* mesh, bool touches);
-  void updateTissue(int tissue);
-  void updateForces();
+  void updateTissue(int tissue, const NodalVectors& x);
+  void updateForces(const std::vector<SolvedContact>& contacts);
   void setArrow(std::size_t index, const SolvedContact& contact);
 
   const Simulator& simulator_;

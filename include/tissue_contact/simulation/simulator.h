@@ -54,6 +54,8 @@ struct AdvanceLimits {
   int most_steps = 0;
   /// Asked between two steps; true ends the advance there, with the instruments as far as they have come. Null: never.
   std::function<bool()> interrupted;
+  /// In place of scene.step.max_step_s; <= 0: that.
+  double longest_step_s = 0.0;
 };
 
 class Simulator {
@@ -84,6 +86,11 @@ class Simulator {
   /// @throws std::invalid_argument when duration or positions are not finite or of the wrong size; nothing has moved
   /// then.
   void advance(double duration_s, const std::vector<VectorX>& joint_positions, const AdvanceLimits& limits = {});
+
+  /// From now on solvers stop iterating once the environment's clock shows `clock_s` and report StopReason::kTimeBudget,
+  /// after one iteration at least; infinity, as at the start: never. The answer depends on the machine then. Methods
+  /// without a time budget take no notice. @throws std::invalid_argument when there is no clock, or for NaN.
+  void setSolverDeadline(double clock_s);
 
   /// What the tissues exert on the instrument: mean over the last implicit step, at the origin of the tip link and in
   /// its axes (N, N m). Zero before the first advance.

@@ -34,6 +34,11 @@ class ContactSolver {
   /// @param solution in: warm start (sizes must match the problem); out: the answer. Fixed nodes keep v = 0.
   virtual SolverReport solve(const ContactProblem& problem, ContactSolution& solution) = 0;
 
+  /// Stop iterating once the clock of the time budget shows `clock_s` (infinity, as at the start: never), after one
+  /// iteration at least. Methods without a time budget take no notice.
+  /// @throws std::invalid_argument when it is not infinite and there is no clock.
+  virtual void setDeadline(double clock_s) { static_cast<void>(clock_s); }
+
   /// Forgets what it carries from step to step (factors, caches): the next answer depends on its arguments alone.
   virtual void reset() {}
 

@@ -22,6 +22,7 @@
 /// "Predictor-corrector" here has nothing to do with Incremental Potential Contact.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -41,6 +42,7 @@ class IterativePredictorCorrector : public ContactSolver {
 
   /// Allocates only when a problem is larger than before or a factor is renewed.
   SolverReport solve(const ContactProblem& problem, ContactSolution& solution) override;
+  void setDeadline(double clock_s) override;
   void reset() override;
   Memory memory() const override;
 
@@ -52,7 +54,8 @@ class IterativePredictorCorrector : public ContactSolver {
   std::unique_ptr<Relaxation> relaxation_;
   std::unique_ptr<ContactCorrector> corrector_;
   std::vector<NodalVectors> scratch_;
-  double load_scale_ = 0.0;  ///< loadScale(), N s
+  double deadline_s_ = std::numeric_limits<double>::infinity();  ///< on clock_
+  double load_scale_ = 0.0;                                      ///< loadScale(), N s
 };
 
 }  // namespace tissue_contact

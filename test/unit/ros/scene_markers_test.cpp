@@ -48,6 +48,13 @@ Simulator makeSimulator() {
   return {parseScene(kScene, "test.yaml", package_path), environment};
 }
 
+SceneSnapshot snapshotOf(const Simulator& simulator, std::int64_t stamp_ns) {
+  SceneSnapshot snapshot;
+  snapshot.markers = true;
+  takeSnapshot(simulator, stamp_ns, snapshot);
+  return snapshot;
+}
+
 std::map<std::string, int> countByNamespace(const visualization_msgs::MarkerArray& array, int action) {
   std::map<std::string, int> count;
   for (const Marker& marker : array.markers) count[marker.ns] += static_cast<int>(marker.action == action);
@@ -57,13 +64,13 @@ std::map<std::string, int> countByNamespace(const visualization_msgs::MarkerArra
 TEST(SceneMarkers, ShowTissueToolAndForcesInTheWorldFrame) {
   Simulator simulator = makeSimulator();
   SceneMarkers markers(simulator, MarkerStyle());
-  const auto rest = countByNamespace(markers.update(kSecond), Marker::ADD);
+  const auto rest = countByNamespace(markers.update(snapshotOf(simulator, kSecond)), Marker::ADD);
   EXPECT_EQ(rest.at("block"), 2);  // triangles and edges
   EXPECT_EQ(rest.at("probe"), 2);  // ball and stem
   EXPECT_EQ(rest.count("contact_forces"), 0U);
 
   simulator.advance(0.1, {Vector3(0, 0, -0.005)});
-  const visualization_msgs::MarkerArray& pressed = markers.update(2 * kSecond);
+  const visualization_msgs::MarkerArray& pressed = markers.update(snapshotOf(simulator, 2 * kSecond));
   EXPECT_GT(countByNamespace(pressed, Marker::ADD).at("contact_forces"), 0);
   std::set<std::pair<std::string, int>> ids;
   for (const Marker& marker : pressed.markers) {
@@ -87,7 +94,7 @@ TEST(SceneMarkers, ArrowsAreTheForcesOnTheInstrumentFromTheContactPoints) {
   ASSERT_FALSE(pressing.empty());
   std::size_t arrows = 0;
   Vector3 sum = Vector3::Zero();
-  for (const Marker& marker : markers.update(kSecond).markers) {
+  for (const Marker& marker : markers.update(snapshotOf(simulator, kSecond)).markers) {
     if (marker.type != Marker::ARROW || marker.action != Marker::ADD) continue;
     ASSERT_LT(arrows, pressing.size());
     const SolvedContact& contact = *pressing[arrows++];
@@ -106,11 +113,13 @@ TEST(SceneMarkers, ArrowsVanishWhenTheContactIsLost) {
   Simulator simulator = makeSimulator();
   SceneMarkers markers(simulator, MarkerStyle());
   simulator.advance(0.1, {Vector3(0, 0, -0.005)});
-  const int arrows = countByNamespace(markers.update(kSecond), Marker::ADD).at("contact_forces");
+  const int arrows = countByNamespace(markers.update(snapshotOf(simulator, kSecond)), Marker::ADD).at("contact_forces");
   ASSERT_GT(arrows, 0);
   simulator.advance(0.2, {Vector3(0, 0, 0.02)});
-  EXPECT_EQ(countByNamespace(markers.update(kSecond), Marker::DELETE).at("contact_forces"), arrows);
-  EXPECT_EQ(countByNamespace(markers.update(kSecond), Marker::DELETE).count("contact_forces"), 0U);
+  EXPECT_EQ(countByNamespace(markers.update(snapshotOf(simulator, kSecond)), Marker::DELETE).at("contact_forces"),
+            arrows);
+  EXPECT_EQ(countByNamespace(markers.update(snapshotOf(simulator, kSecond)), Marker::DELETE).count("contact_forces"),
+            0U);
 }
 
 TEST(SceneMarkers, RefuseAStyleThatCannotBeDrawn) {

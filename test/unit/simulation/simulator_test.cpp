@@ -52,6 +52,18 @@ TEST(Simulator, LimitsThatDoNotBiteChangeNoBit) {
   EXPECT_EQ(limited.wrench(0).force, plain.wrench(0).force);
 }
 
+TEST(Simulator, TakesLongerStepsWhereAllowedButNotBeyondItsTravel) {
+  AdvanceLimits limits;
+  limits.longest_step_s = 0.00125;
+  Simulator simulator = makeScene();
+  simulator.advance(0.0011, {Vector3(0.0, 0.0, -0.001)}, limits);
+  EXPECT_EQ(simulator.stepCount(), 1);
+  simulator.advance(0.0011, {Vector3(0.0, 0.0, -0.002)});
+  EXPECT_EQ(simulator.stepCount(), 3);
+  simulator.advance(0.001, {Vector3(0.01, 0.0, -0.002)}, limits);  // a diameter of the ball
+  EXPECT_GE(simulator.stepCount(), 7);
+}
+
 TEST(Simulator, TakesAtMostAsManyStepsAsAllowedAndStillArrives) {
   for (const double sideways : {0.0, 0.3}) {  // m: the ball would have to be sub-stepped for its travel as well
     Simulator simulator = makeScene();

@@ -1,0 +1,45 @@
+/// @file
+/// Room `ros`: how many steps, and how long, the newest joint state may take so that its wrench is not late. No ROS and
+/// no clock inside.
+#pragma once
+
+#include <optional>
+
+namespace tissue_contact {
+
+/// Keeps the lag of a wrench behind the receipt of its joint state within a bound when steps cost more than there is
+/// time for: first fewer and longer steps, then less time for the solver. Neither happens while the machine keeps up.
+///
+/// Half of the bound is for the steps, by what steps cost of late; the rest is for a state that waits for the step
+/// before it, for steps that cost more than usual, and for the machine's own delays. Times are seconds on one clock
+/// that never goes back. Not thread-safe.
+class LivePacing {
+ public:
+  /// @param max_lag_s > 0.
+  explicit LivePacing(double max_lag_s) : max_lag_s_(max_lag_s) {}
+
+  /// Steps that an interval may be cut into; 0 (no limit) until a step was seen.
+  int mostSteps() const;
+
+  /// An interval begins, to a state received at `received_s`, in `steps` steps or so.
+  void begin(double now_s, double received_s, int steps);
+
+  /// A step of the interval ended.
+  void noteStep(double now_s);
+
+  /// When the solver should stop iterating on the step that begins now: what the bound leaves after the usual cost of
+  /// the steps that follow, and never less than a usual step (or half the bound, if that is less).
+  double deadline(double now_s) const;
+
+  /// Usual cost of a step, wall time, s; 0 until one was seen.
+  double stepCost() const { return cost_s_.value_or(0.0); }
+
+ private:
+  double max_lag_s_;
+  std::optional<double> cost_s_;
+  double step_began_s_ = 0.0;
+  double received_s_ = 0.0;
+  int steps_left_ = 0;  ///< after the one that runs
+};
+
+}  // namespace tissue_contact

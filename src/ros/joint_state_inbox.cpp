@@ -1,0 +1,57 @@
+/// @file
+/// Room `ros`: see joint_state_inbox.h.
+#include "tissue_contact/ros/joint_state_inbox.h"
+
+#include <utility>
+
+namespace tissue_contact {
+
+void JointStateInbox::put(ReceivedState state) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++counts_.received;
+  counts_.newest_stamp_ns = state.sample.stamp_ns;
+  state.after_restart = std::exchange(restarted_, false);
+  waiting_.push_back(std::move(state));
+  if (waiting_.size() > most_) {
+    const bool after_restart = waiting_.front().after_restart;
+    waiting_.pop_front();
+    waiting_.front().after_restart |= after_restart;
+    ++counts_.dropped;
+  }
+  arrived_.notify_one();
+}
+
+void JointStateInbox::noteRestart() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  restarted_ = true;
+}
+
+std::optional<ReceivedState> JointStateInbox::take() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (waiting_.empty()) return std::nullopt;
+  std::optional<ReceivedState> oldest = std::move(waiting_.front());
+  waiting_.pop_front();
+  return oldest;
+}
+
+void JointStateInbox::wait() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  arrived_.wait(lock, [this] { return woken_ || !waiting_.empty(); });
+  woken_ = false;
+}
+
+void JointStateInbox::wake() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  woken_ = true;
+  arrived_.notify_one();
+}
+
+JointStateInbox::Counts JointStateInbox::counts() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  Counts counts = counts_;
+  counts.waiting = waiting_.size();
+  if (!waiting_.empty()) counts.oldest_received_s = waiting_.front().received_s;
+  return counts;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,26 @@
+/// @file
+/// Room `ros`: see joint_state_policy.h.
+#include "tissue_contact/ros/joint_state_policy.h"
+
+#include <cmath>
+#include <sstream>
+
+namespace tissue_contact {
+
+PolicyChoice choosePolicy(StatePolicy wanted, bool simulated_time, double age_s) {
+  // A driver stamps what it has just read. A second allows for clocks of two computers; a recording is older than that.
+  constexpr double kPresent = 1.0;
+  if (wanted != StatePolicy::kAuto) return {wanted, "the scene says so"};
+  if (simulated_time) return {StatePolicy::kEveryState, "time is simulated (/use_sim_time)"};
+  std::ostringstream text;
+  text.precision(3);
+  if (std::abs(age_s) <= kPresent) {
+    text << "joint states are stamped with the present (" << age_s << " s ago), as by a robot driver";
+    return {StatePolicy::kNewestState, text.str()};
+  }
+  text << "joint states are stamped " << std::abs(age_s) << " s " << (age_s > 0.0 ? "ago" : "ahead")
+       << ", as in a recording";
+  return {StatePolicy::kEveryState, text.str()};
+}
+
+}  // namespace tissue_contact

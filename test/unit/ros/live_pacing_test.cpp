@@ -1,0 +1,116 @@
+/// @file
+/// How many steps, and until when, the newest joint state may take.
+#include "tissue_contact/ros/live_pacing.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tissue_contact {
+namespace {
+
+constexpr double kBound = 0.02;  // s
+constexpr double kTiny = 1e-9;   // s: round-off of sums of seconds
+
+/// A machine whose steps cost the same, and a driver that has a new state at any time. Returns the worst lag of the last
+/// half of the run, and the length of its last step.
+struct Outcome {
+  double worst_lag_s = 0.0;
+  double step_s = 0.0;
+  int most_steps = 0;
+};
+
+Outcome run(double step_cost_s, double max_step_s, int intervals) {
+  LivePacing pacing(kBound);
+  Outcome outcome;
+  double now_s = 100.0;
+  double played_s = now_s - 0.001;
+  for (int i = 0; i < intervals; ++i) {
+    const double motion_s = now_s - played_s;
+    const int wanted = static_cast<int>(std::ceil(motion_s / max_step_s - 1e-6));
+    pacing.begin(now_s, now_s, wanted);
+    const int most = pacing.mostSteps();
+    const int steps = std::max(1, most > 0 ? std::min(wanted, most) : wanted);
+    played_s = now_s;
+    for (int k = 0; k < steps; ++k) {
+      now_s += step_cost_s;
+      pacing.noteStep(now_s);
+    }
+    outcome.step_s = motion_s / steps;
+    outcome.most_steps = std::max(outcome.most_steps, steps);
+    if (i > intervals / 2) outcome.worst_lag_s = std::max(outcome.worst_lag_s, now_s - played_s);
+  }
+  return outcome;
+}
+
+TEST(LivePacing, DoesNothingBeforeAStepWasSeen) {
+  LivePacing pacing(kBound);
+  EXPECT_EQ(pacing.mostSteps(), 0);  // no limit
+  EXPECT_EQ(pacing.stepCost(), 0.0);
+  pacing.begin(5.0, 5.0, 1);
+  EXPECT_GE(pacing.deadline(5.0), 5.0 + 0.5 * kBound);
+}
+
+TEST(LivePacing, LeavesAMachineThatKeepsUpAlone) {
+  const Outcome outcome = run(0.0005, 0.001, 1000);  // half a millisecond of work per millisecond
+  EXPECT_LE(outcome.step_s, 0.001 + kTiny);
+  EXPECT_LE(outcome.worst_lag_s, 0.001 + kTiny);
+}
+
+TEST(LivePacing, HoldsTheBoundWhereStepsCostMoreThanThereIsTimeFor) {
+  for (const double cost_s : {0.0015, 0.002, 0.005, 0.009}) {
+    const Outcome outcome = run(cost_s, 0.001, 1000);
+    EXPECT_LE(outcome.worst_lag_s, 0.5 * kBound + kTiny) << cost_s;
+    // The machine does a step in cost_s, so no shorter step keeps up with time.
+    EXPECT_NEAR(outcome.step_s, cost_s, 1e-6) << cost_s;
+  }
+}
+
+TEST(LivePacing, OneStepIsTakenHoweverMuchItCosts) {
+  const Outcome outcome = run(0.05, 0.001, 100);
+  EXPECT_NEAR(outcome.worst_lag_s, 0.05, kTiny);  // what the solver's deadline is for
+}
+
+TEST(LivePacing, TheDeadlineLeavesStepsThatFollowTheirUsualCost) {
+  LivePacing pacing(kBound);
+  pacing.begin(10.0, 10.0, 1);
+  pacing.noteStep(10.001);  // a step costs 1 ms
+  pacing.begin(20.0, 19.999, 5);
+  EXPECT_NEAR(pacing.deadline(20.0), 19.999 + 0.9 * kBound - 4 * 0.001, kTiny);
+  pacing.noteStep(20.001);
+  EXPECT_NEAR(pacing.deadline(20.001), 19.999 + 0.9 * kBound - 3 * 0.001, kTiny);
+}
+
+TEST(LivePacing, TheDeadlineLeavesAStepItsUsualCostHoweverLateItIs) {
+  LivePacing pacing(kBound);
+  pacing.begin(10.0, 10.0, 1);
+  pacing.noteStep(10.001);
+  pacing.begin(20.0, 19.0, 3);
+  EXPECT_NEAR(pacing.deadline(20.0), 20.001, kTiny);
+  pacing.begin(30.0, 29.0, 1);
+  pacing.noteStep(35.0);  // steps have become far too dear: half the bound
+  pacing.begin(40.0, 39.0, 3);
+  EXPECT_NEAR(pacing.deadline(40.0), 40.0 + 0.5 * kBound, kTiny);
+}
+
+TEST(LivePacing, LearnsFastThatStepsAreDearAndSlowlyThatTheyAreCheap) {
+  LivePacing pacing(kBound);
+  double now_s = 0.0;
+  const auto step = [&](double cost_s) {
+    pacing.begin(now_s, now_s, 1);
+    now_s += cost_s;
+    pacing.noteStep(now_s);
+  };
+  for (int i = 0; i < 100; ++i) step(0.0001);
+  EXPECT_EQ(pacing.mostSteps(), 100);
+  for (int i = 0; i < 4; ++i) step(0.005);
+  EXPECT_LE(pacing.mostSteps(), 4);
+  for (int i = 0; i < 4; ++i) step(0.0001);
+  EXPECT_LE(pacing.mostSteps(), 6);
+  for (int i = 0; i < 200; ++i) step(0.0001);
+  EXPECT_GE(pacing.mostSteps(), 99);
+}
+
+}  // namespace
+}  // namespace tissue_contact

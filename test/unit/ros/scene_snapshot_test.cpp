@@ -1,0 +1,74 @@
+/// @file
+/// Snapshots between stepping and publishing: bounded, reused, dropped with a count, never waited for.
+#include "tissue_contact/ros/scene_snapshot.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <thread>
+#include <utility>
+
+namespace tissue_contact {
+namespace {
+
+void put(SnapshotQueue& queue, std::int64_t stamp_ns) {
+  std::unique_ptr<SceneSnapshot> snapshot = queue.buffer();
+  snapshot->stamp_ns = stamp_ns;
+  queue.put(std::move(snapshot));
+}
+
+TEST(SnapshotQueue, GivesBackInOrder) {
+  SnapshotQueue queue(4);
+  for (int i = 1; i <= 4; ++i) put(queue, i);
+  for (int i = 1; i <= 4; ++i) EXPECT_EQ(queue.take()->stamp_ns, i);
+  EXPECT_EQ(queue.dropped(), 0);
+}
+
+TEST(SnapshotQueue, DropsTheOldestWhenNobodyTakes) {
+  SnapshotQueue queue(3);
+  for (int i = 1; i <= 10; ++i) put(queue, i);
+  EXPECT_EQ(queue.dropped(), 7);
+  for (int i = 8; i <= 10; ++i) EXPECT_EQ(queue.take()->stamp_ns, i);
+}
+
+TEST(SnapshotQueue, ReusesItsBuffersAndTheirMemory) {
+  SnapshotQueue queue(2);
+  std::set<const SceneSnapshot*> buffers;
+  for (int i = 0; i < 100; ++i) {
+    std::unique_ptr<SceneSnapshot> snapshot = queue.buffer();
+    buffers.insert(snapshot.get());
+    EXPECT_FALSE(snapshot->mesh || snapshot->contact_array || snapshot->markers || snapshot->with_status);
+    snapshot->mesh = snapshot->with_status = true;
+    snapshot->positions.resize(1);
+    queue.put(std::move(snapshot));
+    if (i % 3 == 0) queue.recycle(queue.take());
+  }
+  EXPECT_LE(buffers.size(), 4U);  // those that wait, one that is filled in, one that is read
+}
+
+TEST(SnapshotQueue, CloseEndsTheWait) {
+  SnapshotQueue queue(2);
+  std::thread reader([&] { EXPECT_EQ(queue.take(), nullptr); });
+  queue.close();
+  reader.join();
+  put(queue, 1);
+  EXPECT_EQ(queue.take(), nullptr);
+}
+
+TEST(SnapshotQueue, LosesNothingBetweenThreadsThatKeepUp) {
+  constexpr int kCount = 10000;
+  SnapshotQueue queue(kCount);
+  std::thread writer([&] {
+    for (int i = 1; i <= kCount; ++i) put(queue, i);
+  });
+  for (int i = 1; i <= kCount; ++i) {
+    std::unique_ptr<SceneSnapshot> snapshot = queue.take();
+    ASSERT_EQ(snapshot->stamp_ns, i);
+    queue.recycle(std::move(snapshot));
+  }
+  writer.join();
+  EXPECT_EQ(queue.dropped(), 0);
+}
+
+}  // namespace
+}  // namespace tissue_contact
