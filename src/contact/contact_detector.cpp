@@ -16,6 +16,10 @@
 namespace tissue_contact {
 namespace {
 
+/// Of the smaller half extent of two shapes: the radius of the ball that fills the groove between them. Jaws keep their
+/// outline, and the groove of two parallel cylinders its walls at 48 degrees and more, which no friction below 1.1 locks.
+constexpr double kGrooveRadius = 0.5;
+
 /// One shape of one instrument's touching link.
 struct TouchingShape {
   int instrument;
@@ -82,6 +86,7 @@ struct ContactDetector::Implementation {
 
   void detectPair(int tissue, const NodalVectors& positions, const TouchingShape& shape, const Pose& X_WS,
                   double margin, std::vector<Contact>& contacts);
+  double deepestGroove(const TouchingShape& shape, const std::vector<Pose>& X_WL) const;
   bool besideOthers(const TouchingShape& shape, const std::vector<std::vector<Pose>>& X_WL, Contact& contact) const;
   double surfaceDistance(TouchableSurface& surface, const NodalVectors& positions, const TouchingShape& shape,
                          const Pose& X_WS, double bound);
@@ -125,13 +130,16 @@ void ContactDetector::detect(const std::vector<NodalVectors>& positions, const s
     self.surfaces[tissue].box = boxAround(positions[tissue]);
     for (const TouchingShape& shape : self.shapes) {
       const auto first = static_cast<std::ptrdiff_t>(contacts.size());
+      const double groove = self.deepestGroove(shape, X_WL[shape.instrument]);
       self.detectPair(static_cast<int>(tissue), positions[tissue], shape,
-                      X_WL[shape.instrument][shape.link] * shape.X_LS, margin_m, contacts);
+                      X_WL[shape.instrument][shape.link] * shape.X_LS, margin_m + groove, contacts);
       if (self.shapes.size() == 1) continue;
-      const auto pinched = std::remove_if(contacts.begin() + first, contacts.end(),
-                                          [&](Contact& contact) { return !self.besideOthers(shape, X_WL, contact); });
-      self.pinched += static_cast<int>(contacts.end() - pinched);
-      contacts.erase(pinched, contacts.end());
+      const auto is_none = [&](Contact& contact) {
+        const bool has_room = self.besideOthers(shape, X_WL, contact);
+        self.pinched += static_cast<int>(!has_room);
+        return !has_room || contact.gap_m > margin_m;
+      };
+      contacts.erase(std::remove_if(contacts.begin() + first, contacts.end(), is_none), contacts.end());
     }
   }
 }
@@ -159,12 +167,25 @@ void ContactDetector::Implementation::detectPair(int tissue, const NodalVectors&
   }
 }
 
+/// How far from this shape the filling of a groove with another of the instrument may reach, m; 0: none is near.
+double ContactDetector::Implementation::deepestGroove(const TouchingShape& shape, const std::vector<Pose>& X_WL) const {
+  double deepest = 0.0;
+  for (const TouchingShape& other : shapes) {
+    if (&other == &shape || other.instrument != shape.instrument) continue;
+    const double radius = kGrooveRadius * std::min(shape.half_extent, other.half_extent);
+    const Eigen::AlignedBox3d own = boxAround(*shape.distance, X_WL[shape.link] * shape.X_LS, radius);
+    if (radius > deepest && own.intersects(boxAround(*other.distance, X_WL[other.link] * other.X_LS, radius))) {
+      deepest = radius;
+    }
+  }
+  return deepest;
+}
+
 /// Heeds the other shapes near a contact: turns it to the filling of the groove between this shape and another of the
 /// instrument. @return false where it is pinched: shapes that touch each other press its point from opposed sides. There
 /// is no room for tissue then and no force that would make any, so the point is let go.
 bool ContactDetector::Implementation::besideOthers(const TouchingShape& shape,
                                                    const std::vector<std::vector<Pose>>& X_WL, Contact& contact) const {
-  constexpr double kRadius = 0.5;      // of the smaller half extent: grooves are filled, jaws keep their outline
   constexpr double kRoom = 0.05;       // of that radius: shapes that near touch each other
   constexpr double kSheetRoom = 0.25;  // of a sheet's thickness, if that is less
   const double half_thickness = surfaces[contact.key.tissue].narrow_phase.halfThickness();
@@ -173,7 +194,7 @@ bool ContactDetector::Implementation::besideOthers(const TouchingShape& shape,
   SignedDistance united;
   for (const TouchingShape& other : shapes) {
     if (&other == &shape) continue;
-    const double radius = kRadius * std::min(shape.half_extent, other.half_extent);
+    const double radius = kGrooveRadius * std::min(shape.half_extent, other.half_extent);
     const PlacedShape second{other.distance.get(), X_WL[other.instrument][other.link] * other.X_LS};
     if (!boxAround(*other.distance, second.X_WS, radius).contains(contact.p_WC)) continue;
     if (!before) united = *(before = distanceAt(own, contact.p_WC));
@@ -215,11 +236,14 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
     const NarrowPhase& surface = implementation_->surfaces[key.tissue].narrow_phase;
     const double gap =
         conformingGap(corners_S, distances, contact.weights, here.distance).gap - surface.halfThickness();
-    if (!(gap <= margin_m) || !surface.faces(key.feature, normal_W, x)) return false;
+    if (!(gap <= margin_m + implementation_->deepestGroove(shape, X_WL[shape.instrument])) ||
+        !surface.faces(key.feature, normal_W, x))
+      return false;
     contact.p_WC = p_W;
     contact.R_WC = contactFrame(normal_W);
     contact.gap_m = gap;
-    return implementation_->shapes.size() == 1 || implementation_->besideOthers(shape, X_WL, contact);
+    if (implementation_->shapes.size() == 1) return true;
+    return implementation_->besideOthers(shape, X_WL, contact) && contact.gap_m <= margin_m;
   }
   return false;
 }

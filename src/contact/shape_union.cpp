@@ -52,8 +52,9 @@ bool fillGroove(const PlacedShape& first, const PlacedShape& second, const Vecto
     if (!(1.0 - cosine * cosine > kParallel)) return false;
     const double short_a = radius - a.distance;
     const double short_b = radius - b.distance;
-    centre +=
+    const Vector3 step =
         ((short_a - cosine * short_b) * a.normal + (short_b - cosine * short_a) * b.normal) / (1.0 - cosine * cosine);
+    centre += step * std::min(1.0, radius / step.norm());
     if (!((centre - p_W).norm() < kFarthest * radius_m)) return false;
     a = distanceAt(first, centre);
     b = distanceAt(second, centre);

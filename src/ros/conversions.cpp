@@ -161,6 +161,12 @@ void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std:
   message.stop = toStop(report.stop);
   message.discarded = static_cast<std::uint8_t>(report.discarded);
   message.jumped = static_cast<std::uint8_t>(report.jumped);
+  const ImplausibleLoad& load = report.implausible_load;
+  message.implausible_load = static_cast<std::uint8_t>(load.found);
+  message.implausible_at = toPoint(load.p_W);
+  message.inverted_elements = static_cast<std::uint32_t>(load.inverted_elements);
+  message.contact_pressure = load.pressure_pa;
+  message.pinched_contacts = static_cast<std::uint32_t>(report.pinched_contacts);
   message.open_contacts = static_cast<std::uint32_t>(report.open_contacts);
   message.static_contacts = static_cast<std::uint32_t>(report.static_contacts);
   message.kinetic_contacts = static_cast<std::uint32_t>(report.kinetic_contacts);

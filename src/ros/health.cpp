@@ -45,6 +45,9 @@ void addFigures(const LiveFigures& figures, double worst_lag_s, diagnostic_updat
   status.add("intervals not converged", figures.not_converged);
   status.add("intervals out of time", figures.out_of_time);
   status.add("last not converged", figures.last_not_converged);
+  status.add("intervals with forces that no tissue bears", figures.implausible);
+  status.add("last of them", figures.last_implausible);
+  status.add("intervals with pinched contacts", figures.pinched);
   status.add("snapshots dropped", figures.snapshots_dropped);
 }
 
@@ -109,6 +112,9 @@ void Health::warn(const PlayedSample& played) {
     ROS_WARN_STREAM("an instrument moved too far before " << toTime(played.stamp_ns)
                                                           << " s to be swept: it was placed at its new position");
   }
+  if (simulator_.report().implausible_load.found && implausible_loads_.pass()) {
+    ROS_WARN_STREAM(toTime(played.stamp_ns) << " s: " << implausibleLoadText(simulator_));
+  }
 }
 
 /// What an interval with steps in it did to the figures. The lock is held.
@@ -122,6 +128,13 @@ void Health::noteSteps(const PlayedSample& played, int steps, bool finite) {
       (1.0 + kRoundOff) * steps * longestStep(figures_.newest_state, simulator_.scene().step.max_step_s))
     ++figures_.lengthened;
   if (report.jumped) ++figures_.jumps;
+  if (report.pinched_contacts > 0) ++figures_.pinched;
+  if (report.implausible_load.found) {
+    ++figures_.implausible;
+    std::ostringstream text;
+    text << toTime(played.stamp_ns) << " s: " << implausibleLoadText(simulator_);
+    figures_.last_implausible = text.str();
+  }
   if (report.stop != StopReason::kTolerance) {
     ++figures_.not_converged;
     if (report.stop == StopReason::kTimeBudget) ++figures_.out_of_time;
@@ -230,6 +243,8 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   } else if (lag != LagVerdict::kWithinBound) {
     status.summaryf(lag == LagVerdict::kFarOverBound ? Level::ERROR : Level::WARN,
                     "wrenches late by up to %.3g s, more than %.3g s", worst_lag_s, bound_s);
+  } else if (now.implausible > told_.implausible) {
+    status.summary(Level::WARN, "forces that no tissue bears: " + now.last_implausible);
   } else if (is_strained) {
     status.summary(Level::WARN, "steps lengthened, since the machine does not keep up with max_step_s");
   } else if (now.troubles() > told_.troubles()) {

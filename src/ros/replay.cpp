@@ -135,6 +135,11 @@ class Replay {
     jumps_ += static_cast<long>(report.jumped);
     discarded_ += static_cast<long>(report.discarded);
     not_converged_ += static_cast<long>(report.stop != StopReason::kTolerance);
+    pinched_ += static_cast<long>(report.pinched_contacts > 0);
+    if (!report.implausible_load.found) return;
+    if (++implausible_ > 1) return;
+    std::cerr << kPrefix << "warning: " << stampText(played.stamp_ns) << " s: " << implausibleLoadText(simulator_)
+              << "\n";
   }
 
   static std::string stampText(std::int64_t stamp_ns) {
@@ -150,7 +155,8 @@ class Replay {
       if (player_.count(verdict) > 0) std::cerr << ", " << player_.count(verdict) << " " << verdictText(verdict);
     }
     std::cerr << "; " << player_.resets() << " resets, " << player_.gaps() << " gaps, " << jumps_ << " jumps, "
-              << not_converged_ << " intervals not converged, " << discarded_ << " without a finite answer -> "
+              << not_converged_ << " intervals not converged, " << discarded_ << " without a finite answer, "
+              << implausible_ << " with forces that no tissue bears, " << pinched_ << " with pinched contacts -> "
               << options_.csv_file << "\n"
               << kPrefix << length_s_ << " s of recording in " << wallTime() << " s\n";
     if (!first_refusal_.empty()) std::cerr << kPrefix << "first refusal: " << first_refusal_ << "\n";
@@ -190,6 +196,8 @@ class Replay {
   long jumps_ = 0;
   long discarded_ = 0;
   long not_converged_ = 0;
+  long implausible_ = 0;
+  long pinched_ = 0;
 };
 
 }  // namespace

@@ -12,7 +12,8 @@ ReplayTable::ReplayTable(std::string file) : file_(std::move(file)) {
   file_.stream()
       << "stamp_s,instrument,tip_x_m,tip_y_m,tip_z_m,tip_qx,tip_qy,tip_qz,tip_qw,force_x_n,force_y_n,force_z_n,"
          "torque_x_nm,torque_y_nm,torque_z_nm,static_contacts,kinetic_contacts,momentum_residual,penetration_m,"
-         "adhesion_n,complementarity_w,cone_violation_n,static_slip_m_per_s,kinetic_angle_rad,discarded,jumped\n";
+         "adhesion_n,complementarity_w,cone_violation_n,static_slip_m_per_s,kinetic_angle_rad,discarded,jumped,"
+         "implausible_load,inverted_elements,contact_pressure_pa,pinched_contacts\n";
 }
 
 void ReplayTable::add(const Simulator& simulator, const PlayedSample& played) {
@@ -25,7 +26,9 @@ void ReplayTable::add(const Simulator& simulator, const PlayedSample& played) {
     out << ',' << residuals.momentum << ',' << residuals.penetration_m << ',' << residuals.adhesion_n << ','
         << residuals.complementarity_w << ',' << residuals.cone_violation_n << ',' << residuals.static_slip_m_per_s
         << ',' << residuals.kinetic_angle_rad << ',' << static_cast<int>(report.discarded) << ','
-        << static_cast<int>(report.jumped) << '\n';
+        << static_cast<int>(report.jumped) << ',' << static_cast<int>(report.implausible_load.found) << ','
+        << report.implausible_load.inverted_elements << ',' << report.implausible_load.pressure_pa << ','
+        << report.pinched_contacts << '\n';
   }
 }
 

@@ -111,17 +111,19 @@ void LoadWatch::lookAtElements(Body& body, int node, const NodalVectors& x, int 
   }
 }
 
-std::string implausibleLoadText(const ImplausibleLoad& load, const std::string& instrument, const std::string& tissue) {
+std::string implausibleLoadText(const Simulator& simulator) {
+  const ImplausibleLoad& load = simulator.report().implausible_load;
+  const std::string by =
+      load.instrument < 0 ? "another tissue" : "'" + simulator.instruments()[load.instrument].name() + "'";
   std::ostringstream text;
   text.precision(3);
-  text << "tissue '" << tissue << "' cannot bear what "
-       << (instrument.empty() ? "another tissue" : "'" + instrument + "'") << " does to it at (" << load.p_W.x() << ", "
-       << load.p_W.y() << ", " << load.p_W.z() << ") m: ";
-  if (load.inverted_elements > 0) text << load.inverted_elements << " of its elements are turned inside out";
-  if (load.inverted_elements > 0 && load.pressure_pa > 0.0) text << ", ";
-  text << "mean contact pressure " << load.pressure_pa << " Pa beside a Young's modulus of " << load.modulus_pa
-       << " Pa. The forces are not to be trusted. Is the tool where it should be (base_pose, joint_names, units)? "
-          "Deep or wide motion needs material.model neo_hookean and smaller cells under the tool";
+  text << "tissue '" << simulator.tissues()[load.tissue].name() << "' cannot bear what " << by << " does to it at ("
+       << load.p_W.x() << ", " << load.p_W.y() << ", " << load.p_W.z() << ") m: ";
+  if (load.inverted_elements > 0) text << load.inverted_elements << " elements turned inside out, ";
+  text
+      << "mean contact pressure " << load.pressure_pa << " Pa at a Young's modulus of " << load.modulus_pa
+      << " Pa; the forces are not to be trusted. Check where the tool is (base_pose, joint_names, units); deep or wide "
+         "motion needs material.model neo_hookean and smaller cells under the tool";
   return text.str();
 }
 

@@ -53,8 +53,8 @@ class Health {
   // ------------------------------------------------------------------------------------ the diagnostics thread
 
   /// Summary and counts. ERROR when a step gave no finite answer since the last reset, or the lag was far over its bound
-  /// since the last call; WARN when it was over it, steps were lengthened to hold it, a joint state was refused or
-  /// dropped, or a gap or jump was cut short. Steps that used up their iterations are counted but are no alarm: a fixed
+  /// since the last call; WARN when it was over it, forces were such as no tissue bears, steps were lengthened to
+  /// hold the lag, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their iterations are counted but are no alarm: a fixed
   /// budget per step is how the solver keeps real time. The log says once what to change when the machine does not keep
   /// up. @param missing see Receiver::missing().
   void fill(std::int64_t missing, diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -83,6 +83,7 @@ class Health {
   std::array<Throttle, kVerdictCount> refusals_;
   Throttle gaps_;
   Throttle jumps_;
+  Throttle implausible_loads_;
 
   mutable std::mutex mutex_;  ///< guards the six below
   LiveFigures figures_;

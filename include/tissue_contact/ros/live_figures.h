@@ -31,7 +31,10 @@ struct LiveFigures {
   std::int64_t wrenches = 0;
   std::int64_t snapshots_dropped = 0;  ///< meshes, contacts, status, markers not published: nobody took them in time
   std::string last_not_converged = "never";
-  bool broken = false;  ///< not finite since the last reset
+  std::int64_t implausible = 0;  ///< intervals that ended with loads that no tissue bears
+  std::string last_implausible = "never";
+  std::int64_t pinched = 0;  ///< intervals whose last step left out contacts without room
+  bool broken = false;       ///< not finite since the last reset
 
   bool newest_state = false;   ///< policy: else every state
   double lag_s = 0.0;          ///< of the last wrench behind the receipt of its state; of a step that runs, so far

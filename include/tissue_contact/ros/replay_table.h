@@ -19,7 +19,7 @@ class ReplayTable {
 
   /// One line per instrument of an accepted sample: stamp, tip pose in the world frame, wrench in the tip frame,
   /// contacts of this instrument per state, residuals of the last step over all contacts, 0 or 1 for `discarded` and
-  /// `jumped` of the interval that ended here (see StepReport).
+  /// `jumped` of the interval that ended here, and what its loads were like (see StepReport, ImplausibleLoad).
   void add(const Simulator& simulator, const PlayedSample& played);
 
   /// @throws std::runtime_error when the file could not be written completely.

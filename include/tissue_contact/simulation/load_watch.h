@@ -12,6 +12,7 @@
 
 namespace tissue_contact {
 
+class Simulator;
 struct SolvedContact;
 
 /// What no tissue bears, at the end of an interval. The forces are then not to be trusted.
@@ -57,7 +58,7 @@ class LoadWatch {
   double worst_volume_ = 0.0;  ///< of this look, over that at rest
 };
 
-/// A sentence for a log: what, where and what to do. @param instrument, tissue names, "" for another tissue.
-std::string implausibleLoadText(const ImplausibleLoad& load, const std::string& instrument, const std::string& tissue);
+/// A sentence for a log about what the last advance has found: what, where and what to do.
+std::string implausibleLoadText(const Simulator& simulator);
 
 }  // namespace tissue_contact

@@ -1,0 +1,149 @@
+// Shapes of one instrument that touch each other, as one solid: the groove between them against the closed form of a
+// rolling ball, and what a tissue surface is told there.
+#include "contact/shape_union.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "contact_test_utilities.h"
+#include "tissue_contact/contact/contact_detector.h"
+
+namespace tissue_contact {
+namespace {
+
+using contact_test::at;
+using contact_test::Random;
+
+constexpr double kR = 1.5e-3;  // two cylinders side by side along y, like a closed pair of jaws
+constexpr double kRho = 0.75e-3;
+
+struct Jaws {
+  std::unique_ptr<ShapeDistance> shape = makeCylinderDistance(kR, 0.02);
+  PlacedShape left, right;
+
+  /// @param apart free width between them, m. @param X moves both.
+  explicit Jaws(double apart = 0.0, const Pose& X = Pose::Identity()) {
+    Pose along_y = Pose::Identity();
+    along_y.rotate(Eigen::AngleAxisd(0.5 * M_PI, Vector3::UnitX()));
+    left = {shape.get(), X * at({-kR - 0.5 * apart, 0, 0}) * along_y};
+    right = {shape.get(), X * at({kR + 0.5 * apart, 0, 0}) * along_y};
+  }
+
+  bool fill(const Vector3& p, SignedDistance& filled) const {
+    return fillGroove(left, right, p, kRho, distanceAt(left, p), distanceAt(right, p), filled);
+  }
+};
+
+/// Height of the centre of the ball that lies on both touching cylinders.
+double ballHeight() { return std::sqrt((kR + kRho) * (kR + kRho) - kR * kR); }
+
+TEST(ShapeUnion, TheGrooveOfTouchingCylindersIsFilledAsByARollingBall) {
+  const Jaws jaws;
+  for (const double z : {0.2e-3, 0.5e-3, 0.9e-3}) {
+    for (const double x : {-0.1e-3, 0.0, 0.15e-3}) {
+      SignedDistance filled;
+      const Vector3 p(x, 0.002, z);
+      ASSERT_TRUE(jaws.fill(p, filled)) << x << " " << z;
+      const Vector3 to_centre = Vector3(0.0, 0.002, ballHeight()) - p;
+      // The ball is placed to a hundredth of its radius.
+      EXPECT_NEAR(filled.distance, kRho - to_centre.norm(), 0.02 * kRho);
+      EXPECT_NEAR((filled.normal - to_centre.normalized()).norm(), 0.0, 0.03);
+    }
+  }
+}
+
+TEST(ShapeUnion, BothShapesTellTheSameAndItTurnsWithThem) {
+  Random random(3);
+  for (int i = 0; i < 50; ++i) {
+    const Pose X = random.pose(0.05);
+    const Jaws here, there(0.0, X);
+    const Vector3 p(random.number(-2e-4, 2e-4), random.number(-5e-3, 5e-3), random.number(3e-4, 9e-4));
+    SignedDistance a, b, turned;
+    ASSERT_TRUE(here.fill(p, a));
+    ASSERT_TRUE(fillGroove(here.right, here.left, p, kRho, distanceAt(here.right, p), distanceAt(here.left, p), b));
+    ASSERT_TRUE(there.fill(X * p, turned));
+    EXPECT_NEAR(a.distance, b.distance, 1e-9);
+    EXPECT_NEAR(a.distance, turned.distance, 1e-9);
+    EXPECT_NEAR((X.linear() * a.normal - turned.normal).norm(), 0.0, 1e-6);
+  }
+}
+
+TEST(ShapeUnion, TheOutlineStaysAwayFromTheGroove) {
+  const Jaws jaws;
+  SignedDistance filled;
+  EXPECT_FALSE(jaws.fill({-kR, 0, kR + 1e-4}, filled));       // on top of one
+  EXPECT_FALSE(jaws.fill({-2.0 * kR - 1e-4, 0, 0}, filled));  // outside
+  EXPECT_FALSE(jaws.fill({0, 0, 2.5e-3}, filled));            // high above the groove
+}
+
+TEST(ShapeUnion, OpenJawsAreNotFilled) {
+  SignedDistance filled;
+  const Jaws open(2.0e-3);  // the ball goes through
+  for (const double x : {-0.9e-3, 0.0, 0.9e-3}) {
+    for (const double z : {0.0, 0.5e-3}) EXPECT_FALSE(open.fill({x, 0, z}, filled)) << x << " " << z;
+  }
+  // Parallel faces do not close however near they are.
+  const std::unique_ptr<ShapeDistance> plate = makeBoxDistance({0.5e-3, 5e-3, 5e-3});
+  const PlacedShape left{plate.get(), at({-0.8e-3, 0, 0})}, right{plate.get(), at({0.8e-3, 0, 0})};
+  const Vector3 p(0.1e-3, 0, 0);
+  EXPECT_FALSE(fillGroove(left, right, p, kRho, distanceAt(left, p), distanceAt(right, p), filled));
+}
+
+/// One instrument of two spheres over one triangle.
+struct TwoSpheres {
+  std::vector<Instrument> instruments;
+  std::vector<std::vector<Pose>> X_WL{{Pose::Identity()}};
+
+  explicit TwoSpheres(double apart) {
+    RobotModel::Link link;
+    link.name = "tip";
+    InstrumentDescription description;
+    description.name = "tool";
+    description.tip_link = "tip";
+    const double x = kR + 0.5 * apart;
+    description.contact_links.push_back(
+        {"tip", {{SphereGeometry{kR}, at({-x, 0, 0})}, {SphereGeometry{kR}, at({x, 0, 0})}}});
+    instruments.emplace_back(description, RobotModel("tool", {link}, {}), Pose::Identity());
+  }
+};
+
+/// Contacts of a small tent of tissue whose ridge is a point at `tip`; its faces fall away from the tool above.
+std::vector<Contact> contactsOfTip(const TwoSpheres& tool, const Vector3& tip, int& pinched) {
+  NodalVectors x(3, 4);
+  x << tip.x(), 4e-3, -4e-3, 0.0, tip.y(), -4e-3, -4e-3, 5e-3, tip.z(), -8e-3, -8e-3, -8e-3;
+  TissueSurface surface;
+  surface.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  surface.fixed.assign(4, false);
+  ContactDetector detector(tool.instruments, {surface}, {x});
+  std::vector<Contact> contacts;
+  detector.detect({x}, tool.X_WL, 1e-5, contacts);
+  pinched = detector.pinchedContacts();
+  return contacts;
+}
+
+TEST(ShapeUnion, ATipInTheGrooveIsPressedOutOfItNotIntoIt) {
+  int pinched = 0;
+  const std::vector<Contact> contacts = contactsOfTip(TwoSpheres(0.0), {0, 0, -0.6e-3}, pinched);
+  ASSERT_FALSE(contacts.empty());
+  EXPECT_EQ(pinched, 0);
+  for (const Contact& contact : contacts) {
+    if (contact.key.feature[1] >= 0) continue;  // the tip itself
+    EXPECT_LT(contact.R_WC.col(0).z(), -0.99);  // without the other sphere: the slope of one, -.37
+    EXPECT_NEAR(contact.gap_m, kRho - (ballHeight() - 0.6e-3), 0.02 * kRho);
+  }
+}
+
+TEST(ShapeUnion, ATipWithoutRoomIsLetGoAndCounted) {
+  int pinched = 0;
+  for (const Contact& contact : contactsOfTip(TwoSpheres(0.0), {0, 0, 0}, pinched)) {
+    EXPECT_GE(contact.key.feature[1], 0) << "the tip is where the spheres touch";
+  }
+  EXPECT_GT(pinched, 0);
+  // With room it is held from both sides, as tissue in a grip is.
+  const std::vector<Contact> held = contactsOfTip(TwoSpheres(0.2e-3), {0, 0, 0}, pinched);
+  EXPECT_EQ(pinched, 0);
+}
+
+}  // namespace
+}  // namespace tissue_contact
