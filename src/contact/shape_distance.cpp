@@ -20,7 +20,7 @@ struct MakeDistance {
   }
   std::unique_ptr<ShapeDistance> operator()(const MeshGeometry& geometry) const {
     if (!mesh) throw std::invalid_argument("mesh shape '" + geometry.file + "' was not loaded");
-    return makeMeshDistance(*mesh);
+    return std::getenv("EXACT") ? makeMeshDistance(*mesh) : makeFieldDistance(*mesh);
   }
 };
 

@@ -85,5 +85,6 @@ std::unique_ptr<ShapeDistance> makeSphereDistance(double radius);
 std::unique_ptr<ShapeDistance> makeBoxDistance(const Vector3& half_extents);
 std::unique_ptr<ShapeDistance> makeCylinderDistance(double radius, double half_length);
 std::unique_ptr<ShapeDistance> makeMeshDistance(const TriangleMesh& mesh);
+std::unique_ptr<ShapeDistance> makeFieldDistance(const TriangleMesh& mesh);
 
 }  // namespace tissue_contact
