@@ -31,7 +31,9 @@ struct TouchableSurface {
   bool refitted = false;                            ///< this call: only tissues that a shape comes near need their tree
 };
 
-std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instruments) {
+std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instruments,
+                                          const MeshPreparation& preparation) {
+  ShapeDistances distances(preparation);
   std::vector<TouchingShape> result;
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     const std::vector<ContactLink>& links = instruments[i].contactLinks();
@@ -39,7 +41,7 @@ std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instrum
       for (std::size_t s = 0; s < links[l].shapes.size(); ++s) {
         const CollisionShape& shape = links[l].shapes[s];
         result.push_back({static_cast<int>(i), static_cast<int>(l), static_cast<int>(s), links[l].link, shape.X_LS,
-                          makeShapeDistance(shape)});
+                          distances.make(shape)});
       }
     }
   }
@@ -80,10 +82,10 @@ struct ContactDetector::Implementation {
 };
 
 ContactDetector::ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
-                                 const std::vector<NodalVectors>& positions)
+                                 const std::vector<NodalVectors>& positions, const MeshPreparation& preparation)
     : implementation_(std::make_unique<Implementation>()) {
   requireSameSize("positions of tissues", -1, positions.size(), surfaces.size());
-  implementation_->shapes = touchingShapes(instruments);
+  implementation_->shapes = touchingShapes(instruments, preparation);
   for (const Instrument& one : instruments) implementation_->link_counts.push_back(one.model().links().size());
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const int node_count = static_cast<int>(positions[i].cols());

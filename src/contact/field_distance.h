@@ -4,14 +4,17 @@
 
 #include <memory>
 
-#include "contact/distance_grid.h"
+#include "contact/mesh_field.h"
 #include "contact/shape_distance.h"
 
 namespace tissue_contact {
 
+/// The distance changes by no more than the way between two points, its normal without jumps but on ridges inside. It is
+/// exact to some hundredths of the grid's spacing beside flat and gently curved faces; edges are rounded by about one
+/// spacing. No corners: a closest point per triangle, the tissue's vertices and the points that ContactMemory keeps.
 class FieldDistance : public ShapeDistance {
  public:
-  explicit FieldDistance(std::shared_ptr<const DistanceGrid> grid, const Vector3& centre, const Vector3& half);
+  explicit FieldDistance(std::shared_ptr<const MeshField> field);
 
   double size() const override { return size_; }
   Vector3 halfExtents(const Matrix3& R_WS) const override { return R_WS.cwiseAbs() * half_; }
@@ -20,11 +23,10 @@ class FieldDistance : public ShapeDistance {
   bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const override;
 
  private:
-  std::shared_ptr<const DistanceGrid> grid_;
+  std::shared_ptr<const MeshField> field_;
   Vector3 centre_;
   Vector3 half_;
   double size_;
-  double tolerance_;
 };
 
 }  // namespace tissue_contact

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <thread>
 #include <utility>
@@ -13,21 +14,31 @@ constexpr int kBlock = GridPlan::kBlock;
 constexpr double kBand = 10.0;  // spacings from the surface within which every sample is measured
 
 /// Work on slices that write to places of their own: the result does not depend on the number of threads.
+/// @param progress called by this thread alone; may be empty.
 template <typename Work>
-void forEachSlice(int count, const Work& work) {
+void forEachSlice(int count, const Work& work, const std::function<void(double)>& progress) {
   const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 4);
   std::vector<std::thread> others;
   const auto run = [&work, count, threads](int first) {
     for (int i = first; i < count; i += threads) work(i);
   };
   for (int t = 1; t < threads; ++t) others.emplace_back(run, t);
-  run(0);
+  for (int i = 0; i < count; i += threads) {
+    work(i);
+    if (progress) progress(static_cast<double>(i + 1) / count);
+  }
   for (std::thread& one : others) one.join();
 }
 
+/// Of a block of samples.
+struct Corners {
+  std::array<double, 8> values{};
+  std::array<Vector3, 8> points;
+};
+
 class Sampler {
  public:
-  Sampler(const SurfaceTree& tree, const GridPlan& plan) : tree_(tree) {
+  Sampler(const SurfaceTree& all, const SurfaceTree& outer, const GridPlan& plan) : all_(all), tree_(outer) {
     for (int a = 0; a < 3; ++a) {
       coarse_size_[a] = plan.blocks[a] + 1;
       grid_.size[a] = kBlock * plan.blocks[a] + 1;
@@ -38,9 +49,9 @@ class Sampler {
     grid_.samples.resize(static_cast<std::size_t>(grid_.size[0]) * grid_.size[1] * grid_.size[2]);
   }
 
-  DistanceGrid run() {
-    forEachSlice(coarse_size_[2], [this](int k) { sampleCoarse(k); });
-    forEachSlice(coarse_size_[2], [this](int k) { sampleBlocks(k); });
+  DistanceGrid run(const std::function<void(double)>& progress) {
+    forEachSlice(coarse_size_[2], [this](int k) { sampleCoarse(k); }, nullptr);
+    forEachSlice(coarse_size_[2], [this](int k) { sampleBlocks(k); }, progress);
     return std::move(grid_);
   }
 
@@ -48,7 +59,17 @@ class Sampler {
   double& coarse(int i, int j, int k) {
     return coarse_[(static_cast<std::size_t>(k) * coarse_size_[1] + j) * coarse_size_[0] + i];
   }
-  bool isInside(const Vector3& p) const { return tree_.windingNumber(p) > 0.5; }
+  bool isInside(const Vector3& p) const { return std::abs(all_.windingNumber(p)) > 0.5; }
+
+  /// On the side of the sample before, or of a corner of the block, when the surface cannot pass between.
+  bool isInside(const Vector3& p, double distance, double before, const Corners& corners) const {
+    if (std::max(distance, std::abs(before)) > grid_.spacing && before != 0.0) return before < 0.0;
+    for (int c = 0; c < 8; ++c) {
+      const double way = (p - corners.points[c]).norm();
+      if (std::max(distance, std::abs(corners.values[c])) > 1.000001 * way) return corners.values[c] < 0.0;
+    }
+    return isInside(p);
+  }
 
   void sampleCoarse(int k) {
     for (int j = 0; j < coarse_size_[1]; ++j) {
@@ -70,15 +91,16 @@ class Sampler {
 
   /// The samples from coarse sample `block` on, up to the next along each axis.
   void sampleBlock(const std::array<int, 3>& block) {
-    std::array<double, 8> corners{};
+    Corners corners;
     double nearest = std::numeric_limits<double>::infinity();
     std::array<int, 3> count{};
     for (int a = 0; a < 3; ++a) count[a] = std::min(kBlock, grid_.size[a] - kBlock * block[a]);
     for (int c = 0; c < 8; ++c) {
       std::array<int, 3> at = block;
       for (int a = 0; a < 3; ++a) at[a] = std::min(at[a] + ((c >> a) & 1), coarse_size_[a] - 1);
-      corners[c] = coarse(at[0], at[1], at[2]);
-      nearest = std::min(nearest, std::abs(corners[c]));
+      corners.values[c] = coarse(at[0], at[1], at[2]);
+      corners.points[c] = grid_.point(kBlock * at[0], kBlock * at[1], kBlock * at[2]);
+      nearest = std::min(nearest, std::abs(corners.values[c]));
     }
     // No point of the block is farther from one of its corners than 3.5 spacings, so it is all on one side.
     const bool far = nearest > (kBand + kBlock) * grid_.spacing;
@@ -86,9 +108,9 @@ class Sampler {
       for (int j = 0; j < count[1]; ++j) {
         const std::size_t row = grid_.index(kBlock * block[0], kBlock * block[1] + j, kBlock * block[2] + k);
         if (far) {
-          for (int i = 0; i < count[0]; ++i) grid_.samples[row + i] = interpolated(corners, i, j, k);
+          for (int i = 0; i < count[0]; ++i) grid_.samples[row + i] = interpolated(corners.values, i, j, k);
         } else {
-          measureRow(grid_.point(kBlock * block[0], kBlock * block[1] + j, kBlock * block[2] + k), count[0], row);
+          measureRow(grid_.point(kBlock * block[0], kBlock * block[1] + j, kBlock * block[2] + k), count[0], row, corners);
         }
       }
     }
@@ -106,21 +128,20 @@ class Sampler {
     return static_cast<float>(sum);
   }
 
-  /// The surface cannot pass between neighbours of which one is farther from it than the other.
-  void measureRow(const Vector3& start, int count, std::size_t row) {
+  void measureRow(const Vector3& start, int count, std::size_t row, const Corners& corners) {
     double bound = std::numeric_limits<double>::infinity();
     double before = 0.0;
     for (int i = 0; i < count; ++i) {
       const Vector3 p = start + Vector3(i * grid_.spacing, 0.0, 0.0);
       const double distance = std::sqrt(tree_.squaredDistance(p, bound * bound));
-      const bool same_side = i > 0 && std::max(distance, std::abs(before)) > grid_.spacing;
-      before = (same_side ? before < 0.0 : isInside(p)) ? -distance : distance;
+      before = isInside(p, distance, i > 0 ? before : 0.0, corners) ? -distance : distance;
       grid_.samples[row + i] = static_cast<float>(before);
       bound = 1.000001 * (distance + grid_.spacing);
     }
   }
 
-  const SurfaceTree& tree_;
+  const SurfaceTree& all_;   ///< tells inside from outside
+  const SurfaceTree& tree_;  ///< tells how far
   DistanceGrid grid_;
   std::array<int, 3> coarse_size_{};
   std::vector<double> coarse_;
@@ -128,20 +149,26 @@ class Sampler {
 
 }  // namespace
 
-GridPlan planGrid(const TriangleMesh& mesh, double spacing, double padding) {
-  GridPlan plan;
-  plan.spacing = spacing;
+GridPlan planGrid(const TriangleMesh& mesh, double sample_count) {
   const Vector3 low = mesh.vertices.rowwise().minCoeff();
   const Vector3 high = mesh.vertices.rowwise().maxCoeff();
-  // One more spacing, since the spline ends that much inside the samples.
-  const double around = padding + spacing;
+  const Vector3 extent = high - low;
+  // Room for the contacts of the next step; beyond it distances are lower bounds.
+  const double padding = 0.2 * extent.minCoeff() + 0.005 * extent.maxCoeff();
+  GridPlan plan;
+  plan.spacing = std::cbrt((extent.array() + 2.0 * padding).prod() / sample_count);
+  // Two more spacings: the spline ends one inside the samples, and its values beside a flat face need one.
+  const double around = padding + 2.0 * plan.spacing;
   for (int a = 0; a < 3; ++a) {
-    plan.blocks[a] = std::max(1, static_cast<int>(std::ceil((high[a] - low[a] + 2.0 * around) / (kBlock * spacing))));
-    plan.origin[a] = 0.5 * (low[a] + high[a]) - 0.5 * kBlock * plan.blocks[a] * spacing;
+    plan.blocks[a] = std::max(1, static_cast<int>(std::ceil((extent[a] + 2.0 * around) / (kBlock * plan.spacing))));
+    plan.origin[a] = 0.5 * (low[a] + high[a]) - 0.5 * kBlock * plan.blocks[a] * plan.spacing;
   }
   return plan;
 }
 
-DistanceGrid sampleDistance(const SurfaceTree& tree, const GridPlan& plan) { return Sampler(tree, plan).run(); }
+DistanceGrid sampleDistance(const SurfaceTree& all, const SurfaceTree& outer, const GridPlan& plan,
+                            const std::function<void(double)>& progress) {
+  return Sampler(all, outer, plan).run(progress);
+}
 
 }  // namespace tissue_contact

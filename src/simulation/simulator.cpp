@@ -62,7 +62,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       friction(scene, instruments, tissues),
       mean_edge(meanSurfaceEdge(tissues)),
       motion(instruments),
-      detector(instruments, surfacesOf(tissues), restPositionsOf(tissues)),
+      detector(instruments, surfacesOf(tissues), restPositionsOf(tissues), environment.meshes),
       solver(makeContactSolver(scene.solver, environment.clock)) {
   requireMethodForLaws(scene);
   requirePositive("step.max_step_s", scene.step.max_step_s, "s");

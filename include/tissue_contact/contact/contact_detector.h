@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tissue_contact/contact/contact.h"
+#include "tissue_contact/contact/mesh_preparation.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/instrument/instrument.h"
 
@@ -25,9 +26,10 @@ class ContactDetector {
   /// @param instruments must outlive the detector. @param surfaces one per tissue; @param positions one per tissue,
   ///   m, world frame.
   /// @throws std::invalid_argument when the sizes differ, a triangle refers to a missing node or twice to the same, a
-  ///   thickness is not finite or < 0, or a mesh shape has no mesh.
+  ///   thickness is not finite or < 0, or a mesh shape has no mesh or no inside.
+  /// Mesh shapes are prepared here, which takes some tenths of a second each unless they are in the cache.
   ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
-                  const std::vector<NodalVectors>& positions);
+                  const std::vector<NodalVectors>& positions, const MeshPreparation& preparation = {});
   ~ContactDetector();
   ContactDetector(ContactDetector&&) noexcept;
   ContactDetector& operator=(ContactDetector&&) noexcept;
