@@ -11,7 +11,8 @@ struct Weights {
   std::array<double, 3> value;
   std::array<double, 3> slope;
   explicit Weights(double t)
-      : value{0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t)}, slope{t - 0.5, -2.0 * t, t + 0.5} {}
+      : value{0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t)},
+        slope{t - 0.5, -2.0 * t, t + 0.5} {}
 };
 
 }  // namespace

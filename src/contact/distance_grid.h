@@ -12,7 +12,7 @@
 namespace tissue_contact {
 
 struct GridSample {
-  double distance = 0.0;              ///< m, > 0 outside
+  double distance = 0.0;               ///< m, > 0 outside
   Vector3 gradient = Vector3::Zero();  ///< of length about 1; shorter where opposite or meeting faces are equally near
 };
 
@@ -21,14 +21,12 @@ struct GridSample {
 /// and, its weights being positive, nowhere steeper than the samples and never outside their range. Where faces meet it
 /// rounds with a radius of about the spacing.
 struct DistanceGrid {
-  Vector3 origin = Vector3::Zero();  ///< of sample (0, 0, 0), m
-  double spacing = 0.0;              ///< m
+  Vector3 origin = Vector3::Zero();     ///< of sample (0, 0, 0), m
+  double spacing = 0.0;                 ///< m
   std::array<int, 3> size = {0, 0, 0};  ///< samples per axis, >= 4
-  std::vector<float> samples;        ///< m, x runs fastest
+  std::vector<float> samples;           ///< m, x runs fastest
 
-  std::size_t index(int i, int j, int k) const {
-    return (static_cast<std::size_t>(k) * size[1] + j) * size[0] + i;
-  }
+  std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(k) * size[1] + j) * size[0] + i; }
   Vector3 point(int i, int j, int k) const { return origin + spacing * Vector3(i, j, k); }
 
   /// Where the spline is defined: one spacing inside the samples.

@@ -9,17 +9,17 @@
 namespace tissue_contact {
 namespace {
 
-constexpr int kMostPieces = 28;      // looked at: what a triangle of four sizes of the shape needs
+constexpr int kMostPieces = 28;  // looked at: what a triangle of four sizes of the shape needs
 constexpr int kMostCuts = 12;
 constexpr double kFinest = 3.0;      // spacings: smaller pieces are left to the cutting planes
 constexpr double kTolerance = 0.01;  // of the spacing
 
 /// One of the similar triangles a triangle is cut into.
 struct Piece {
-  Vector3 middle;     ///< barycentric
-  double half;        ///< its corners are at middle + half * (2/3, -1/3, -1/3) and so on; < 0: upside down
-  double value;       ///< at the middle, m
-  double bound;       ///< no lower than this in it, m
+  Vector3 middle;  ///< barycentric
+  double half;     ///< its corners are at middle + half * (2/3, -1/3, -1/3) and so on; < 0: upside down
+  double value;    ///< at the middle, m
+  double bound;    ///< no lower than this in it, m
 };
 
 /// Pieces to look at, those that may be lowest first.

@@ -41,9 +41,10 @@ TriangleMesh usablePart(const TriangleMesh& mesh) {
 
 void requireInside(const DistanceGrid& grid, const std::string& name) {
   if (std::any_of(grid.samples.begin(), grid.samples.end(), [](float value) { return value < 0.0F; })) return;
-  throw std::invalid_argument("mesh '" + name +
-                              "' encloses nothing: it is an open sheet, or thinner than a hundredth of its length; a tool "
-                              "that touches tissue must be a closed solid");
+  throw std::invalid_argument(
+      "mesh '" + name +
+      "' encloses nothing: it is an open sheet, or thinner than a hundredth of its length; a tool "
+      "that touches tissue must be a closed solid");
 }
 
 /// At points spread evenly over the triangles (additive recurrence of the plastic number, folded into each triangle).

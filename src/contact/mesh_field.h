@@ -13,7 +13,7 @@ namespace tissue_contact {
 
 struct MeshField {
   DistanceGrid grid;
-  Vector3 low = Vector3::Zero();   ///< corners of the mesh's bounding box, m
+  Vector3 low = Vector3::Zero();  ///< corners of the mesh's bounding box, m
   Vector3 high = Vector3::Zero();
   /// Distance from the points of the mesh's outer surface to the shape, m, weighted by area.
   double largest_deviation = 0.0;

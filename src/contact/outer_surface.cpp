@@ -18,8 +18,8 @@ class OuterSurface {
     if (normal.isZero(0.0)) return;
     const int outer = outerPoints(corners, normal);
     if (outer == 0) return;
-    const double longest = std::max({(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(),
-                                     (corners[0] - corners[2]).norm()});
+    const double longest = std::max(
+        {(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(), (corners[0] - corners[2]).norm()});
     if (outer == 4 || longest < finest_) {
       for (const Vector3& corner : corners) points_.push_back(corner);
       return;
@@ -45,10 +45,9 @@ class OuterSurface {
   /// Of the middle and three points near the corners: how many do not have the inside on both sides.
   int outerPoints(const std::array<Vector3, 3>& corners, const Vector3& normal) const {
     const Vector3 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-    const auto isInside = [&](const Vector3& p) { return std::abs(tree_.windingNumber(p)) > 0.5; };
     const auto isOuter = [&](const Vector3& p) {
       const Vector3 aside = 0.02 * finest_ * normal;
-      return !(isInside(p + aside) && isInside(p - aside));
+      return !(tree_.isInside(p + aside) && tree_.isInside(p - aside));
     };
     int count = isOuter(middle) ? 1 : 0;
     for (const Vector3& corner : corners) count += isOuter(0.9 * corner + 0.1 * middle) ? 1 : 0;

@@ -50,8 +50,10 @@ class Sampler {
   }
 
   DistanceGrid run(const std::function<void(double)>& progress) {
-    forEachSlice(coarse_size_[2], [this](int k) { sampleCoarse(k); }, nullptr);
-    forEachSlice(coarse_size_[2], [this](int k) { sampleBlocks(k); }, progress);
+    forEachSlice(
+        coarse_size_[2], [this](int k) { sampleCoarse(k); }, nullptr);
+    forEachSlice(
+        coarse_size_[2], [this](int k) { sampleBlocks(k); }, progress);
     return std::move(grid_);
   }
 
@@ -59,8 +61,6 @@ class Sampler {
   double& coarse(int i, int j, int k) {
     return coarse_[(static_cast<std::size_t>(k) * coarse_size_[1] + j) * coarse_size_[0] + i];
   }
-  bool isInside(const Vector3& p) const { return std::abs(all_.windingNumber(p)) > 0.5; }
-
   /// On the side of the sample before, or of a corner of the block, when the surface cannot pass between.
   bool isInside(const Vector3& p, double distance, double before, const Corners& corners) const {
     if (std::max(distance, std::abs(before)) > grid_.spacing && before != 0.0) return before < 0.0;
@@ -68,7 +68,7 @@ class Sampler {
       const double way = (p - corners.points[c]).norm();
       if (std::max(distance, std::abs(corners.values[c])) > 1.000001 * way) return corners.values[c] < 0.0;
     }
-    return isInside(p);
+    return all_.isInside(p);
   }
 
   void sampleCoarse(int k) {
@@ -77,7 +77,7 @@ class Sampler {
       for (int i = 0; i < coarse_size_[0]; ++i) {
         const Vector3 p = grid_.point(kBlock * i, kBlock * j, kBlock * k);
         const double distance = std::sqrt(tree_.squaredDistance(p, bound * bound));
-        coarse(i, j, k) = isInside(p) ? -distance : distance;
+        coarse(i, j, k) = all_.isInside(p) ? -distance : distance;
         bound = 1.000001 * (distance + kBlock * grid_.spacing);
       }
     }
@@ -110,7 +110,8 @@ class Sampler {
         if (far) {
           for (int i = 0; i < count[0]; ++i) grid_.samples[row + i] = interpolated(corners.values, i, j, k);
         } else {
-          measureRow(grid_.point(kBlock * block[0], kBlock * block[1] + j, kBlock * block[2] + k), count[0], row, corners);
+          measureRow(grid_.point(kBlock * block[0], kBlock * block[1] + j, kBlock * block[2] + k), count[0], row,
+                     corners);
         }
       }
     }

@@ -21,8 +21,8 @@ struct GridPlan {
 /// @param sample_count about how many samples the grid may have; it may get some tenths more.
 GridPlan planGrid(const TriangleMesh& mesh, double sample_count);
 
-/// Inside is where `all` winds around a point more than half a time, forwards or backwards: small holes, several shells,
-/// inner faces and reversed parts do not matter. Samples farther than some spacings from the surface are interpolated
+/// Inside is where `all` winds around a point (SurfaceTree::isInside): small holes, several shells, inner faces and
+/// reversed parts do not matter. Samples farther than some spacings from the surface are interpolated
 /// from every fourth. On up to four threads, with the same bits on any number.
 /// @param all every triangle. @param outer those from which distance is measured. @param progress share done; may be
 ///   empty.

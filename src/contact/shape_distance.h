@@ -95,7 +95,8 @@ class ShapeDistances {
   std::unique_ptr<ShapeDistance> make(const CollisionShape& shape);
 
  private:
-  std::unique_ptr<ShapeDistance> makeMesh(const MeshGeometry& geometry, const std::shared_ptr<const TriangleMesh>& mesh);
+  std::unique_ptr<ShapeDistance> makeMesh(const MeshGeometry& geometry,
+                                          const std::shared_ptr<const TriangleMesh>& mesh);
 
   MeshPreparation preparation_;
   std::map<std::tuple<std::string, double, double, double>, std::shared_ptr<const MeshField>> fields_;

@@ -132,7 +132,8 @@ double SurfaceTree::solidAngle(int node, const Vector3& p) const {
   const Node& here = nodes_[node];
   const Vector3 way = here.centre - p;
   const double squared = way.squaredNorm();
-  if (squared > kFar * kFar * here.radius * here.radius) return here.area_normal.dot(way) / (squared * std::sqrt(squared));
+  if (squared > kFar * kFar * here.radius * here.radius)
+    return here.area_normal.dot(way) / (squared * std::sqrt(squared));
   if (here.count == 0) return solidAngle(here.first, p) + solidAngle(here.first + 1, p);
   double sum = 0.0;
   for (int i = here.first; i < here.first + here.count; ++i) {

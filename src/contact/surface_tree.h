@@ -3,6 +3,7 @@
 /// around a point.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "tissue_contact/core/types.h"
@@ -24,14 +25,18 @@ class SurfaceTree {
   /// twice the extent of their box are summed as dipoles (Barill et al. 2018, first order).
   double windingNumber(const Vector3& p) const;
 
+  /// Whether the surface winds around `p`, forwards or backwards. The middle of a hole and either side of a wall across
+  /// the inside see half a turn less; walls are the likelier.
+  bool isInside(const Vector3& p) const { return std::abs(windingNumber(p)) > 0.4; }
+
  private:
   struct Node {
     Eigen::AlignedBox3d box;
-    Vector3 centre = Vector3::Zero();        ///< of the area
-    Vector3 area_normal = Vector3::Zero();   ///< sum of normal times area, m^2
-    double radius = 0.0;                     ///< of a ball at `centre` around the box, m
-    int first = 0;                           ///< triangle of a leaf, else left child; the right child follows it
-    int count = 0;                           ///< of triangles, 0: not a leaf
+    Vector3 centre = Vector3::Zero();       ///< of the area
+    Vector3 area_normal = Vector3::Zero();  ///< sum of normal times area, m^2
+    double radius = 0.0;                    ///< of a ball at `centre` around the box, m
+    int first = 0;                          ///< triangle of a leaf, else left child; the right child follows it
+    int count = 0;                          ///< of triangles, 0: not a leaf
   };
 
   void build(int node, int begin, int end);
@@ -39,7 +44,7 @@ class SurfaceTree {
   double solidAngle(int node, const Vector3& p) const;
 
   const TriangleMesh& mesh_;
-  std::vector<int> order_;  ///< triangles in the order of the leaves
+  std::vector<int> order_;        ///< triangles in the order of the leaves
   std::vector<Vector3> corners_;  ///< three per triangle, in that order
   std::vector<Node> nodes_;
 };

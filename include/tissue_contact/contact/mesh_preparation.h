@@ -9,7 +9,7 @@ namespace tissue_contact {
 
 /// All members may be empty: no cache, nothing said.
 struct MeshPreparation {
-  std::string cache_directory;                       ///< made when missing; a directory that cannot be used is said once
+  std::string cache_directory;  ///< made when missing; a directory that cannot be used is said once
   std::function<void(const std::string& line)> say;  ///< progress of more than a second, and one line per mesh
   std::function<double()> clock;                     ///< seconds, for those lines alone
 };
