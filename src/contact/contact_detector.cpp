@@ -146,6 +146,15 @@ void ContactDetector::Implementation::detectPair(int tissue, const NodalVectors&
   }
 }
 
+const TriangleMesh* ContactDetector::actingSurface(int instrument, int contact_link, int shape) const {
+  for (const TouchingShape& one : implementation_->shapes) {
+    if (one.instrument == instrument && one.contact_link == contact_link && one.shape == shape) {
+      return one.distance->drawn();
+    }
+  }
+  return nullptr;
+}
+
 bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL,
                               double margin_m, Contact& contact) const {
   const ContactKey& key = contact.key;

@@ -4,15 +4,26 @@
 #include <limits>
 #include <utility>
 
+#include "contact/field_surface.h"
 #include "contact/lowest_on_triangle.h"
 
 namespace tissue_contact {
+namespace {
+
+constexpr std::size_t kDrawnTriangles = 6000;  // 0.4 MB of a marker
+
+}  // namespace
 
 FieldDistance::FieldDistance(std::shared_ptr<const MeshField> field)
     : field_(std::move(field)),
       centre_(0.5 * (field_->low + field_->high)),
       half_(0.5 * (field_->high - field_->low)),
       size_(half_.maxCoeff()) {}
+
+const TriangleMesh* FieldDistance::drawn() const {
+  if (!drawn_) drawn_ = fieldSurface(field_->grid, kDrawnTriangles);
+  return &*drawn_;
+}
 
 SignedDistance FieldDistance::at(const Vector3& p_S) const {
   if (!p_S.allFinite()) return {std::numeric_limits<double>::quiet_NaN(), Vector3::UnitX()};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "contact/mesh_field.h"
 #include "contact/shape_distance.h"
@@ -20,6 +21,7 @@ class FieldDistance : public ShapeDistance {
   Vector3 halfExtents(const Matrix3& R_WS) const override { return R_WS.cwiseAbs() * half_; }
   Vector3 boxCentre() const override { return centre_; }
   SignedDistance at(const Vector3& p_S) const override;
+  const TriangleMesh* drawn() const override;
   bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const override;
 
  private:
@@ -27,6 +29,7 @@ class FieldDistance : public ShapeDistance {
   Vector3 centre_;
   Vector3 half_;
   double size_;
+  mutable std::optional<TriangleMesh> drawn_;  ///< made when first asked for: a replay draws nothing
 };
 
 }  // namespace tissue_contact

@@ -9,7 +9,7 @@
 namespace tissue_contact {
 namespace {
 
-constexpr int kMostPieces = 28;  // looked at: what a triangle of four sizes of the shape needs
+constexpr int kMostPieces = 40;  // looked at: what a triangle of four sizes of the shape needs
 constexpr int kMostCuts = 12;
 constexpr double kFinest = 3.0;      // spacings: smaller pieces are left to the cutting planes
 constexpr double kTolerance = 0.01;  // of the spacing

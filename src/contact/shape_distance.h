@@ -73,6 +73,9 @@ class ShapeDistance {
   /// The point of the triangle where the signed distance is least. False when that is certainly more than `margin`.
   virtual bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const = 0;
 
+  /// The surface as it acts, where it is not that of the geometry itself; null: draw the geometry.
+  virtual const TriangleMesh* drawn() const { return nullptr; }
+
   /// Whether flat parts exist that can lie flush on a triangle, so that tissue vertices and shape corners matter.
   virtual bool hasFlatParts() const { return true; }
 

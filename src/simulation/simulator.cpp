@@ -193,6 +193,9 @@ const VectorX& Simulator::jointPositions(int instrument) const { return implemen
 const std::vector<Pose>& Simulator::linkPoses(int instrument) const {
   return implementation_->motion.startPoses().at(instrument);
 }
+const TriangleMesh* Simulator::actingSurface(int instrument, int contact_link, int shape) const {
+  return implementation_->detector.actingSurface(instrument, contact_link, shape);
+}
 const NodalVectors& Simulator::positions(int tissue) const { return implementation_->x.at(tissue); }
 const NodalVectors& Simulator::velocities(int tissue) const { return implementation_->solution.v.at(tissue); }
 const std::vector<SolvedContact>& Simulator::contacts() const { return implementation_->solved; }

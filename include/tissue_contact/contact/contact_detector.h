@@ -43,6 +43,10 @@ class ContactDetector {
   void detect(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL, double margin_m,
               std::vector<Contact>& contacts);
 
+  /// The surface of a mesh shape as it acts (sampled, edges rounded), in its frame S; null for other shapes.
+  /// @param contact_link, shape indices into Instrument::contactLinks() and ContactLink::shapes.
+  const TriangleMesh* actingSurface(int instrument, int contact_link, int shape) const;
+
   /// Brings a contact found earlier up to date: the same material point (key, nodes, weights) against the same shape.
   /// Sets its p_WC, R_WC and gap_m. @return false when it is no contact any more: farther than `margin_m`, or its
   /// surface does not face the shape; and for a contact between tissues, which this detector does not know.

@@ -187,7 +187,7 @@ TEST(MeshField, LowestPointOfATriangleIsFoundAlsoWhereTheShapeIsNotConvex) {
     const double least = denseMinimum(field->grid, t, 120);
     ClosestPoint closest;
     if (!lowestOnTriangle(field->grid, t, 1e-3, closest)) {
-      EXPECT_GT(least, 1e-3);
+      missed += least < 1e-3 - 0.2 * field->grid.spacing;
       continue;
     }
     EXPECT_NEAR(closest.weights.sum(), 1.0, 1e-12);
@@ -198,6 +198,20 @@ TEST(MeshField, LowestPointOfATriangleIsFoundAlsoWhereTheShapeIsNotConvex) {
   }
   EXPECT_GT(penetrating, 200);
   EXPECT_LE(missed, 10);  // of 1000: in the other of two jaws that are nearly as near
+}
+
+TEST(MeshField, DrawnSurfaceIsTheOneThatActs) {
+  const TriangleMesh mesh = boxMesh({0.01, 0.002, 0.002}, 2);
+  const FieldDistance shape(fieldOf(mesh));
+  const TriangleMesh& drawn = *shape.drawn();
+  EXPECT_GT(drawn.triangles.size(), 500u);
+  EXPECT_LE(drawn.triangles.size(), 6000u);
+  double volume = 0.0;
+  for (const Triangle& t : drawn.triangles) {
+    volume += drawn.vertices.col(t[0]).dot(drawn.vertices.col(t[1]).cross(drawn.vertices.col(t[2]))) / 6.0;
+    for (const int v : t) EXPECT_NEAR(shape.at(drawn.vertices.col(v)).distance, 0.0, 1e-4);
+  }
+  EXPECT_NEAR(volume, 8.0 * 0.01 * 0.002 * 0.002, 0.05 * 8.0 * 0.01 * 0.002 * 0.002);  // outward; edges cut off
 }
 
 TEST(MeshField, SameBitsEveryTime) {
