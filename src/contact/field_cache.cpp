@@ -3,7 +3,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <atomic>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -161,7 +162,8 @@ std::string writeField(const std::string& directory, const std::string& key, con
   fs::create_directories(directory, error);
   const fs::path place = fs::path(directory) / (key + kExtension);
   fs::path beside = place;
-  beside += "." + std::to_string(getpid()) + ".part";
+  static std::atomic<int> written{0};  // threads of this process write beside each other
+  beside += "." + std::to_string(getpid()) + "." + std::to_string(written++) + ".part";
   {
     std::ofstream stream(beside, std::ios::binary | std::ios::trunc);
     const Header header = headerOf(field, key);
