@@ -143,7 +143,7 @@ void report(const std::string& name, std::size_t triangles, const MeshField& fie
 }  // namespace
 
 std::shared_ptr<const MeshField> prepareMeshField(const TriangleMesh& original, const std::string& name,
-                                                  const MeshPreparation& preparation) {
+                                                  MeshPreparation& preparation) {
   const TriangleMesh mesh = usablePart(original);
   const std::string key = fieldKey(mesh, kSampleCount);
   auto field = std::make_shared<MeshField>();
@@ -157,7 +157,10 @@ std::shared_ptr<const MeshField> prepareMeshField(const TriangleMesh& original, 
   if (preparation.clock) std::snprintf(took.data(), took.size(), "built in %.1f s", preparation.clock() - start);
   const std::string trouble = writeField(preparation.cache_directory, key, *field);
   report(name, original.triangles.size(), *field, took.data(), preparation);
-  if (!trouble.empty() && preparation.say) preparation.say("mesh " + name + " is not kept: " + trouble);
+  if (!trouble.empty()) {
+    if (preparation.say) preparation.say("meshes are prepared again at every start: " + trouble);
+    preparation.cache_directory.clear();
+  }
   return field;
 }
 

@@ -21,9 +21,10 @@ struct MeshField {
   double median_deviation = 0.0;
 };
 
-/// @param name of the mesh, for what is said.
+/// @param name of the mesh, for what is said. @param preparation its cache is given up when it cannot be written to, which
+///   is said once.
 /// @throws std::invalid_argument when the mesh has no usable triangle, an index out of range, or no inside.
 std::shared_ptr<const MeshField> prepareMeshField(const TriangleMesh& mesh, const std::string& name,
-                                                  const MeshPreparation& preparation);
+                                                  MeshPreparation& preparation);
 
 }  // namespace tissue_contact

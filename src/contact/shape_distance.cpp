@@ -53,7 +53,8 @@ std::unique_ptr<ShapeDistance> ShapeDistances::makeMesh(const MeshGeometry& geom
 }
 
 std::unique_ptr<ShapeDistance> makeMeshDistance(const TriangleMesh& mesh) {
-  return std::make_unique<FieldDistance>(prepareMeshField(mesh, "given", {}));
+  MeshPreparation silent;
+  return std::make_unique<FieldDistance>(prepareMeshField(mesh, "given", silent));
 }
 
 double smallestHalfExtent(const CollisionShape& shape) {

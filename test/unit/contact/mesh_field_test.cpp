@@ -17,7 +17,10 @@ using contact_test::boxMesh;
 using contact_test::Random;
 using contact_test::sphereMesh;
 
-std::shared_ptr<const MeshField> fieldOf(const TriangleMesh& mesh) { return prepareMeshField(mesh, "test", {}); }
+std::shared_ptr<const MeshField> fieldOf(const TriangleMesh& mesh) {
+  MeshPreparation silent;
+  return prepareMeshField(mesh, "test", silent);
+}
 
 /// Distance to the nearest triangle by looking at all, without a sign.
 double bruteForceDistance(const TriangleMesh& mesh, const Vector3& p) {
