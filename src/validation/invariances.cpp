@@ -49,7 +49,8 @@ void otherUnits(const NamedScene& one, const Run& plain, Report& report) {
     report.atMost(one.name + (units.length == 1e6 ? ": in um, kg"
                               : units.mass == 1.0 ? ": in mm, kg"
                                                   : ": in mm, g"),
-                  "", one.same, difference(plain, run(inUnits(one.scene, units), options)), "the same problem in m, kg");
+                  "", one.same, difference(plain, run(inUnits(one.scene, units), options)),
+                  "the same problem in m, kg");
   }
 }
 

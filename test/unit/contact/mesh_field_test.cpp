@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <filesystem>
 #include <string>
 
 #include "contact/field_distance.h"
@@ -201,6 +201,52 @@ TEST(MeshField, LowestPointOfATriangleIsFoundAlsoWhereTheShapeIsNotConvex) {
   }
   EXPECT_GT(penetrating, 200);
   EXPECT_LE(missed, 10);  // of 1000: in the other of two jaws that are nearly as near
+}
+
+/// Tools of two robots as others made them; what is nearest to tissue must be nearest to its mesh.
+TEST(MeshField, ToolsOfRealRobotsLieWithinATenthOfAMillimetreOfTheirMeshes) {
+  const std::string data = TISSUE_CONTACT_SHARED_DATA;
+  if (!std::filesystem::exists(data + "/dvrk_psm") || !std::filesystem::exists(data + "/surrol_psm")) {
+    GTEST_SKIP() << "no robots in " << data;
+  }
+  for (const char* file :
+       {"dvrk_psm/meshes/tool_wrist_caudier_link_1.stl", "dvrk_psm/meshes/tool_wrist_caudier_link_2.stl",
+        "dvrk_psm/meshes/tool_wrist_caudier_link_1_shaft.stl", "dvrk_psm/meshes/tool_wrist_link.dae",
+        "surrol_psm/meshes/collision/tool_gripper1_link.STL",
+        "surrol_psm/meshes/collision/tool_gripper2_link_wide_vhacd.obj",
+        "surrol_psm/meshes/collision/tool_pitch_link.STL", "surrol_psm/meshes/visual/tool_gripper1_link_wide.obj"}) {
+    SCOPED_TRACE(file);
+    const auto field = fieldOf(loadTriangleMesh(data + "/" + file, Vector3::Ones()));
+    EXPECT_LT(field->largest_deviation, 1e-4);  // m
+    EXPECT_LT(field->rms_deviation, 1e-5);
+    EXPECT_LT(field->grid.samples.size(), 2000000u);  // 8 MB
+  }
+}
+
+// Robots of metres, whose meshes take the millimetres of their parts as they come: only that they become shapes.
+TEST(MeshField, EveryMeshOfTheDvrkBecomesAShape) {
+  const std::string folder = std::string(TISSUE_CONTACT_SHARED_DATA) + "/dvrk_psm/meshes";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no robot in " << folder;
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    SCOPED_TRACE(entry.path().string());
+    const auto field = fieldOf(loadTriangleMesh(entry.path().string(), Vector3::Ones()));
+    EXPECT_LT(field->rms_deviation, 0.11 * field->grid.spacing);
+    ++count;
+  }
+  EXPECT_EQ(count, 13);
+}
+
+TEST(MeshField, MirroredAndUnevenScaleKeepTheInside) {
+  const Vector3 half(0.01, 0.006, 0.004);
+  for (const Vector3& scale : {Vector3(-1.0, 1.0, 1.0), Vector3(0.5, 2.0, 1.0), Vector3(-1.0, -1.0, -0.1)}) {
+    TriangleMesh mesh = boxMesh(half, 2);
+    mesh.vertices = scale.asDiagonal() * mesh.vertices;  // reversed by a mirror, which must not matter
+    const auto field = fieldOf(mesh);
+    const Vector3 scaled = half.cwiseProduct(scale.cwiseAbs());
+    EXPECT_LT(field->grid.at(Vector3::Zero()).distance, -0.5 * scaled.minCoeff());
+    EXPECT_NEAR(field->grid.at({0.0, 0.0, scaled.z() + 1e-4}).distance, 1e-4, 1e-8);  // single precision
+  }
 }
 
 TEST(MeshField, DrawnSurfaceIsTheOneThatActs) {
