@@ -39,7 +39,9 @@ struct TouchableSurface {
   bool refitted = false;                            ///< this call: only tissues that a shape comes near need their tree
 };
 
-std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instruments) {
+std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instruments,
+                                          const MeshPreparation& preparation) {
+  ShapeDistances distances(preparation);
   std::vector<TouchingShape> result;
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     const std::vector<ContactLink>& links = instruments[i].contactLinks();
@@ -47,7 +49,7 @@ std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instrum
       for (std::size_t s = 0; s < links[l].shapes.size(); ++s) {
         const CollisionShape& shape = links[l].shapes[s];
         result.push_back({static_cast<int>(i), static_cast<int>(l), static_cast<int>(s), links[l].link, shape.X_LS,
-                          makeShapeDistance(shape), smallestHalfExtent(shape)});
+                          distances.make(shape), smallestHalfExtent(shape)});
       }
     }
   }
@@ -93,10 +95,10 @@ struct ContactDetector::Implementation {
 };
 
 ContactDetector::ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
-                                 const std::vector<NodalVectors>& positions)
+                                 const std::vector<NodalVectors>& positions, const MeshPreparation& preparation)
     : implementation_(std::make_unique<Implementation>()) {
   requireSameSize("positions of tissues", -1, positions.size(), surfaces.size());
-  implementation_->shapes = touchingShapes(instruments);
+  implementation_->shapes = touchingShapes(instruments, preparation);
   for (const Instrument& one : instruments) implementation_->link_counts.push_back(one.model().links().size());
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const int node_count = static_cast<int>(positions[i].cols());
@@ -215,6 +217,15 @@ bool ContactDetector::Implementation::besideOthers(const TouchingShape& shape,
 }
 
 int ContactDetector::pinchedContacts() const { return implementation_->pinched; }
+
+const TriangleMesh* ContactDetector::actingSurface(int instrument, int contact_link, int shape) const {
+  for (const TouchingShape& one : implementation_->shapes) {
+    if (one.instrument == instrument && one.contact_link == contact_link && one.shape == shape) {
+      return one.distance->drawn();
+    }
+  }
+  return nullptr;
+}
 
 bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL,
                               double margin_m, Contact& contact) const {

@@ -2,27 +2,14 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <variant>
 
+#include "contact/field_distance.h"
+#include "contact/mesh_field.h"
 #include "tissue_contact/contact/contact_detector.h"
 
 namespace tissue_contact {
 namespace {
-
-struct MakeDistance {
-  const TriangleMesh* mesh;
-
-  std::unique_ptr<ShapeDistance> operator()(const SphereGeometry& sphere) const {
-    return makeSphereDistance(sphere.radius_m);
-  }
-  std::unique_ptr<ShapeDistance> operator()(const BoxGeometry& box) const { return makeBoxDistance(0.5 * box.size_m); }
-  std::unique_ptr<ShapeDistance> operator()(const CylinderGeometry& cylinder) const {
-    return makeCylinderDistance(cylinder.radius_m, 0.5 * cylinder.length_m);
-  }
-  std::unique_ptr<ShapeDistance> operator()(const MeshGeometry& geometry) const {
-    if (!mesh) throw std::invalid_argument("mesh shape '" + geometry.file + "' was not loaded");
-    return makeMeshDistance(*mesh);
-  }
-};
 
 struct HalfExtent {
   const TriangleMesh* mesh;
@@ -47,8 +34,27 @@ void ShapeDistance::foremostCorners(const Vector3&, const Eigen::AlignedBox3d&,
   corners.clear();
 }
 
-std::unique_ptr<ShapeDistance> makeShapeDistance(const CollisionShape& shape) {
-  return std::visit(MakeDistance{shape.mesh.get()}, shape.geometry);
+std::unique_ptr<ShapeDistance> ShapeDistances::make(const CollisionShape& shape) {
+  if (const auto* sphere = std::get_if<SphereGeometry>(&shape.geometry)) return makeSphereDistance(sphere->radius_m);
+  if (const auto* box = std::get_if<BoxGeometry>(&shape.geometry)) return makeBoxDistance(0.5 * box->size_m);
+  if (const auto* cylinder = std::get_if<CylinderGeometry>(&shape.geometry)) {
+    return makeCylinderDistance(cylinder->radius_m, 0.5 * cylinder->length_m);
+  }
+  return makeMesh(std::get<MeshGeometry>(shape.geometry), shape.mesh);
+}
+
+std::unique_ptr<ShapeDistance> ShapeDistances::makeMesh(const MeshGeometry& geometry,
+                                                        const std::shared_ptr<const TriangleMesh>& mesh) {
+  if (!mesh) throw std::invalid_argument("mesh shape '" + geometry.file + "' was not loaded");
+  const Vector3& scale = geometry.scale;
+  std::shared_ptr<const MeshField>& field = fields_[{geometry.file, scale.x(), scale.y(), scale.z()}];
+  if (!field) field = prepareMeshField(*mesh, geometry.file, preparation_);
+  return std::make_unique<FieldDistance>(field);
+}
+
+std::unique_ptr<ShapeDistance> makeMeshDistance(const TriangleMesh& mesh) {
+  MeshPreparation silent;
+  return std::make_unique<FieldDistance>(prepareMeshField(mesh, "given", silent));
 }
 
 double smallestHalfExtent(const CollisionShape& shape) {

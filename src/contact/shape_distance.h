@@ -1,18 +1,25 @@
 /// @file
-/// Room `contact`: what contact detection asks of an instrument shape: its exact signed distance, and where on a
+/// Room `contact`: what contact detection asks of an instrument shape: its signed distance, and where on a
 /// triangle that distance is least. Everything in the shape's frame S, metres.
 #pragma once
 
 #include <array>
 #include <cassert>
+#include <map>
 #include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "contact/triangle_geometry.h"
+#include "tissue_contact/contact/mesh_preparation.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/instrument/collision_shape.h"
 
 namespace tissue_contact {
+
+struct MeshField;
 
 struct SignedDistance {
   double distance = 0.0;              ///< m, > 0 outside
@@ -66,6 +73,9 @@ class ShapeDistance {
   /// The point of the triangle where the signed distance is least. False when that is certainly more than `margin`.
   virtual bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const = 0;
 
+  /// The surface as it acts, where it is not that of the geometry itself; null: draw the geometry.
+  virtual const TriangleMesh* drawn() const { return nullptr; }
+
   /// Whether flat parts exist that can lie flush on a triangle, so that tissue vertices and shape corners matter.
   virtual bool hasFlatParts() const { return true; }
 
@@ -78,12 +88,28 @@ class ShapeDistance {
   virtual double cornerReach() const { return size(); }
 };
 
-/// The exact signed distance of a shape. @throws std::invalid_argument for a mesh shape without triangles.
-std::unique_ptr<ShapeDistance> makeShapeDistance(const CollisionShape& shape);
+/// The signed distances of many shapes: those of one mesh share its field.
+class ShapeDistances {
+ public:
+  explicit ShapeDistances(MeshPreparation preparation) : preparation_(std::move(preparation)) {}
+
+  /// The exact signed distance of a shape, of a mesh a sampled one. @throws std::invalid_argument naming a mesh that was
+  ///   not loaded, has no usable triangle or no inside.
+  std::unique_ptr<ShapeDistance> make(const CollisionShape& shape);
+
+ private:
+  std::unique_ptr<ShapeDistance> makeMesh(const MeshGeometry& geometry,
+                                          const std::shared_ptr<const TriangleMesh>& mesh);
+
+  MeshPreparation preparation_;
+  std::map<std::tuple<std::string, double, double, double>, std::shared_ptr<const MeshField>> fields_;
+};
 
 std::unique_ptr<ShapeDistance> makeSphereDistance(double radius);
 std::unique_ptr<ShapeDistance> makeBoxDistance(const Vector3& half_extents);
 std::unique_ptr<ShapeDistance> makeCylinderDistance(double radius, double half_length);
+
+/// @throws std::invalid_argument for a mesh without usable triangles or without an inside.
 std::unique_ptr<ShapeDistance> makeMeshDistance(const TriangleMesh& mesh);
 
 }  // namespace tissue_contact

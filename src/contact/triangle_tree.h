@@ -2,7 +2,6 @@
 /// Room `contact`: a bounding-volume tree over triangles (FCL), refitted when they move.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -10,13 +9,6 @@
 #include "tissue_contact/core/types.h"
 
 namespace tissue_contact {
-
-struct NearestOnTriangles {
-  int triangle = -1;
-  Vector3 weights = Vector3::Zero();  ///< barycentric, exactly 0 for corners the point does not depend on
-  Vector3 point = Vector3::Zero();
-  double distance_squared = 0.0;
-};
 
 /// fcl::BVHModel of axis-aligned boxes with a descent of our own: fcl::collide would run GJK at every leaf.
 class TriangleTree {
@@ -32,13 +24,6 @@ class TriangleTree {
 
   /// Indices of the triangles whose bounding boxes overlap `box`, ascending.
   void overlapping(const Eigen::AlignedBox3d& box, std::vector<int>& triangles) const;
-
-  /// Calls `visit` with the triangles that may be no farther from `triangle` than `reach` (m), nearer branches first.
-  /// `visit` may shorten `reach` as it finds something.
-  void visitNear(const TrianglePoints& triangle, const double& reach, const std::function<void(int)>& visit) const;
-
-  /// The nearest point of all triangles to `p` (exact).
-  NearestOnTriangles nearest(const Vector3& p) const;
 
  private:
   struct Implementation;

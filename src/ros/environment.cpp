@@ -2,6 +2,7 @@
 /// Room `ros`: see environment.h.
 #include "tissue_contact/ros/environment.h"
 
+#include <ros/console.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <rospack/rospack.h>
@@ -12,7 +13,9 @@
 #include <tf2_ros/transform_listener.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
+#include <iostream>
 #include <limits>
 #include <memory>
 #include <sstream>
@@ -25,6 +28,19 @@
 
 namespace tissue_contact {
 namespace {
+
+/// $XDG_CACHE_HOME/tissue_contact, else ~/.cache/tissue_contact; empty (no cache) when neither is set.
+std::string cacheDirectory() {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::string(value == nullptr ? "" : value);
+  };
+  // The specification of these directories: a relative path is to be ignored.
+  const std::string cache = variable("XDG_CACHE_HOME");
+  if (!cache.empty() && cache.front() == '/') return cache + "/tissue_contact";
+  const std::string home = variable("HOME");
+  return home.empty() || home.front() != '/' ? "" : home + "/.cache/tissue_contact";
+}
 
 std::string urdfParameter(const ros::NodeHandle& private_node, const std::string& parameter) {
   const std::string tried_first = private_node.resolveName(parameter);
@@ -123,6 +139,7 @@ SceneEnvironment nodeEnvironment(const ros::NodeHandle& private_node, const std:
   SceneEnvironment environment;
   environment.package_path = packagePath;
   environment.clock = steadySeconds;
+  environment.meshes = {cacheDirectory(), [](const std::string& line) { ROS_INFO_STREAM(line); }, steadySeconds};
   environment.urdf_text = [private_node](const std::string& parameter) {
     return urdfParameter(private_node, parameter);
   };
@@ -137,6 +154,9 @@ SceneEnvironment bagEnvironment(const std::string& bag_file, const std::string& 
   SceneEnvironment environment;
   environment.package_path = packagePath;
   environment.clock = steadySeconds;
+  environment.meshes = {cacheDirectory(),
+                        [](const std::string& line) { std::cerr << "tissue_contact_replay: " << line << "\n"; },
+                        steadySeconds};
   environment.urdf_text = [urdf_file](const std::string& parameter) {
     if (urdf_file.empty()) {
       throw std::invalid_argument("the scene takes a URDF from parameter '" + parameter +

@@ -39,7 +39,7 @@ void setTriangles(const TriangleMesh& mesh, Marker& marker) {
   }
 }
 
-/// Type and size of a shape. `mesh` is its triangles if they were read; else RViz reads the file itself.
+/// Type and size of a shape. `mesh` is the surface it acts with if it is a mesh that touches; else RViz reads the file itself.
 void setGeometry(const ShapeGeometry& geometry, const TriangleMesh* mesh, Marker& marker) {
   if (const auto* sphere = std::get_if<SphereGeometry>(&geometry)) {
     marker.type = Marker::SPHERE;
@@ -148,14 +148,16 @@ void SceneMarkers::addTissues() {
   }
 }
 
-/// Links that touch tissue are drawn as the shapes that touch; the others as the URDF draws them, paler.
+/// Links that touch tissue are drawn as the shapes that touch, meshes with the edges they act with; the others as the URDF draws them, paler.
 void SceneMarkers::addInstrument(int instrument) {
   const Instrument& tool = simulator_.instruments()[static_cast<std::size_t>(instrument)];
   std::set<int> touching;
-  for (const ContactLink& link : tool.contactLinks()) {
+  for (std::size_t c = 0; c < tool.contactLinks().size(); ++c) {
+    const ContactLink& link = tool.contactLinks()[c];
     touching.insert(link.link);
-    for (const CollisionShape& shape : link.shapes) {
-      addShape(instrument, link.link, {shape.geometry, shape.X_LS}, shape.mesh.get(), true);
+    for (std::size_t s = 0; s < link.shapes.size(); ++s) {
+      const TriangleMesh* surface = simulator_.actingSurface(instrument, static_cast<int>(c), static_cast<int>(s));
+      addShape(instrument, link.link, {link.shapes[s].geometry, link.shapes[s].X_LS}, surface, true);
     }
   }
   for (std::size_t l = 0; l < tool.model().links().size(); ++l) {

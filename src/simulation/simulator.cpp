@@ -62,7 +62,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       friction(scene, instruments, tissues),
       mean_edge(meanSurfaceEdge(tissues)),
       motion(instruments),
-      detector(instruments, surfacesOf(tissues), restPositionsOf(tissues)),
+      detector(instruments, surfacesOf(tissues), restPositionsOf(tissues), environment.meshes),
       solver(makeContactSolver(scene.solver, environment.clock)),
       load_watch(scene, tissues) {
   requireMethodForLaws(scene);
@@ -202,6 +202,9 @@ Wrench Simulator::wrench(int instrument) const { return implementation_->wrenche
 const VectorX& Simulator::jointPositions(int instrument) const { return implementation_->motion.positions(instrument); }
 const std::vector<Pose>& Simulator::linkPoses(int instrument) const {
   return implementation_->motion.startPoses().at(instrument);
+}
+const TriangleMesh* Simulator::actingSurface(int instrument, int contact_link, int shape) const {
+  return implementation_->detector.actingSurface(instrument, contact_link, shape);
 }
 const NodalVectors& Simulator::positions(int tissue) const { return implementation_->x.at(tissue); }
 const NodalVectors& Simulator::velocities(int tissue) const { return implementation_->solution.v.at(tissue); }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tissue_contact/contact/contact.h"
+#include "tissue_contact/contact/mesh_preparation.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/instrument/instrument.h"
 
@@ -35,9 +36,10 @@ class ContactDetector {
   /// @param instruments must outlive the detector. @param surfaces one per tissue; @param positions one per tissue,
   ///   m, world frame.
   /// @throws std::invalid_argument when the sizes differ, a triangle refers to a missing node or twice to the same, a
-  ///   thickness is not finite or < 0, or a mesh shape has no mesh.
+  ///   thickness is not finite or < 0, or a mesh shape has no mesh or no inside.
+  /// Mesh shapes are prepared here, which takes some tenths of a second each unless they are in the cache.
   ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
-                  const std::vector<NodalVectors>& positions);
+                  const std::vector<NodalVectors>& positions, const MeshPreparation& preparation = {});
   ~ContactDetector();
   ContactDetector(ContactDetector&&) noexcept;
   ContactDetector& operator=(ContactDetector&&) noexcept;
@@ -54,6 +56,10 @@ class ContactDetector {
   /// Contacts that the last detect() left out, because two shapes that touch each other press the point from opposed
   /// sides: there is no room for it.
   int pinchedContacts() const;
+
+  /// The surface of a mesh shape as it acts (sampled, edges rounded), in its frame S; null for other shapes.
+  /// @param contact_link, shape indices into Instrument::contactLinks() and ContactLink::shapes.
+  const TriangleMesh* actingSurface(int instrument, int contact_link, int shape) const;
 
   /// Brings a contact found earlier up to date: the same material point (key, nodes, weights) against the same shape.
   /// Sets its p_WC, R_WC and gap_m. @return false when it is no contact any more: farther than `margin_m`, or its

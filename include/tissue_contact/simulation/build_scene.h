@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tissue_contact/contact/mesh_preparation.h"
 #include "tissue_contact/contact/tissue_pair_detector.h"
 #include "tissue_contact/instrument/instrument.h"
 #include "tissue_contact/scene/load_scene.h"
@@ -20,8 +21,9 @@ struct SceneEnvironment {
   PackagePath package_path;                                            ///< directory of a ROS package
   std::function<std::string(const std::string& parameter)> urdf_text;  ///< URDF held by a parameter; throws if missing
   std::function<Pose(const std::string& tf_frame)> frame_pose;         ///< X_WF of a tf frame; throws if unknown
-  std::function<double()>
-      clock;  ///< seconds, never back; for solver.time_budget_s and Simulator::setSolverDeadline alone
+  /// Seconds, never back; for solver.time_budget_s, Simulator::setSolverDeadline and what `meshes` says.
+  std::function<double()> clock;
+  MeshPreparation meshes;
 };
 
 /// @throws std::invalid_argument naming what is wrong in the scene or its files.

@@ -1,0 +1,186 @@
+#include "contact/field_cache.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace tissue_contact {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kFormat = 1;  // raise it when the samples or this file change
+constexpr std::uintmax_t kMostBytes = 256u << 20;
+constexpr const char* kExtension = ".field";
+
+/// Fowler, Noll and Vo's hash over 64-bit words.
+class Hash {
+ public:
+  explicit Hash(std::uint64_t seed) : value_(0xcbf29ce484222325u ^ seed) {}
+  void add(const void* data, std::size_t bytes) {
+    const char* from = static_cast<const char*>(data);
+    while (bytes > 0) {
+      std::uint64_t word = 0;
+      const std::size_t part = std::min(bytes, sizeof word);
+      std::memcpy(&word, from, part);
+      value_ = (value_ ^ word) * 0x100000001b3u;
+      value_ ^= value_ >> 29;
+      from += part;
+      bytes -= part;
+    }
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_;
+};
+
+/// What stands before the samples. Plain numbers without gaps, so that its bytes are its value.
+struct Header {
+  std::array<char, 8> magic = {'T', 'C', 'F', 'I', 'E', 'L', 'D', '\n'};
+  std::uint64_t format = kFormat;
+  std::array<char, 32> key{};
+  std::array<std::int64_t, 3> size{};
+  std::array<double, 13> numbers{};  ///< origin, spacing, low, high, deviations
+  std::uint64_t checksum = 0;        ///< of all the rest
+};
+
+std::uint64_t checksumOf(Header header, const std::vector<float>& samples) {
+  header.checksum = 0;
+  Hash hash(1);
+  hash.add(&header, sizeof header);
+  hash.add(samples.data(), samples.size() * sizeof(float));
+  return hash.value();
+}
+
+Header headerOf(const MeshField& field, const std::string& key) {
+  Header header;
+  std::copy_n(key.begin(), header.key.size(), header.key.begin());
+  const DistanceGrid& grid = field.grid;
+  for (int a = 0; a < 3; ++a) {
+    header.size[a] = grid.size[a];
+    header.numbers[a] = grid.origin[a];
+    header.numbers[4 + a] = field.low[a];
+    header.numbers[7 + a] = field.high[a];
+  }
+  header.numbers[3] = grid.spacing;
+  header.numbers[10] = field.largest_deviation;
+  header.numbers[11] = field.rms_deviation;
+  header.numbers[12] = field.median_deviation;
+  header.checksum = checksumOf(header, grid.samples);
+  return header;
+}
+
+MeshField fieldOf(const Header& header, std::vector<float> samples) {
+  MeshField field;
+  for (int a = 0; a < 3; ++a) {
+    field.grid.size[a] = static_cast<int>(header.size[a]);
+    field.grid.origin[a] = header.numbers[a];
+    field.low[a] = header.numbers[4 + a];
+    field.high[a] = header.numbers[7 + a];
+  }
+  field.grid.spacing = header.numbers[3];
+  field.grid.samples = std::move(samples);
+  field.largest_deviation = header.numbers[10];
+  field.rms_deviation = header.numbers[11];
+  field.median_deviation = header.numbers[12];
+  return field;
+}
+
+void removeOldest(const fs::path& directory) {
+  std::vector<std::pair<fs::file_time_type, fs::path>> files;
+  std::uintmax_t bytes = 0;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
+    if (entry.path().extension() != kExtension) continue;
+    files.emplace_back(entry.last_write_time(error), entry.path());
+    const std::uintmax_t size = entry.file_size(error);
+    if (!error) bytes += size;
+  }
+  std::sort(files.begin(), files.end());
+  for (const auto& [time, path] : files) {
+    if (bytes <= kMostBytes) return;
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (!error && fs::remove(path, error)) bytes -= std::min(bytes, size);
+  }
+}
+
+}  // namespace
+
+std::string fieldKey(const TriangleMesh& mesh, double sample_count) {
+  std::string key;
+  for (const std::uint64_t seed : {0x51ed2701u, 0x9e3779b9u}) {
+    Hash hash(seed);
+    hash.add(&kFormat, sizeof kFormat);
+    hash.add(&sample_count, sizeof sample_count);
+    const std::uint64_t vertices = static_cast<std::uint64_t>(mesh.vertices.cols());
+    hash.add(&vertices, sizeof vertices);
+    hash.add(mesh.vertices.data(), static_cast<std::size_t>(mesh.vertices.size()) * sizeof(double));
+    hash.add(mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
+    for (int digit = 60; digit >= 0; digit -= 4) key += "0123456789abcdef"[(hash.value() >> digit) & 15u];
+  }
+  return key;
+}
+
+bool readField(const std::string& directory, const std::string& key, MeshField& field) {
+  if (directory.empty()) return false;
+  const fs::path file = fs::path(directory) / (key + kExtension);
+  std::error_code error;
+  const std::uintmax_t bytes = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
+  if (error || bytes < sizeof(Header) || bytes > kMostBytes) return false;
+  std::ifstream stream(file, std::ios::binary);
+  Header header;
+  if (!stream.read(reinterpret_cast<char*>(&header), sizeof header)) return false;
+  if (header.magic != Header().magic || header.format != kFormat) return false;
+  if (!std::equal(header.key.begin(), header.key.end(), key.begin(), key.end())) return false;
+  std::uintmax_t count = 1;
+  for (const std::int64_t size : header.size) {
+    if (size < 4 || size > 1 << 20 || count > kMostBytes) return false;
+    count *= static_cast<std::uintmax_t>(size);
+  }
+  if (bytes != sizeof header + count * sizeof(float)) return false;
+  std::vector<float> samples(count);
+  if (!stream.read(reinterpret_cast<char*>(samples.data()), static_cast<std::streamsize>(count * sizeof(float))))
+    return false;
+  if (checksumOf(header, samples) != header.checksum) return false;
+  field = fieldOf(header, std::move(samples));
+  return true;
+}
+
+std::string writeField(const std::string& directory, const std::string& key, const MeshField& field) {
+  if (directory.empty()) return "";
+  std::error_code error;
+  fs::create_directories(directory, error);
+  const fs::path place = fs::path(directory) / (key + kExtension);
+  fs::path beside = place;
+  static std::atomic<int> written{0};  // threads of this process write beside each other
+  beside += "." + std::to_string(getpid()) + "." + std::to_string(written++) + ".part";
+  {
+    std::ofstream stream(beside, std::ios::binary | std::ios::trunc);
+    const Header header = headerOf(field, key);
+    stream.write(reinterpret_cast<const char*>(&header), sizeof header);
+    stream.write(reinterpret_cast<const char*>(field.grid.samples.data()),
+                 static_cast<std::streamsize>(field.grid.samples.size() * sizeof(float)));
+    stream.flush();
+    if (!stream) error = std::make_error_code(std::errc::io_error);
+  }
+  if (!error) fs::rename(beside, place, error);
+  if (error) {
+    std::error_code ignored;
+    fs::remove(beside, ignored);
+    return "cannot write to '" + directory + "' (" + error.message() + ")";
+  }
+  removeOldest(directory);
+  return "";
+}
+
+}  // namespace tissue_contact

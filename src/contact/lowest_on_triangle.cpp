@@ -1,0 +1,165 @@
+#include "contact/lowest_on_triangle.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "contact/plane_minimum.h"
+
+namespace tissue_contact {
+namespace {
+
+constexpr int kMostPieces = 40;  // looked at: what a triangle of four sizes of the shape needs
+constexpr int kMostCuts = 12;
+constexpr double kFinest = 3.0;      // spacings: smaller pieces are left to the cutting planes
+constexpr double kTolerance = 0.01;  // of the spacing
+
+/// One of the similar triangles a triangle is cut into.
+struct Piece {
+  Vector3 middle;  ///< barycentric
+  double half;     ///< its corners are at middle + half * (2/3, -1/3, -1/3) and so on; < 0: upside down
+  double value;    ///< at the middle, m
+  double bound;    ///< no lower than this in it, m
+};
+
+/// Pieces to look at, those that may be lowest first.
+class Queue {
+ public:
+  bool empty() const { return count_ == 0; }
+  void push(const Piece& piece) {
+    if (count_ == static_cast<int>(pieces_.size())) return;
+    pieces_[count_++] = piece;
+    std::push_heap(pieces_.begin(), pieces_.begin() + count_, higher);
+  }
+  Piece pop() {
+    std::pop_heap(pieces_.begin(), pieces_.begin() + count_, higher);
+    return pieces_[--count_];
+  }
+
+ private:
+  static bool higher(const Piece& a, const Piece& b) { return a.bound > b.bound; }
+  std::array<Piece, 4 * kMostPieces> pieces_;
+  int count_ = 0;
+};
+
+/// The planes met so far and the lowest point.
+class Lowest {
+ public:
+  Lowest(const DistanceGrid& grid, const TrianglePoints& triangle)
+      : grid_(grid), triangle_(triangle), tolerance_(kTolerance * grid.spacing) {}
+
+  /// Distance at a point of the triangle; remembers its plane.
+  double look(const Vector3& weights) {
+    const Vector3 p = triangle_.pointAt(weights);
+    const GridSample here = grid_.at(p);
+    Vector3 corner_values;
+    for (int i = 0; i < 3; ++i) corner_values[i] = here.distance + here.gradient.dot(triangle_.corners[i] - p);
+    if (planes_.full()) drop(highestOrigin());
+    planes_.add(corner_values);
+    gradients_[planes_.count() - 1] = here.gradient;
+    origins_[planes_.count() - 1] = here.distance;
+    if (here.distance < value_) {
+      value_ = here.distance;
+      weights_ = weights;
+      point_ = p;
+    }
+    return here.distance;
+  }
+
+  /// Cutting planes from the lowest point on. Steps stay within `reach` (m), which shrinks when they do not help.
+  void descend(double reach) {
+    for (int cut = 0; cut < kMostCuts; ++cut) {
+      dropPlanesAboveLowest();
+      const PlaneMinimum next = minimiseMaximum(planes_, tolerance_);
+      if (!(next.value < value_ - tolerance_)) return;
+      const double way = (triangle_.pointAt(next.weights) - point_).norm();
+      const double share = way > reach ? reach / way : 1.0;
+      const double before = value_;
+      const double expected = share * (before - next.value);
+      const double here = look(weights_ + share * (next.weights - weights_));
+      const double gained = before - here;
+      if (gained < 0.25 * expected) reach = 0.5 * std::min(way, reach);
+      if (gained > 0.75 * expected) reach *= 2.0;
+    }
+  }
+
+  void write(ClosestPoint& result) const {
+    result.weights = weights_;
+    result.distance = value_;
+    result.beyond_rim = false;
+    result.gradients = GradientSet();
+    for (int i = 0; i < planes_.count(); ++i) {
+      if (planes_.valueAt(i, weights_) >= value_ - 2.0 * tolerance_) result.gradients.add(gradients_[i]);
+    }
+  }
+
+  double value() const { return value_; }
+
+ private:
+  void drop(int plane) {
+    for (int k = plane; k + 1 < planes_.count(); ++k) {
+      gradients_[k] = gradients_[k + 1];
+      origins_[k] = origins_[k + 1];
+    }
+    planes_.remove(plane);
+  }
+
+  int highestOrigin() const {
+    return static_cast<int>(std::max_element(origins_.begin(), origins_.begin() + planes_.count()) - origins_.begin());
+  }
+
+  /// Where the field is not convex a plane may lie above it.
+  void dropPlanesAboveLowest() {
+    for (int i = planes_.count() - 1; i >= 0; --i) {
+      if (planes_.valueAt(i, weights_) > value_ + tolerance_) drop(i);
+    }
+  }
+
+  const DistanceGrid& grid_;
+  const TrianglePoints& triangle_;
+  double tolerance_;
+  PlaneSet planes_;
+  std::array<Vector3, PlaneSet::kCapacity> gradients_;
+  std::array<double, PlaneSet::kCapacity> origins_{};
+  double value_ = std::numeric_limits<double>::infinity();
+  Vector3 weights_ = Vector3::UnitX();
+  Vector3 point_ = Vector3::Zero();
+};
+
+}  // namespace
+
+bool lowestOnTriangle(const DistanceGrid& grid, const TrianglePoints& triangle, double margin, ClosestPoint& result) {
+  const Vector3 centre = (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) / 3.0;
+  double radius = 0.0;
+  for (const Vector3& corner : triangle.corners) radius = std::max(radius, (corner - centre).norm());
+  Lowest lowest(grid, triangle);
+  const Vector3 thirds = Vector3::Constant(1.0 / 3.0);
+  Queue queue;
+  lowest.look(thirds);
+  queue.push({thirds, 1.0, lowest.value(), lowest.value() - radius});
+  double reach = radius;
+  for (int looked = 1; looked < kMostPieces && !queue.empty();) {
+    const Piece piece = queue.pop();
+    if (piece.bound > std::min(margin, lowest.value())) {
+      if (piece.bound > margin && lowest.value() > margin) return false;
+      break;
+    }
+    const double piece_radius = 0.5 * std::abs(piece.half) * radius;
+    reach = std::min(reach, 4.0 * piece_radius);
+    if (piece_radius < kFinest * grid.spacing) continue;
+    const double half = 0.5 * piece.half;
+    queue.push({piece.middle, -half, piece.value, piece.value - piece_radius});
+    for (int i = 0; i < 3; ++i) {
+      Vector3 middle = piece.middle - Vector3::Constant(half / 3.0);
+      middle[i] += half;
+      const double value = lowest.look(middle);
+      queue.push({middle, half, value, value - piece_radius});
+    }
+    looked += 3;
+  }
+  lowest.descend(reach);
+  lowest.write(result);
+  return result.distance <= margin;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,30 @@
+/// @file
+/// Room `contact`, private: a mesh shape as contact detection uses it. Triangles in; sampled distance out.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "contact/distance_grid.h"
+#include "tissue_contact/contact/mesh_preparation.h"
+#include "tissue_contact/instrument/collision_shape.h"
+
+namespace tissue_contact {
+
+struct MeshField {
+  DistanceGrid grid;
+  Vector3 low = Vector3::Zero();  ///< corners of the mesh's bounding box, m
+  Vector3 high = Vector3::Zero();
+  /// Distance from the points of the mesh's outer surface to the shape, m, weighted by area.
+  double largest_deviation = 0.0;
+  double rms_deviation = 0.0;
+  double median_deviation = 0.0;
+};
+
+/// @param name of the mesh, for what is said. @param preparation its cache is given up when it cannot be written to, which
+///   is said once.
+/// @throws std::invalid_argument when the mesh has no usable triangle, an index out of range, or no inside.
+std::shared_ptr<const MeshField> prepareMeshField(const TriangleMesh& mesh, const std::string& name,
+                                                  MeshPreparation& preparation);
+
+}  // namespace tissue_contact

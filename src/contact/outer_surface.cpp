@@ -1,0 +1,72 @@
+#include "contact/outer_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "contact/triangle_geometry.h"
+
+namespace tissue_contact {
+namespace {
+
+class OuterSurface {
+ public:
+  OuterSurface(const SurfaceTree& tree, double finest) : tree_(tree), finest_(finest) {}
+
+  void add(const std::array<Vector3, 3>& corners) {
+    const Vector3 normal = triangleNormal(corners[0], corners[1], corners[2]);
+    if (normal.isZero(0.0)) return;
+    const int outer = outerPoints(corners, normal);
+    if (outer == 0) return;
+    const double longest = std::max(
+        {(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(), (corners[0] - corners[2]).norm()});
+    if (outer == 4 || longest < finest_) {
+      for (const Vector3& corner : corners) points_.push_back(corner);
+      return;
+    }
+    const Vector3 ab = 0.5 * (corners[0] + corners[1]);
+    const Vector3 bc = 0.5 * (corners[1] + corners[2]);
+    const Vector3 ca = 0.5 * (corners[2] + corners[0]);
+    add({corners[0], ab, ca});
+    add({ab, corners[1], bc});
+    add({ca, bc, corners[2]});
+    add({ab, bc, ca});
+  }
+
+  TriangleMesh mesh() const {
+    TriangleMesh result;
+    result.vertices.resize(3, static_cast<Eigen::Index>(points_.size()));
+    for (std::size_t i = 0; i < points_.size(); ++i) result.vertices.col(static_cast<Eigen::Index>(i)) = points_[i];
+    for (int i = 0; i + 2 < static_cast<int>(points_.size()); i += 3) result.triangles.push_back({i, i + 1, i + 2});
+    return result;
+  }
+
+ private:
+  /// Of the middle and three points near the corners: how many do not have the inside on both sides.
+  int outerPoints(const std::array<Vector3, 3>& corners, const Vector3& normal) const {
+    const Vector3 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+    const auto isOuter = [&](const Vector3& p) {
+      const Vector3 aside = 0.02 * finest_ * normal;
+      return !(tree_.isInside(p + aside) && tree_.isInside(p - aside));
+    };
+    int count = isOuter(middle) ? 1 : 0;
+    for (const Vector3& corner : corners) count += isOuter(0.9 * corner + 0.1 * middle) ? 1 : 0;
+    return count;
+  }
+
+  const SurfaceTree& tree_;
+  double finest_;
+  std::vector<Vector3> points_;
+};
+
+}  // namespace
+
+TriangleMesh outerSurface(const TriangleMesh& mesh, const SurfaceTree& tree, double finest) {
+  OuterSurface surface(tree, finest);
+  for (const Triangle& t : mesh.triangles) {
+    surface.add({mesh.vertices.col(t[0]), mesh.vertices.col(t[1]), mesh.vertices.col(t[2])});
+  }
+  return surface.mesh();
+}
+
+}  // namespace tissue_contact

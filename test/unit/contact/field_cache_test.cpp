@@ -1,0 +1,113 @@
+// Prepared meshes on disk: found again by content, and nothing damaged or foreign is believed.
+#include "contact/field_cache.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "contact_test_utilities.h"
+
+namespace tissue_contact {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FieldCache : public testing::Test {
+ protected:
+  void SetUp() override {
+    directory_ = fs::temp_directory_path() / ("tissue_contact_field_cache_" + std::to_string(getpid()));
+    fs::remove_all(directory_);
+    preparation_.cache_directory = directory_;
+    preparation_.say = [this](const std::string& line) { said_.push_back(line); };
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  bool fromCache() {
+    said_.clear();
+    prepareMeshField(mesh_, "jaw", preparation_);
+    return said_.at(0).find("from the cache") != std::string::npos;
+  }
+  fs::path onlyFile() const {
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory_)) files.push_back(entry.path());
+    EXPECT_EQ(files.size(), 1u);
+    return files.at(0);
+  }
+
+  fs::path directory_;
+  MeshPreparation preparation_;
+  std::vector<std::string> said_;
+  TriangleMesh mesh_ = contact_test::boxMesh({0.01, 0.002, 0.002}, 2);
+};
+
+TEST_F(FieldCache, SecondTimeTheSameBitsComeFromTheFile) {
+  const auto built = prepareMeshField(mesh_, "jaw", preparation_);
+  ASSERT_TRUE(fromCache());
+  const auto read = prepareMeshField(mesh_, "jaw", preparation_);
+  EXPECT_EQ(read->grid.samples, built->grid.samples);
+  EXPECT_EQ(read->grid.size, built->grid.size);
+  EXPECT_EQ(read->grid.origin, built->grid.origin);
+  EXPECT_EQ(read->grid.spacing, built->grid.spacing);
+  EXPECT_EQ(read->low, built->low);
+  EXPECT_EQ(read->high, built->high);
+  EXPECT_EQ(read->largest_deviation, built->largest_deviation);
+}
+
+TEST_F(FieldCache, AnotherMeshIsAnotherFile) {
+  prepareMeshField(mesh_, "jaw", preparation_);
+  mesh_.vertices(0, 0) *= 1.0 + 1e-12;
+  EXPECT_FALSE(fromCache());
+  EXPECT_TRUE(fromCache());
+}
+
+TEST_F(FieldCache, DamagedShortForeignAndEmptyFilesAreBuiltAnew) {
+  prepareMeshField(mesh_, "jaw", preparation_);
+  const fs::path file = onlyFile();
+  const std::uintmax_t bytes = fs::file_size(file);
+  const auto overwrite = [&](std::uintmax_t at, char value) {
+    std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekp(static_cast<std::streamoff>(at));
+    stream.put(value);
+  };
+  for (const std::uintmax_t at :
+       {std::uintmax_t{0}, std::uintmax_t{8}, std::uintmax_t{20}, std::uintmax_t{55}, bytes / 2, bytes - 1}) {
+    overwrite(at, '\x55');
+    EXPECT_FALSE(fromCache()) << "byte " << at;
+    EXPECT_TRUE(fromCache());
+  }
+  for (const std::uintmax_t size : {std::uintmax_t{0}, std::uintmax_t{100}, bytes - 4, bytes + 4}) {
+    fs::resize_file(file, size);
+    EXPECT_FALSE(fromCache()) << size << " bytes";
+    EXPECT_TRUE(fromCache());
+  }
+  EXPECT_EQ(onlyFile(), file);  // no leftovers of writing
+}
+
+TEST_F(FieldCache, WithoutADirectoryItWorksAndSaysSo) {
+  std::ofstream(directory_.string()) << "a file in its place";
+  EXPECT_FALSE(fromCache());
+  ASSERT_EQ(said_.size(), 2u);
+  EXPECT_NE(said_[1].find(directory_.string()), std::string::npos) << said_[1];
+  EXPECT_FALSE(fromCache());
+  EXPECT_EQ(said_.size(), 1u);  // of the mesh alone
+}
+
+TEST_F(FieldCache, TwoAtOnceLeaveOneWholeFile) {
+  const auto prepare = [&] {
+    MeshPreparation silent;
+    silent.cache_directory = directory_;
+    prepareMeshField(mesh_, "jaw", silent);
+  };
+  std::thread other(prepare);
+  prepare();
+  other.join();
+  EXPECT_TRUE(fromCache());
+}
+
+}  // namespace
+}  // namespace tissue_contact

@@ -1,0 +1,273 @@
+// Meshes as sampled distances: against exact distances by looking at every triangle, and against closed forms.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "contact/field_distance.h"
+#include "contact/lowest_on_triangle.h"
+#include "contact_test_utilities.h"
+
+namespace tissue_contact {
+namespace {
+
+using contact_test::boxMesh;
+using contact_test::Random;
+using contact_test::sphereMesh;
+
+std::shared_ptr<const MeshField> fieldOf(const TriangleMesh& mesh) {
+  MeshPreparation silent;
+  return prepareMeshField(mesh, "test", silent);
+}
+
+/// Distance to the nearest triangle by looking at all, without a sign.
+double bruteForceDistance(const TriangleMesh& mesh, const Vector3& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : mesh.triangles) {
+    const TrianglePoints points(mesh.vertices.col(t[0]), mesh.vertices.col(t[1]), mesh.vertices.col(t[2]));
+    least = std::min(least, (points.pointAt(projectOnTriangle(points.corners, p)) - p).norm());
+  }
+  return least;
+}
+
+void append(TriangleMesh& mesh, const TriangleMesh& other, const Vector3& offset) {
+  const int first = static_cast<int>(mesh.vertices.cols());
+  NodalVectors vertices(3, first + other.vertices.cols());
+  vertices << mesh.vertices, other.vertices.colwise() + offset;
+  mesh.vertices = vertices;
+  for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
+TEST(MeshField, SphereIsTheSphere) {
+  const double radius = 0.005;
+  const auto field = fieldOf(sphereMesh(radius, 4));
+  const double spacing = field->grid.spacing;
+  const double sagitta = 1.5e-3 * radius;  // of facets whose circumradius is 0.05 of the radius
+  Random random(1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3 p = random.number(0.85, 1.15) * radius * random.direction();
+    const GridSample here = field->grid.at(p);
+    // The spline adds spacing^2 / 8 times the sum of the curvatures, 2 / |p|.
+    EXPECT_NEAR(here.distance, p.norm() - radius, sagitta + 0.3 * spacing * spacing / p.norm());
+    EXPECT_NEAR(here.gradient.norm(), 1.0, 0.02);
+    EXPECT_GT(here.gradient.normalized().dot(p.normalized()), 0.998);
+  }
+}
+
+TEST(MeshField, FlatFacesAreExactAndNormalsUnit) {
+  const Vector3 half(0.01, 0.006, 0.004);
+  const auto mesh = makeMeshDistance(boxMesh(half, 3));
+  const auto box = makeBoxDistance(half);
+  Random random(2);
+  for (int i = 0; i < 2000; ++i) {
+    // Beside the middle of a face, clear of edges by some spacings and of the middle of the box.
+    const int axis = i % 3;
+    Vector3 p = random.vector(1.0).cwiseProduct(half - Vector3::Constant(0.002));
+    p[axis] = (i % 2 == 0 ? 1.0 : -1.0) * (half[axis] + random.number(-0.0012, 0.0008));
+    const SignedDistance exact = box->at(p);
+    const SignedDistance here = mesh->at(p);
+    EXPECT_NEAR(here.distance, exact.distance, 1e-8);  // m: samples are single precision
+    EXPECT_LT((here.normal - exact.normal).norm(), 1e-4);
+    EXPECT_NEAR(here.normal.norm(), 1.0, 1e-14);
+  }
+}
+
+TEST(MeshField, DistanceIsThatToTheNearestTriangle) {
+  TriangleMesh mesh = boxMesh({0.01, 0.002, 0.002}, 2);
+  append(mesh, sphereMesh(0.004, 2), {0.02, 0.003, 0.0});
+  const auto field = fieldOf(mesh);
+  const double spacing = field->grid.spacing;
+  Random random(3);
+  const Eigen::AlignedBox3d inside = field->grid.box();
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3 p = inside.min() + (random.vector(0.5) + Vector3::Constant(0.5)).cwiseProduct(inside.sizes());
+    EXPECT_NEAR(std::abs(field->grid.at(p).distance), bruteForceDistance(mesh, p),
+                1.5 * spacing);  // most in the middle of a bar
+  }
+  EXPECT_LT(field->largest_deviation, 0.7 * spacing);
+  EXPECT_LT(field->median_deviation, 0.05 * spacing);
+}
+
+TEST(MeshField, BesideTheGridDistanceIsALowerBoundWithoutJumps) {
+  const TriangleMesh mesh = boxMesh({0.01, 0.002, 0.002}, 2);
+  const auto field = fieldOf(mesh);
+  Random random(4);
+  for (int i = 0; i < 500; ++i) {
+    const Vector3 p = random.number(0.01, 0.1) * random.direction();
+    const double exact = bruteForceDistance(mesh, p);
+    if (field->grid.box().contains(p)) continue;
+    const double here = field->grid.at(p).distance;
+    EXPECT_LE(here, exact + 0.3 * field->grid.spacing);
+    EXPECT_GE(here, 0.5 * exact);
+    const Vector3 step = 1e-7 * random.direction();
+    EXPECT_NEAR(field->grid.at(p + step).distance, here, 1.01e-7);
+  }
+}
+
+TEST(MeshField, HolesInnerFacesSecondShellsAndReversedPartsKeepTheSign) {
+  const Vector3 half(0.01, 0.006, 0.004);
+  TriangleMesh holed = boxMesh(half, 8);
+  holed.triangles.erase(holed.triangles.begin() + 100, holed.triangles.begin() + 103);
+  TriangleMesh walled = boxMesh(half, 4);  // with a wall across its middle
+  const int first = static_cast<int>(walled.vertices.cols());
+  walled.vertices.conservativeResize(3, first + 4);
+  walled.vertices.rightCols(4) << 0, 0, 0, 0, -0.006, 0.006, 0.006, -0.006, -0.004, -0.004, 0.004, 0.004;
+  walled.triangles.push_back({first, first + 1, first + 2});
+  walled.triangles.push_back({first, first + 2, first + 3});
+  TriangleMesh overlapping = boxMesh({0.006, 0.006, 0.004}, 4);
+  overlapping.vertices.colwise() -= Vector3(0.004, 0.0, 0.0);
+  append(overlapping, boxMesh({0.006, 0.006, 0.004}, 4), {0.004, 0.0, 0.0});
+  TriangleMesh reversed = boxMesh(half, 4);
+  for (Triangle& t : reversed.triangles) std::swap(t[0], t[1]);
+  const auto box = makeBoxDistance(half);
+  const auto signOf = [](double value) { return value < 0.0 ? -1 : 1; };
+  for (const TriangleMesh& mesh : {holed, walled, overlapping, reversed}) {
+    const auto field = fieldOf(mesh);
+    Random random(5);
+    for (int i = 0; i < 3000; ++i) {
+      const Vector3 p = random.vector(1.0).cwiseProduct(1.05 * half);
+      const double exact = box->at(p).distance;
+      const double here = field->grid.at(p).distance;
+      if (std::abs(exact) > 0.7 * field->grid.spacing) {
+        EXPECT_EQ(signOf(here), signOf(exact)) << p.transpose();
+      }
+      if (mesh.triangles.size() != holed.triangles.size()) {
+        EXPECT_NEAR(here, exact, 3.0 * field->grid.spacing) << p.transpose();  // most far inside
+      }
+    }
+  }
+}
+
+TEST(MeshField, ThinPlateAndNeedleKeepTheirSurfaces) {
+  const auto plate = fieldOf(boxMesh({0.01, 0.005, 0.00015}, 2));      // a scissors' blade, 0.3 mm
+  const auto needle = fieldOf(boxMesh({0.015, 0.00025, 0.00025}, 2));  // 30 mm long, 0.5 mm thick
+  EXPECT_LT(plate->rms_deviation, 2e-5);
+  EXPECT_LT(plate->largest_deviation, 1e-4);
+  EXPECT_LT(needle->rms_deviation, 3e-5);
+  EXPECT_LT(needle->largest_deviation, 1e-4);
+  EXPECT_LT(plate->grid.at(Vector3::Zero()).distance, -1e-4);
+  EXPECT_LT(needle->grid.at(Vector3::Zero()).distance, -1.5e-4);
+}
+
+TEST(MeshField, OpenSheetIsRefused) {
+  TriangleMesh sheet;
+  sheet.vertices.resize(3, 4);
+  sheet.vertices << 0, 0.01, 0.01, 0, 0, 0, 0.01, 0.01, 0, 0, 0, 1e-4;
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  try {
+    fieldOf(sheet);
+    FAIL() << "not refused";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("encloses nothing"), std::string::npos) << error.what();
+  }
+}
+
+/// Smallest of many values over the triangle.
+double denseMinimum(const DistanceGrid& grid, const TrianglePoints& triangle, int n) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; i + j <= n; ++j) {
+      const Vector3 weights(static_cast<double>(i) / n, static_cast<double>(j) / n, static_cast<double>(n - i - j) / n);
+      least = std::min(least, grid.at(triangle.pointAt(weights)).distance);
+    }
+  }
+  return least;
+}
+
+// What made tissue hang on the jaws: planes laid far from a shape misled the search to a point 1.3 mm too high.
+TEST(MeshField, LowestPointOfATriangleIsFoundAlsoWhereTheShapeIsNotConvex) {
+  TriangleMesh jaws = boxMesh({0.001, 0.01, 0.0025}, 2);
+  append(jaws, boxMesh({0.001, 0.01, 0.0025}, 2), {0.003, 0.0, 0.0});
+  const auto field = fieldOf(jaws);
+  Random random(6);
+  int penetrating = 0;
+  int missed = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Vector3 centre(random.number(-0.003, 0.006), random.number(-0.013, 0.013), random.number(-0.005, 0.005));
+    const TrianglePoints t(centre + random.vector(0.008), centre + random.vector(0.008), centre + random.vector(0.008));
+    const double least = denseMinimum(field->grid, t, 120);
+    ClosestPoint closest;
+    if (!lowestOnTriangle(field->grid, t, 1e-3, closest)) {
+      missed += least < 1e-3 - 0.2 * field->grid.spacing;
+      continue;
+    }
+    EXPECT_NEAR(closest.weights.sum(), 1.0, 1e-12);
+    EXPECT_GE(closest.weights.minCoeff(), -1e-12);
+    EXPECT_EQ(closest.distance, field->grid.at(t.pointAt(closest.weights)).distance);
+    missed += closest.distance > least + 0.2 * field->grid.spacing;
+    penetrating += closest.distance < 0.0;
+  }
+  EXPECT_GT(penetrating, 200);
+  EXPECT_LE(missed, 10);  // of 1000: in the other of two jaws that are nearly as near
+}
+
+/// Tools of two robots as others made them; what is nearest to tissue must be nearest to its mesh.
+TEST(MeshField, ToolsOfRealRobotsLieWithinATenthOfAMillimetreOfTheirMeshes) {
+  const std::string data = TISSUE_CONTACT_SHARED_DATA;
+  if (!std::filesystem::exists(data + "/dvrk_psm") || !std::filesystem::exists(data + "/surrol_psm")) {
+    GTEST_SKIP() << "no robots in " << data;
+  }
+  for (const char* file :
+       {"dvrk_psm/meshes/tool_wrist_caudier_link_1.stl", "dvrk_psm/meshes/tool_wrist_caudier_link_2.stl",
+        "dvrk_psm/meshes/tool_wrist_caudier_link_1_shaft.stl", "dvrk_psm/meshes/tool_wrist_link.dae",
+        "surrol_psm/meshes/collision/tool_gripper1_link.STL",
+        "surrol_psm/meshes/collision/tool_gripper2_link_wide_vhacd.obj",
+        "surrol_psm/meshes/collision/tool_pitch_link.STL", "surrol_psm/meshes/visual/tool_gripper1_link_wide.obj"}) {
+    SCOPED_TRACE(file);
+    const auto field = fieldOf(loadTriangleMesh(data + "/" + file, Vector3::Ones()));
+    EXPECT_LT(field->largest_deviation, 1e-4);  // m
+    EXPECT_LT(field->rms_deviation, 1e-5);
+    EXPECT_LT(field->grid.samples.size(), 2000000u);  // 8 MB
+  }
+}
+
+// Robots of metres, whose meshes take the millimetres of their parts as they come: only that they become shapes.
+TEST(MeshField, EveryMeshOfTheDvrkBecomesAShape) {
+  const std::string folder = std::string(TISSUE_CONTACT_SHARED_DATA) + "/dvrk_psm/meshes";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no robot in " << folder;
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    SCOPED_TRACE(entry.path().string());
+    const auto field = fieldOf(loadTriangleMesh(entry.path().string(), Vector3::Ones()));
+    EXPECT_LT(field->rms_deviation, 0.11 * field->grid.spacing);
+    ++count;
+  }
+  EXPECT_EQ(count, 13);
+}
+
+TEST(MeshField, MirroredAndUnevenScaleKeepTheInside) {
+  const Vector3 half(0.01, 0.006, 0.004);
+  for (const Vector3& scale : {Vector3(-1.0, 1.0, 1.0), Vector3(0.5, 2.0, 1.0), Vector3(-1.0, -1.0, -0.1)}) {
+    TriangleMesh mesh = boxMesh(half, 2);
+    mesh.vertices = scale.asDiagonal() * mesh.vertices;  // reversed by a mirror, which must not matter
+    const auto field = fieldOf(mesh);
+    const Vector3 scaled = half.cwiseProduct(scale.cwiseAbs());
+    EXPECT_LT(field->grid.at(Vector3::Zero()).distance, -0.5 * scaled.minCoeff());
+    EXPECT_NEAR(field->grid.at({0.0, 0.0, scaled.z() + 1e-4}).distance, 1e-4, 1e-8);  // single precision
+  }
+}
+
+TEST(MeshField, DrawnSurfaceIsTheOneThatActs) {
+  const TriangleMesh mesh = boxMesh({0.01, 0.002, 0.002}, 2);
+  const FieldDistance shape(fieldOf(mesh));
+  const TriangleMesh& drawn = *shape.drawn();
+  EXPECT_GT(drawn.triangles.size(), 500u);
+  EXPECT_LE(drawn.triangles.size(), 6000u);
+  double volume = 0.0;
+  for (const Triangle& t : drawn.triangles) {
+    volume += drawn.vertices.col(t[0]).dot(drawn.vertices.col(t[1]).cross(drawn.vertices.col(t[2]))) / 6.0;
+    for (const int v : t) EXPECT_NEAR(shape.at(drawn.vertices.col(v)).distance, 0.0, 1e-4);
+  }
+  EXPECT_NEAR(volume, 8.0 * 0.01 * 0.002 * 0.002, 0.05 * 8.0 * 0.01 * 0.002 * 0.002);  // outward; edges cut off
+}
+
+TEST(MeshField, SameBitsEveryTime) {
+  const auto one = fieldOf(sphereMesh(0.005, 2));
+  const auto other = fieldOf(sphereMesh(0.005, 2));
+  EXPECT_EQ(one->grid.samples, other->grid.samples);
+}
+
+}  // namespace
+}  // namespace tissue_contact
