@@ -265,14 +265,18 @@ double ContactDetector::Implementation::surfaceDistance(TouchableSurface& surfac
   const ShapeDistance& distance = *shape.distance;
   if (!surface.refitted) surface.tree.refit(positions);
   surface.refitted = true;
-  // The surface point nearest to the middle of the shape bounds the distance from both sides.
-  const NearestOnTriangles middle = surface.tree.nearest(X_WS * distance.boxCentre());
-  const double radius = distance.halfExtents(Matrix3::Identity()).norm();
-  if (!(std::sqrt(middle.distance_squared) - radius < bound)) return bound;
+  // The surface node nearest to the middle of the shape tells how far to look.
+  const Vector3 middle = X_WS * distance.boxCentre();
+  int node = surface.narrow_phase.triangles().front()[0];
+  for (const Triangle& triangle : surface.narrow_phase.triangles()) {
+    for (const int other : triangle) {
+      if ((positions.col(other) - middle).squaredNorm() < (positions.col(node) - middle).squaredNorm()) node = other;
+    }
+  }
   const Matrix3 R_SW = X_WS.linear().transpose();
-  double nearest = std::min(bound, distance.at(R_SW * (middle.point - X_WS.translation())).distance);
+  double nearest = std::min(bound, distance.at(R_SW * (positions.col(node) - X_WS.translation())).distance);
   surface.tree.overlapping(boxAround(distance, X_WS, std::max(nearest, 0.0)), candidates);
-  const auto inShape = [&](int node) -> Vector3 { return R_SW * (positions.col(node) - X_WS.translation()); };
+  const auto inShape = [&](int one) -> Vector3 { return R_SW * (positions.col(one) - X_WS.translation()); };
   ClosestPoint closest;
   for (const int triangle : candidates) {
     const Triangle& nodes = surface.narrow_phase.triangles()[triangle];
