@@ -109,6 +109,10 @@ ContactDetector::ContactDetector(const std::vector<Instrument>& instruments, std
   }
 }
 
+ContactDetector::ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
+                                 const std::vector<NodalVectors>& positions)
+    : ContactDetector(instruments, std::move(surfaces), positions, MeshPreparation()) {}
+
 ContactDetector::~ContactDetector() = default;
 ContactDetector::ContactDetector(ContactDetector&&) noexcept = default;
 ContactDetector& ContactDetector::operator=(ContactDetector&&) noexcept = default;

@@ -38,7 +38,7 @@ class Queue {
 
  private:
   static bool higher(const Piece& a, const Piece& b) { return a.bound > b.bound; }
-  std::array<Piece, 4 * kMostPieces> pieces_;
+  std::array<Piece, 4UL * kMostPieces> pieces_;
   int count_ = 0;
 };
 

@@ -109,7 +109,7 @@ void SurfaceTree::descend(int node, const Vector3& p, double& best) const {
   const Node& here = nodes_[node];
   if (here.count > 0) {
     for (int i = here.first; i < here.first + here.count; ++i) {
-      const Vector3* c = &corners_[3 * i];
+      const Vector3* c = &corners_[3 * static_cast<std::size_t>(i)];
       best = std::min(best, squaredDistanceToTriangle(c[0], c[1], c[2], p));
     }
     return;
@@ -137,7 +137,7 @@ double SurfaceTree::solidAngle(int node, const Vector3& p) const {
   if (here.count == 0) return solidAngle(here.first, p) + solidAngle(here.first + 1, p);
   double sum = 0.0;
   for (int i = here.first; i < here.first + here.count; ++i) {
-    const Vector3* c = &corners_[3 * i];
+    const Vector3* c = &corners_[3 * static_cast<std::size_t>(i)];
     sum += solidAngleOfTriangle(c[0] - p, c[1] - p, c[2] - p);
   }
   return sum;

@@ -39,7 +39,10 @@ class ContactDetector {
   ///   thickness is not finite or < 0, or a mesh shape has no mesh or no inside.
   /// Mesh shapes are prepared here, which takes some tenths of a second each unless they are in the cache.
   ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
-                  const std::vector<NodalVectors>& positions, const MeshPreparation& preparation = {});
+                  const std::vector<NodalVectors>& positions, const MeshPreparation& preparation);
+  /// Without a cache of meshes, silently.
+  ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
+                  const std::vector<NodalVectors>& positions);
   ~ContactDetector();
   ContactDetector(ContactDetector&&) noexcept;
   ContactDetector& operator=(ContactDetector&&) noexcept;
