@@ -99,7 +99,7 @@ void LoadWatch::lookAtElements(Body& body, int node, const NodalVectors& x, int 
     if (body.element_seen[e] == looks_) continue;
     body.element_seen[e] = looks_;
     const double volume = signedVolume(x, elements[e]) / signedVolume(body.tissue->restPositions(), elements[e]);
-    if (!(volume < 0.0)) continue;
+    if (!(volume < kInsideOut)) continue;
     ++load.inverted_elements;
     if (!(volume < worst_volume_)) continue;
     worst_volume_ = volume;

@@ -27,7 +27,7 @@ struct ImplausibleLoad {
 };
 
 /// Finds
-///  - tetrahedra with a negative volume among those at nodes that carry contact forces: the tool has been pushed through the
+///  - tetrahedra with a volume below kInsideOut times that at rest among those at nodes that carry contact forces: the tool has been pushed through the
 ///    elements, or these through each other, and the material law no longer means anything;
 ///  - a mean contact pressure, sum |f| over the rest area of the nodes touched, above kMostPressure times Young's modulus.
 ///    Soft tissue fails at strains of about .3 to 1 (liver: Brunon et al. 2010), so at stresses below its modulus.
@@ -35,6 +35,8 @@ struct ImplausibleLoad {
 class LoadWatch {
  public:
   static constexpr double kMostPressure = 2.0;  ///< times Young's modulus
+  /// Not 0: where a coarse surface folds around a tool, a corner of an element may pass through its base for a step.
+  static constexpr double kInsideOut = -0.1;
 
   LoadWatch(const Scene& scene, const std::vector<Tissue>& tissues);
 
