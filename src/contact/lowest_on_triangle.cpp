@@ -69,7 +69,7 @@ class Lowest {
   /// Cutting planes from the lowest point on. Steps stay within `reach` (m), which shrinks when they do not help.
   void descend(double reach) {
     for (int cut = 0; cut < kMostCuts; ++cut) {
-      dropPlanesAboveLowest();
+      dropIdlePlanes(reach);
       const PlaneMinimum next = minimiseMaximum(planes_, tolerance_);
       if (!(next.value < value_ - tolerance_)) return;
       const double way = (triangle_.pointAt(next.weights) - point_).norm();
@@ -108,10 +108,12 @@ class Lowest {
     return static_cast<int>(std::max_element(origins_.begin(), origins_.begin() + planes_.count()) - origins_.begin());
   }
 
-  /// Where the field is not convex a plane may lie above it.
-  void dropPlanesAboveLowest() {
+  /// Where the field is not convex a plane may lie above it; and with slopes of 1 one that lies 2 reach below the lowest
+  /// point is not met within reach.
+  void dropIdlePlanes(double reach) {
     for (int i = planes_.count() - 1; i >= 0; --i) {
-      if (planes_.valueAt(i, weights_) > value_ + tolerance_) drop(i);
+      const double here = planes_.valueAt(i, weights_);
+      if (here > value_ + tolerance_ || here < value_ - 2.0 * reach - tolerance_) drop(i);
     }
   }
 
@@ -138,6 +140,7 @@ bool lowestOnTriangle(const DistanceGrid& grid, const TrianglePoints& triangle, 
   lowest.look(thirds);
   queue.push({thirds, 1.0, lowest.value(), lowest.value() - radius});
   double reach = radius;
+  bool near = false;
   for (int looked = 1; looked < kMostPieces && !queue.empty();) {
     const Piece piece = queue.pop();
     if (piece.bound > std::min(margin, lowest.value())) {
@@ -146,7 +149,10 @@ bool lowestOnTriangle(const DistanceGrid& grid, const TrianglePoints& triangle, 
     }
     const double piece_radius = 0.5 * std::abs(piece.half) * radius;
     reach = std::min(reach, 4.0 * piece_radius);
-    if (piece_radius < kFinest * grid.spacing) continue;
+    if (piece_radius < kFinest * grid.spacing) {
+      near = true;
+      continue;
+    }
     const double half = 0.5 * piece.half;
     queue.push({piece.middle, -half, piece.value, piece.value - piece_radius});
     for (int i = 0; i < 3; ++i) {
@@ -157,6 +163,7 @@ bool lowestOnTriangle(const DistanceGrid& grid, const TrianglePoints& triangle, 
     }
     looked += 3;
   }
+  if (queue.empty() && !near && lowest.value() > margin) return false;
   lowest.descend(reach);
   lowest.write(result);
   return result.distance <= margin;

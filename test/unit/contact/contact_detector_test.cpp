@@ -76,7 +76,7 @@ double slowApproach(const TwoByTwo& scene, int instrument) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const CollisionShape& shape : scene.instruments[instrument].contactLinks()[0].shapes) {
     const Pose X_SW = (scene.X_WL[instrument][1] * shape.X_LS).inverse();
-    const auto distance = makeShapeDistance(shape);
+    const auto distance = ShapeDistances({}).make(shape);
     for (std::size_t tissue = 0; tissue < scene.surfaces.size(); ++tissue) {
       const NodalVectors& x = scene.positions[tissue];
       for (const Triangle& t : scene.surfaces[tissue].triangles) {

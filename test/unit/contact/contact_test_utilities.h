@@ -156,6 +156,31 @@ inline double minimiseOnInterval(const std::function<double(double)>& f, double*
   return std::min({f_left, f_right, ends});
 }
 
+/// Signed distance to a closed outward surface by looking at every triangle: the nearest point, and the sign by the solid
+/// angle of the surface seen from p (van Oosterom and Strackee 1983), 4 pi inside and 0 outside.
+inline SignedDistance bruteForceDistance(const Surface& surface, const Vector3& p) {
+  double least = std::numeric_limits<double>::infinity();
+  double solid_angle = 0.0;
+  Vector3 way = Vector3::UnitX();
+  Vector3 normal = Vector3::UnitX();
+  for (const Triangle& t : surface.triangles) {
+    const TrianglePoints points(surface.nodes.col(t[0]), surface.nodes.col(t[1]), surface.nodes.col(t[2]));
+    const Vector3 to = p - points.pointAt(projectOnTriangle(points.corners, p));
+    if (to.norm() < least) {
+      least = to.norm();
+      way = to;
+      normal = points.normal;
+    }
+    const Vector3 a = points.corners[0] - p, b = points.corners[1] - p, c = points.corners[2] - p;
+    const double across = a.dot(b.cross(c));
+    const double along =
+        a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() + b.dot(c) * a.norm() + c.dot(a) * b.norm();
+    solid_angle += 2.0 * std::atan2(across, along);
+  }
+  const double sign = solid_angle > 2.0 * M_PI ? -1.0 : 1.0;
+  return {sign * least, least > 0.0 ? Vector3(sign / least * way) : normal};
+}
+
 /// Smallest signed distance over a triangle, for a convex shape: two nested golden sections.
 inline double bruteForceMinimum(const ShapeDistance& shape, const TrianglePoints& t) {
   return minimiseOnInterval([&](double u) {

@@ -1,7 +1,6 @@
 // Tissue against tissue: seeded sweeps against slow independent references, and invariances.
 #include <gtest/gtest.h>
 
-#include "contact/mesh_distance.h"
 #include "tissue_pair_test_utilities.h"
 
 namespace tissue_contact {
@@ -49,13 +48,12 @@ std::vector<TestTissue> place(int trial, double apart) {
   const Surface lower = transformed(body(trial), random.pose(0.0));
   const Surface upper = transformed(body(trial / 5), random.pose(0.0));
   const Vector3 along = random.direction();
-  const MeshDistance mesh({lower.nodes, lower.triangles});
   double low = 0.0, high = 0.08;
   for (int i = 0; i < 30; ++i) {
     const double middle = 0.5 * (low + high);
     double nearest = std::numeric_limits<double>::infinity();
     for (Eigen::Index n = 0; n < upper.nodes.cols(); ++n) {
-      nearest = std::min(nearest, mesh.at(upper.nodes.col(n) + middle * along).distance);
+      nearest = std::min(nearest, bruteForceDistance(lower, upper.nodes.col(n) + middle * along).distance);
     }
     (nearest < apart ? low : high) = middle;
   }
@@ -87,7 +85,7 @@ TEST(TissuePairs, SmallestGapIsTheDistanceOfTheBodies) {
   EXPECT_GT(edge_to_edge, 30);
 }
 
-/// Every vertex against MeshDistance: signed distance from one tree descent and a pseudonormal.
+/// Every vertex against the signed distance of the other body, by looking at all its triangles.
 TEST(TissuePairs, VerticesAgreeWithTheSignedDistanceOfTheOtherBody) {
   int outside = 0, inside = 0;
   for (int trial = 0; trial < 400; ++trial) {
@@ -96,9 +94,9 @@ TEST(TissuePairs, VerticesAgreeWithTheSignedDistanceOfTheOtherBody) {
     expectSound(tissues, contacts, kMargin);
     for (const int tissue : {0, 1}) {
       const Surface& own = tissues[tissue].surface;
-      const MeshDistance other({tissues[1 - tissue].surface.nodes, tissues[1 - tissue].surface.triangles});
+      const Surface& other = tissues[1 - tissue].surface;
       for (Eigen::Index n = 0; n < own.nodes.cols(); ++n) {
-        const SignedDistance here = other.at(own.nodes.col(n));
+        const SignedDistance here = bruteForceDistance(other, own.nodes.col(n));
         // What must be found: the nearest point, faced squarely, with the own surface leading away from it.
         double lowest = 1.0;
         double facing = 1.0;

@@ -1,0 +1,128 @@
+/// Loads that no tissue bears: found where they are, and not where they are not.
+#include "tissue_contact/simulation/load_watch.h"
+
+#include <gtest/gtest.h>
+
+#include "tissue_contact/simulation/simulator.h"
+#include "validation/text_scene.h"
+
+namespace tissue_contact {
+namespace {
+
+constexpr double kModulus = 5000.0;
+
+/// A 5 mm sphere 1 mm above the middle of a block of 60 x 60 x 20 mm with cells of 10 mm, fixed below.
+Simulator makeScene() {
+  return makeSimulator(
+      "tissues:\n  - name: block\n    block: {size_m: [0.06, 0.06, 0.02], cells: [6, 6, 2]}\n"
+      "    material: {model: neo_hookean, youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}\n"
+      "    damping: {stiffness_s: 0.003}\n"
+      "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
+      "instruments:\n  - name: probe\n    robot_description: probe\n    tip_link: tip\n"
+      "    joint_state_topics: [/joint_states]\n    base_pose: {position_m: [0, 0, 0.026]}\n"
+      "    contact_links: [tip]\n",
+      {{"probe", probeUrdf(0.005)}});
+}
+
+/// The node of the surface nearest to the middle of the upper face.
+int middleNode(const Tissue& tissue) {
+  int nearest = 0;
+  const Vector3 middle(0.0, 0.0, 0.02);
+  for (int i = 0; i < tissue.nodeCount(); ++i) {
+    if ((tissue.restPositions().col(i) - middle).norm() < (tissue.restPositions().col(nearest) - middle).norm())
+      nearest = i;
+  }
+  return nearest;
+}
+
+SolvedContact pushOn(int node, const Vector3& force) {
+  SolvedContact contact;
+  contact.contact.key.tissue = 0;
+  contact.contact.key.instrument = 0;
+  contact.contact.key.feature = {node, -1, -1};
+  contact.contact.nodes = {node, node, node};
+  contact.contact.weights = Vector3::UnitX();
+  contact.contact.p_WC = Vector3(0.0, 0.0, 0.02);
+  contact.state = ContactState::kStatic;
+  contact.force_on_tissue_n = force;
+  return contact;
+}
+
+struct Watched {
+  Simulator simulator = makeScene();
+  LoadWatch watch{simulator.scene(), simulator.tissues()};
+  std::vector<NodalVectors> x = {simulator.tissues()[0].restPositions()};
+  int node = middleNode(simulator.tissues()[0]);
+
+  ImplausibleLoad look(const std::vector<SolvedContact>& contacts) {
+    ImplausibleLoad load;
+    watch.look(contacts, x, load);
+    return load;
+  }
+};
+
+constexpr double kNodeArea =
+    1e-4;  // of an inner node of the upper face: a cell of 10 x 10 mm, +- a third by its splitting
+
+TEST(LoadWatch, ComparesTheMeanPressureWithTheModulus) {
+  Watched scene;
+  const ImplausibleLoad light = scene.look({pushOn(scene.node, {0.0, 0.0, -0.5 * kModulus * kNodeArea})});
+  EXPECT_FALSE(light.found);
+  EXPECT_NEAR(light.pressure_pa, 0.5 * kModulus, 0.34 * 0.5 * kModulus);
+  EXPECT_EQ(light.modulus_pa, kModulus);
+  const ImplausibleLoad heavy = scene.look({pushOn(scene.node, {0.0, 0.0, -4.0 * kModulus * kNodeArea})});
+  EXPECT_TRUE(heavy.found);
+  EXPECT_EQ(heavy.tissue, 0);
+  EXPECT_EQ(heavy.instrument, 0);
+  EXPECT_EQ(heavy.inverted_elements, 0);
+  EXPECT_EQ(heavy.p_W, Vector3(0.0, 0.0, 0.02));
+  EXPECT_FALSE(scene.look({}).found);
+}
+
+TEST(LoadWatch, OpposedForcesDoNotCancel) {
+  Watched scene;
+  const double big = 4.0 * kModulus * kNodeArea;
+  EXPECT_TRUE(scene.look({pushOn(scene.node, {big, 0, 0}), pushOn(scene.node, {-big, 0, 0})}).found);
+}
+
+TEST(LoadWatch, OpenContactsPressNothing) {
+  Watched scene;
+  SolvedContact contact = pushOn(scene.node, {0.0, 0.0, -1.0});
+  contact.state = ContactState::kOpen;
+  EXPECT_FALSE(scene.look({contact}).found);
+}
+
+TEST(LoadWatch, FindsElementsTurnedInsideOutUnderTheTool) {
+  Watched scene;
+  const std::vector<SolvedContact> contacts = {pushOn(scene.node, {0.0, 0.0, -0.01})};
+  scene.x[0](2, scene.node) -= 0.006;  // of 10 mm: flatter
+  EXPECT_FALSE(scene.look(contacts).found);
+  scene.x[0](2, scene.node) -= 0.009;  // through the layer below
+  const ImplausibleLoad load = scene.look(contacts);
+  EXPECT_TRUE(load.found);
+  EXPECT_GT(load.inverted_elements, 0);
+  EXPECT_LT((load.p_W - scene.x[0].col(scene.node)).norm(), 0.02);
+  scene.x[0](2, scene.node) += 0.015;
+  scene.x[0](2, 0) += 0.05;  // somewhere else, where nothing presses
+  EXPECT_FALSE(scene.look(contacts).found);
+}
+
+TEST(LoadWatch, APressIsPlausibleAndAToolThroughTheBaseIsNot) {
+  Simulator simulator = makeScene();
+  simulator.advance(0.2, {Vector3(0.0, 0.0, -0.004)});
+  EXPECT_GT(simulator.report().implausible_load.pressure_pa, 0.0);
+  EXPECT_FALSE(simulator.report().implausible_load.found);
+  bool flagged = false;
+  for (int i = 1; i <= 30; ++i) {
+    simulator.advance(0.02, {Vector3(0.0, 0.0, -0.004 - 0.001 * i)});
+    if (!simulator.report().implausible_load.found) continue;
+    flagged = true;
+    const std::string text = implausibleLoadText(simulator);
+    for (const char* part : {"'block'", "'probe'", "Pa", "neo_hookean"})
+      EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+  EXPECT_TRUE(flagged);
+}
+
+}  // namespace
+}  // namespace tissue_contact
