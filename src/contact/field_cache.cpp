@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -101,7 +102,13 @@ void removeOldest(const fs::path& directory) {
   std::uintmax_t bytes = 0;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
-    if (entry.path().extension() != kExtension) continue;
+    if (entry.path().extension() != kExtension) {
+      // What a run that was killed has left; one that still writes is done within minutes.
+      const bool is_left = entry.path().filename().string().find(kExtension) != std::string::npos &&
+                           entry.last_write_time(error) < fs::file_time_type::clock::now() - std::chrono::hours(1);
+      if (is_left && !error) fs::remove(entry.path(), error);
+      continue;
+    }
     files.emplace_back(entry.last_write_time(error), entry.path());
     const std::uintmax_t size = entry.file_size(error);
     if (!error) bytes += size;

@@ -1,11 +1,13 @@
 #include "contact/field_distance.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "contact/field_surface.h"
 #include "contact/lowest_on_triangle.h"
+#include "contact/tolerances.h"
 
 namespace tissue_contact {
 namespace {
@@ -31,6 +33,17 @@ SignedDistance FieldDistance::at(const Vector3& p_S) const {
   const double length = here.gradient.norm();
   constexpr double kNone = 1e-9;  // deepest inside: every direction is as good as another
   return {here.distance, length > kNone ? Vector3(here.gradient / length) : Vector3::UnitX()};
+}
+
+void FieldDistance::foremostCorners(const Vector3& forward, const Eigen::AlignedBox3d& box,
+                                    std::vector<ShapeCorner>& corners) const {
+  corners.clear();
+  for (std::size_t i = 0; i < field_->tips.size(); ++i) {
+    const MeshTip& tip = field_->tips[i];
+    const auto rises = [&](const Vector3& edge) { return forward.dot(edge) > kCornerSlope; };
+    if (!box.contains(tip.p_S) || std::any_of(tip.edges.begin(), tip.edges.end(), rises)) continue;
+    corners.push_back({static_cast<int>(i), tip.p_S});
+  }
 }
 
 bool FieldDistance::closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const {

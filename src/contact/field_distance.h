@@ -12,7 +12,8 @@ namespace tissue_contact {
 
 /// The distance changes by no more than the way between two points, its normal without jumps but on ridges inside. It is
 /// exact to some hundredths of the grid's spacing beside flat and gently curved faces; edges are rounded by about one
-/// spacing. No corners: a closest point per triangle, the tissue's vertices and the points that ContactMemory keeps.
+/// spacing. No corners but the tips of needles: a closest point per triangle, the tissue's vertices and the points that
+/// ContactMemory keeps.
 class FieldDistance : public ShapeDistance {
  public:
   explicit FieldDistance(std::shared_ptr<const MeshField> field);
@@ -22,6 +23,10 @@ class FieldDistance : public ShapeDistance {
   Vector3 boxCentre() const override { return centre_; }
   SignedDistance at(const Vector3& p_S) const override;
   const TriangleMesh* drawn() const override;
+  /// The tips alone: rounded edges and corners need none.
+  void foremostCorners(const Vector3& forward, const Eigen::AlignedBox3d& box,
+                       std::vector<ShapeCorner>& corners) const override;
+  double cornerReach() const override { return half_.minCoeff(); }
   bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const override;
 
  private:

@@ -36,7 +36,43 @@ TriangleMesh usablePart(const TriangleMesh& mesh) {
     }
   }
   if (usable.triangles.empty()) throw std::invalid_argument("collision mesh: it has no triangle with an area > 0");
+  std::vector<bool> used(static_cast<std::size_t>(mesh.vertices.cols()), false);
+  for (const Triangle& t : usable.triangles) {
+    for (const int v : t) used[static_cast<std::size_t>(v)] = true;
+  }
+  // What no triangle uses must not widen the grid.
+  const Vector3 somewhere = mesh.vertices.col(usable.triangles.front()[0]);
+  for (Eigen::Index v = 0; v < mesh.vertices.cols(); ++v) {
+    if (!used[static_cast<std::size_t>(v)]) usable.vertices.col(v) = somewhere;
+  }
   return usable;
+}
+
+/// Vertices that are tips of the solid; a pit is none.
+std::vector<MeshTip> tipsOf(const TriangleMesh& mesh, const DistanceGrid& grid) {
+  constexpr double kNarrow = 0.866;  // cosine
+  constexpr double kAside = 5.0;     // spacings along the axis: inside behind a tip, outside before it
+  std::vector<MeshTip> ends(static_cast<std::size_t>(mesh.vertices.cols()));
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const int other : {t[(k + 1) % 3], t[(k + 2) % 3]}) {
+        const Vector3 edge = mesh.vertices.col(other) - mesh.vertices.col(t[k]);
+        if (edge.norm() > 0.0) ends[static_cast<std::size_t>(t[k])].edges.push_back(edge.normalized());
+      }
+    }
+  }
+  std::vector<MeshTip> tips;
+  for (std::size_t v = 0; v < ends.size(); ++v) {
+    MeshTip& tip = ends[v];
+    Vector3 axis = Vector3::Zero();
+    for (const Vector3& edge : tip.edges) axis += edge;
+    const auto is_wide = [&](const Vector3& edge) { return !(edge.dot(axis) > kNarrow * axis.norm()); };
+    if (tip.edges.size() < 6 || std::any_of(tip.edges.begin(), tip.edges.end(), is_wide)) continue;
+    tip.p_S = mesh.vertices.col(static_cast<Eigen::Index>(v));
+    const Vector3 aside = kAside * grid.spacing * axis.normalized();
+    if (grid.at(tip.p_S + aside).distance < 0.0 && grid.at(tip.p_S - aside).distance > 0.0) tips.push_back(tip);
+  }
+  return tips;
 }
 
 void requireInside(const DistanceGrid& grid, const std::string& name) {
@@ -148,11 +184,13 @@ std::shared_ptr<const MeshField> prepareMeshField(const TriangleMesh& original, 
   const std::string key = fieldKey(mesh, kSampleCount);
   auto field = std::make_shared<MeshField>();
   if (readField(preparation.cache_directory, key, *field)) {
+    field->tips = tipsOf(mesh, field->grid);
     report(name, original.triangles.size(), *field, "from the cache", preparation);
     return field;
   }
   const double start = preparation.clock ? preparation.clock() : 0.0;
   *field = build(mesh, name, preparation);
+  field->tips = tipsOf(mesh, field->grid);
   std::array<char, 64> took{"built"};
   if (preparation.clock) std::snprintf(took.data(), took.size(), "built in %.1f s", preparation.clock() - start);
   const std::string trouble = writeField(preparation.cache_directory, key, *field);

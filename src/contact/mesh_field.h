@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "contact/distance_grid.h"
 #include "tissue_contact/contact/mesh_preparation.h"
@@ -11,7 +12,14 @@
 
 namespace tissue_contact {
 
+/// The point of a needle or a cone: edges leave it within 30 degrees of one direction, into the tool. The samples blunt it.
+struct MeshTip {
+  Vector3 p_S = Vector3::Zero();
+  std::vector<Vector3> edges;  ///< unit, from the tip
+};
+
 struct MeshField {
+  std::vector<MeshTip> tips;  ///< not in the cache
   DistanceGrid grid;
   Vector3 low = Vector3::Zero();  ///< corners of the mesh's bounding box, m
   Vector3 high = Vector3::Zero();

@@ -1,8 +1,6 @@
 #include "contact/narrow_phase.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <tuple>
 #include <utility>
 
@@ -184,33 +182,7 @@ double NarrowPhase::addCornerInFold(int triangle, const ShapeCorner& corner) {
 
 void NarrowPhase::addClosest(int triangle, const TrianglePoints& points, double flush_gap) {
   ClosestPoint closest;
-  const bool dbg = std::getenv("DBGT") && topology_.triangles()[triangle][0] + topology_.triangles()[triangle][1] +
-                                                  topology_.triangles()[triangle][2] ==
-                                              std::atoi(std::getenv("DBGT"));
-  if (!call_.shape->closest(points, call_.margin, closest)) {
-    if (dbg) std::fprintf(stderr, "DT none\n");
-    return;
-  }
-  if (dbg) {
-    double best = 1e9;
-    Vector3 bw = Vector3::Zero();
-    for (int i = 0; i <= 200; ++i)
-      for (int j = 0; i + j <= 200; ++j) {
-        const Vector3 w(i / 200.0, j / 200.0, (200 - i - j) / 200.0);
-        const double d = call_.shape->at(points.pointAt(w)).distance;
-        if (d < best) {
-          best = d;
-          bw = w;
-        }
-      }
-    const Direction dd = contactDirection(closest, tangentOf(points, snapped(closest.weights)));
-    std::fprintf(stderr,
-                 "DT dist %.3f w %.3f %.3f %.3f grads %d dir %.2f %.2f %.2f gap %.3f | brute %.3f w %.3f %.3f %.3f tn "
-                 "%.2f %.2f %.2f\n",
-                 closest.distance * 1e3, closest.weights[0], closest.weights[1], closest.weights[2],
-                 closest.gradients.count(), dd.normal[0], dd.normal[1], dd.normal[2], dd.gap * 1e3, best * 1e3, bw[0],
-                 bw[1], bw[2], points.normal[0], points.normal[1], points.normal[2]);
-  }
+  if (!call_.shape->closest(points, call_.margin, closest)) return;
   const Vector3 weights = snapped(closest.weights);
   const SurfaceFeature feature = topology_.featureOf(triangle, weights);
   if (feature[1] < 0) return;  // a vertex: measureVertex() has it

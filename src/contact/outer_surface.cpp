@@ -17,10 +17,12 @@ class OuterSurface {
     const Vector3 normal = triangleNormal(corners[0], corners[1], corners[2]);
     if (normal.isZero(0.0)) return;
     const int outer = outerPoints(corners, normal);
-    if (outer == 0) return;
     const double longest = std::max(
         {(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(), (corners[0] - corners[2]).norm()});
-    if (outer == 4 || longest < finest_) {
+    // Four points tell little of a triangle that is long beside what it may pass through.
+    constexpr double kTold = 16.0;
+    if (longest < finest_ || ((outer == 0 || outer == 4) && longest < kTold * finest_)) {
+      if (outer == 0) return;
       for (const Vector3& corner : corners) points_.push_back(corner);
       return;
     }

@@ -26,7 +26,7 @@ struct PlacedShape {
 /// Signed distance at a point of the world; the normal in the world frame.
 SignedDistance distanceAt(const PlacedShape& shape, const Vector3& p_W);
 
-/// Whether what presses a point away from one shape presses it towards the other.
+/// Whether what presses a point away from one shape presses it towards the other; also asked of different instruments.
 bool areOpposed(const SignedDistance& first, const SignedDistance& second);
 
 /// The distance to the filled groove between two shapes.

@@ -29,7 +29,7 @@ subscribed topics
   as the scene names them  sensor_msgs/JointState
 
 published topics
-  ~INSTRUMENT/wrench   geometry_msgs/WrenchStamped of the tissue on the instrument, one per accepted joint state
+  ~INSTRUMENT/wrench   geometry_msgs/WrenchStamped of the tissue on the instrument, one per state of the arm stepped to
   ~TISSUE/topology     tissue_contact/TissueTopology, latched
   ~TISSUE/mesh         tissue_contact/TissueMesh
   ~contacts            tissue_contact/ContactArray

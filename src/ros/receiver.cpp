@@ -54,9 +54,10 @@ void Receiver::take(int topic, const ros::MessageEvent<const sensor_msgs::JointS
 /// Joint states and /clock come over connections of their own, so the first joint state after the jump may be here before
 /// it: then their stamps tell of it themselves, and telling it twice would start the scene twice.
 void Receiver::watchClock(const rosgraph_msgs::Clock& clock) {
+  constexpr std::int64_t kJitter_ns = 10'000'000;  // several publishers; a recording that starts over goes farther back
   const auto now_ns = static_cast<std::int64_t>(clock.clock.toNSec());
   const bool is_still_before_jump = std::abs(last_stamp_ns_ - last_clock_ns_) < std::abs(last_stamp_ns_ - now_ns);
-  if (now_ns < last_clock_ns_ && is_still_before_jump) inbox_.noteRestart();
+  if (now_ns < last_clock_ns_ - kJitter_ns && is_still_before_jump) inbox_.noteRestart();
   last_clock_ns_ = now_ns;
 }
 

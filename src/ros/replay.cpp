@@ -66,8 +66,8 @@ class Replay {
       throw std::runtime_error("no joint state of bag '" + options_.bag_file +
                                "' was accepted; the first was refused: " + first_refusal_);
     }
-    if (timing_) timing_->commit();
     table.commit();
+    if (timing_) timing_->commit();
     summarize();
   }
 

@@ -27,7 +27,7 @@ std::string replayUsage() {
          "         [--timing TIMES.csv] [--dump-step N --dump-file PROBLEM.txt]\n"
          "\n"
          "Plays the joint states of a bag through a scene, with the stepping of tissue_contact_node but without a\n"
-         "roscore, and writes one CSV line per accepted joint state and instrument: the same bytes every time.\n"
+         "roscore, and writes one CSV line per state of an arm: the same bytes every time.\n"
          "\n"
          "  --scene FILE  the scene (doc/scene.md)\n"
          "  --bag FILE    a ROS bag with the scene's joint-state topics; tf frames are taken from its /tf_static and "

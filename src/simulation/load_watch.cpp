@@ -80,7 +80,10 @@ void LoadWatch::look(const std::vector<SolvedContact>& contacts, const std::vect
     }
     if (!(area > 0.0)) continue;
     const double pressure = force / area;
-    if (!(pressure > load.pressure_pa)) continue;
+    const bool is_of_finding =
+        load.inverted_elements > 0 && load.tissue == key.tissue && load.instrument == key.instrument;
+    if (load.inverted_elements > 0 && !is_of_finding) continue;  // one finding: the worst element tells of whom
+    if (!is_of_finding && !(pressure > load.pressure_pa)) continue;
     load.pressure_pa = pressure;
     load.modulus_pa = body.modulus_pa;
     if (!(pressure > kMostPressure * body.modulus_pa) || load.inverted_elements > 0) continue;

@@ -152,9 +152,9 @@ def read_csv(file):
 
 
 def read_table(file):
-    """All of a replay's CSV as a list of dictionaries, without the wall time, which differs from run to run."""
+    """All of a replay's CSV as a list of dictionaries."""
     with open(file, newline="", encoding="ascii") as stream:
-        return [{k: v for k, v in row.items() if k != "step_time_s"} for row in csv.DictReader(stream)]
+        return list(csv.DictReader(stream))
 
 
 def stamp_text(stamp):

@@ -90,7 +90,7 @@ class Jitter(unittest.TestCase):
     def test_real_recording(self):
         begin, disturbed = 1400, 2209  # from before a dip to its deepest
         bags = self.make(REAL_BAG, "/PSM2/measured_js", disturbed, begin=begin, end=2330)
-        self.check(REAL_SCENE, bags, disturbed - begin, 5.0)
+        self.check(REAL_SCENE, bags, disturbed - begin, 0.5)
 
 
 if __name__ == "__main__":

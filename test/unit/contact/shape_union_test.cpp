@@ -117,7 +117,7 @@ std::vector<Contact> contactsOfTip(const TwoSpheres& tool, const Vector3& tip, i
   surface.fixed.assign(4, false);
   ContactDetector detector(tool.instruments, {surface}, {x});
   std::vector<Contact> contacts;
-  detector.detect({x}, tool.X_WL, 1e-5, contacts);
+  detector.detect({x}, tool.X_WL, 2e-4, contacts);
   pinched = detector.pinchedContacts();
   return contacts;
 }
@@ -127,11 +127,14 @@ TEST(ShapeUnion, ATipInTheGrooveIsPressedOutOfItNotIntoIt) {
   const std::vector<Contact> contacts = contactsOfTip(TwoSpheres(0.0), {0, 0, -0.6e-3}, pinched);
   ASSERT_FALSE(contacts.empty());
   EXPECT_EQ(pinched, 0);
+  int at_tip = 0;
   for (const Contact& contact : contacts) {
     if (contact.key.feature[1] >= 0) continue;  // the tip itself
+    ++at_tip;
     EXPECT_LT(contact.R_WC.col(0).z(), -0.99);  // without the other sphere: the slope of one, -.37
     EXPECT_NEAR(contact.gap_m, kRho - (ballHeight() - 0.6e-3), 0.02 * kRho);
   }
+  EXPECT_EQ(at_tip, 2);  // one for each sphere
 }
 
 TEST(ShapeUnion, ATipWithoutRoomIsLetGoAndCounted) {
@@ -143,6 +146,12 @@ TEST(ShapeUnion, ATipWithoutRoomIsLetGoAndCounted) {
   // With room it is held from both sides, as tissue in a grip is.
   const std::vector<Contact> held = contactsOfTip(TwoSpheres(0.2e-3), {0, 0, 0}, pinched);
   EXPECT_EQ(pinched, 0);
+  std::vector<double> normals;
+  for (const Contact& contact : held) {
+    if (contact.key.feature[1] < 0) normals.push_back(contact.R_WC(0, 0));
+  }
+  ASSERT_EQ(normals.size(), 2U);
+  EXPECT_LT(normals[0] * normals[1], -0.9);
 }
 
 }  // namespace
