@@ -175,6 +175,9 @@ void ContactDetector::Implementation::detectPair(int tissue, const NodalVectors&
 
 /// How far from this shape the filling of a groove with another of the instrument may reach, m; 0: none is near.
 double ContactDetector::Implementation::deepestGroove(const TouchingShape& shape, const std::vector<Pose>& X_WL) const {
+  // Between walls at an angle 2 phi the filling stands rho (1 - sin phi) before them, and there is one where they close
+  // within 2 rho of it, so where rho (1 - sin phi) / sin phi < 2 rho.
+  constexpr double kStands = 2.0 / 3.0;
   double deepest = 0.0;
   for (const TouchingShape& other : shapes) {
     if (&other == &shape || other.instrument != shape.instrument) continue;
@@ -184,7 +187,7 @@ double ContactDetector::Implementation::deepestGroove(const TouchingShape& shape
       deepest = radius;
     }
   }
-  return deepest;
+  return kStands * deepest;
 }
 
 /// Heeds the other shapes near a contact: turns it to the filling of the groove between this shape and another of the

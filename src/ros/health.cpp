@@ -74,7 +74,7 @@ bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
   warn(played);
   const bool accepted = played.verdict == Verdict::kAccepted;
   const bool finite = accepted && isFinite(simulator_);
-  const std::lock_guard<std::mutex> lock(mutex_);
+  std::unique_lock<std::mutex> lock(mutex_);
   for (int v = 0; v < kVerdictCount; ++v) {
     figures_.by_verdict[static_cast<std::size_t>(v)] = player_.count(static_cast<Verdict>(v));
   }
@@ -87,7 +87,9 @@ bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
   if (!accepted) return false;
   if (played.was_reset) figures_.broken = false;
   played_stamp_ns_ = played.stamp_ns;
-  if (steps > 0) noteSteps(played, steps, finite);
+  const bool is_newly_broken = steps > 0 && noteSteps(played, steps, finite);
+  lock.unlock();  // a log that blocks must not hold up those who ask for the figures
+  if (is_newly_broken) tellBroken(played, finite);
   return finite;
 }
 
@@ -117,8 +119,9 @@ void Health::warn(const PlayedSample& played) {
   }
 }
 
-/// What an interval with steps in it did to the figures. The lock is held.
-void Health::noteSteps(const PlayedSample& played, int steps, bool finite) {
+/// What an interval with steps in it did to the figures. The lock is held. @return whether an answer was not finite for the
+/// first time since the last reset.
+bool Health::noteSteps(const PlayedSample& played, int steps, bool finite) {
   const StepReport& report = simulator_.report();
   figures_.steps += steps;
   figures_.simulated_s += report.advanced_s;
@@ -144,17 +147,18 @@ void Health::noteSteps(const PlayedSample& played, int steps, bool finite) {
          << report.iterations << " iterations";
     figures_.last_not_converged = text.str();
   }
-  if (!report.discarded && finite) return;
+  if (!report.discarded && finite) return false;
   ++figures_.not_finite;
-  if (!figures_.broken) {
-    ROS_ERROR_STREAM("a step of the interval ending at "
-                     << toTime(played.stamp_ns) << " s had no finite answer; "
-                     << (finite ? "the tissues were stopped where they were and its contact forces, so also the wrench "
-                                  "if it was the last step, are zero"
-                                : "nothing is published for it")
-                     << ". Look for very stiff or very light tissue, or lower step.max_step_s");
-  }
-  figures_.broken = true;
+  return !std::exchange(figures_.broken, true);
+}
+
+void Health::tellBroken(const PlayedSample& played, bool finite) {
+  ROS_ERROR_STREAM("a step of the interval ending at "
+                   << toTime(played.stamp_ns) << " s had no finite answer; "
+                   << (finite ? "the tissues were stopped where they were and its contact forces, so also the wrench "
+                                "if it was the last step, are zero"
+                              : "nothing is published for it")
+                   << ". Look for very stiff or very light tissue, or lower step.max_step_s");
 }
 
 void Health::noteWrenches(std::size_t count, std::optional<double> lag_s) {

@@ -3,6 +3,7 @@
 #include "tissue_contact/ros/live_figures.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <numeric>
 #include <sstream>
@@ -35,8 +36,9 @@ std::string keepUpAdvice(const LiveFigures& figures, double max_step_s, double m
   const double wanted_per_s = std::max(1.0 / max_step_s, taken_per_s);
   const double work = figures.step_cost_s * wanted_per_s;
   std::ostringstream text;
-  text << std::setprecision(3) << "a step costs " << 1e3 * figures.step_cost_s << " ms and " << wanted_per_s
-       << " steps per second of motion are asked for: " << work << " s of work per second. ";
+  text << std::setprecision(3) << "a step costs " << 1e3 * figures.step_cost_s << " ms and "
+       << std::lround(wanted_per_s) << " steps per second of motion are asked for: " << work
+       << " s of work per second. ";
   if (work < 1.0) {
     text << "That fits, so something else keeps the processor busy. ";
   }

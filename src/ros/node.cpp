@@ -111,13 +111,9 @@ void Node::tellDiagnostics() {
 
 void Node::tellCounts() {
   if (counts_told_.exchange(true)) return;
-  const std::string line = countsLine(health_.figures());
-  if (ros::ok()) {
-    ROS_INFO_STREAM(line);
-  } else {
-    std::printf("%s\n", line.c_str());  // after rosnode kill the log is closed
-    std::fflush(stdout);
-  }
+  // Not through the log, which may block, and is closed after rosnode kill.
+  std::printf("%s\n", countsLine(health_.figures()).c_str());
+  std::fflush(stdout);
 }
 
 int runNode(int argc, char** argv) {

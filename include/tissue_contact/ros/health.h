@@ -54,9 +54,9 @@ class Health {
 
   /// Summary and counts. ERROR when a step gave no finite answer since the last reset, or the lag was far over its bound
   /// since the last call; WARN when it was over it, forces were such as no tissue bears, steps were lengthened to
-  /// hold the lag, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their iterations are counted but are no alarm: a fixed
-  /// budget per step is how the solver keeps real time. The log says once what to change when the machine does not keep
-  /// up. @param missing see Receiver::missing().
+  /// hold the lag, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their
+  /// iterations are counted but are no alarm: a fixed budget per step is how the solver keeps real time. The log says
+  /// once what to change when the machine does not keep up. @param missing see Receiver::missing().
   void fill(std::int64_t missing, diagnostic_updater::DiagnosticStatusWrapper& status);
 
  private:
@@ -71,7 +71,8 @@ class Health {
   };
 
   void warn(const PlayedSample& played);
-  void noteSteps(const PlayedSample& played, int steps, bool finite);
+  bool noteSteps(const PlayedSample& played, int steps, bool finite);
+  static void tellBroken(const PlayedSample& played, bool finite);
   double worstLag(const LiveFigures& figures);
   void summarize(const LiveFigures& now, double worst_lag_s, diagnostic_updater::DiagnosticStatusWrapper& status);
 

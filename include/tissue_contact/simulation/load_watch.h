@@ -27,10 +27,10 @@ struct ImplausibleLoad {
 };
 
 /// Finds
-///  - tetrahedra with a volume below kInsideOut times that at rest among those at nodes that carry contact forces: the tool has been pushed through the
-///    elements, or these through each other, and the material law no longer means anything;
+///  - tetrahedra at nodes that carry contact forces whose volume is below kInsideOut times that at rest: the tool has been
+///    pushed through the elements, or these through each other, and the material law no longer means anything;
 ///  - a mean contact pressure, sum |f| over the rest area of the nodes touched, above kMostPressure times Young's modulus.
-///    Soft tissue fails at strains of about .3 to 1 (liver: Brunon et al. 2010), so at stresses below its modulus.
+///    Soft tissue fails at strains of about .3 to 1 (capsule of the liver .35: Brunon et al. 2010), so at stresses below its modulus.
 ///    Opposed forces that a tool catches tissue with count here, although they cancel in its wrench.
 class LoadWatch {
  public:

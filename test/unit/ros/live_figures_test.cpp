@@ -72,7 +72,7 @@ TEST(KeepUpAdvice, HasTheFiguresAndWhatToChange) {
   figures.steps = 500;
   figures.simulated_s = 2.0;  // lengthened: 250 per second, 1000 are wanted
   const std::string live = keepUpAdvice(figures, 0.001, 0.02, 3087);
-  for (const char* words : {"4 ms", "1e+03 steps", "4 s of work per second", "0.02 s", "3087 nodes", "step.max_step_s",
+  for (const char* words : {"4 ms", "1000 steps", "4 s of work per second", "0.02 s", "3087 nodes", "step.max_step_s",
                             "solver.time_budget_s"}) {
     EXPECT_NE(live.find(words), std::string::npos) << words << " in: " << live;
   }
