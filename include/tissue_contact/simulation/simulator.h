@@ -100,8 +100,8 @@ class Simulator {
   const std::vector<Pose>& linkPoses(int instrument) const;  ///< X_WL of every link
   /// See ContactDetector::actingSurface.
   const TriangleMesh* actingSurface(int instrument, int contact_link, int shape) const;
-  const NodalVectors& positions(int tissue) const;           ///< m, world frame
-  const NodalVectors& velocities(int tissue) const;          ///< m/s, world frame
+  const NodalVectors& positions(int tissue) const;   ///< m, world frame
+  const NodalVectors& velocities(int tissue) const;  ///< m/s, world frame
   const std::vector<SolvedContact>& contacts() const;
   const StepReport& report() const;
   long stepCount() const;  ///< implicit steps since the last reset
