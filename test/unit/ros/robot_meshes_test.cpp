@@ -167,8 +167,9 @@ TEST_F(RobotMeshes, TheSurrolRobotPressesLikePrimitives) {
   expectLikePrimitives(outcomeOf(surrolScene(), directory_), outcomeOf(primitiveScene(), directory_));
 }
 
-/// The recording with the slab `deeper_m` nearer to the arm.
-std::string deeperScene(double deeper_m, const std::string& model) {
+/// The recording with the slab `deeper_m` nearer to the arm. @param iterations of the solver: what is to be flagged need not be
+///   solved to the last digit.
+std::string deeperScene(double deeper_m, const std::string& model, const std::string& iterations) {
   std::string scene = primitiveScene();
   std::ostringstream position;
   position << "position_m: [0.2, " << -0.041683 + 0.38942 * deeper_m << ", " << 0.187632 - 0.92106 * deeper_m << "]";
@@ -176,13 +177,15 @@ std::string deeperScene(double deeper_m, const std::string& model) {
   scene.replace(scene.find(before), before.size(), position.str());
   const std::string law = "model: neo_hookean";
   scene.replace(scene.find(law), law.size(), "model: " + model);
+  const std::string most = "iterations: 500";
+  scene.replace(scene.find(most), most.size(), "iterations: " + iterations);
   return scene;
 }
 
 // Closed jaws that sweep 6 mm deeper. Before: up to 1100 N on opposed normals in the slit between the jaws, the slab carried
 // about with 66 to 74 N, and no warning.
 TEST_F(RobotMeshes, ClosedJawsSweepingDeepCatchNoTissue) {
-  const Outcome outcome = outcomeOf(deeperScene(0.006, "neo_hookean"), directory_);
+  const Outcome outcome = outcomeOf(deeperScene(0.006, "neo_hookean", "100"), directory_);
   EXPECT_LT(outcome.implausible,
             700);                  // of 3419, while elements fold over the tool; 379 of any depth, fewer of a tenth
   EXPECT_LT(outcome.peak_n, 5.0);  // 4.0
@@ -190,12 +193,12 @@ TEST_F(RobotMeshes, ClosedJawsSweepingDeepCatchNoTissue) {
 }
 
 TEST_F(RobotMeshes, ATissueThatIsCarriedAboutIsFlagged) {
-  EXPECT_GT(outcomeOf(deeperScene(0.006, "corotational"), directory_).implausible, 1000);  // of 3419; 2151
+  EXPECT_GT(outcomeOf(deeperScene(0.006, "corotational", "3"), directory_).implausible, 1000);  // of 3419
 }
 
 // Through the slab and its fixed base: 512 kN without a word before.
 TEST_F(RobotMeshes, AToolThatGoesThroughTheBaseIsFlagged) {
-  const Outcome outcome = outcomeOf(deeperScene(0.035, "neo_hookean"), directory_);
+  const Outcome outcome = outcomeOf(deeperScene(0.035, "neo_hookean", "3"), directory_);
   EXPECT_GT(outcome.implausible, 500);
 }
 
