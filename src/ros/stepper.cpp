@@ -50,6 +50,7 @@ void Stepper::run() {
       inbox_.wait();
       outputs_.showToNewcomer();
       takeReceived();
+      health_.noteWork(std::nullopt);  // what the player holds counts as waiting, also when it is to play no more
       while (!stop_ && playNext()) {
       }
     }
