@@ -151,12 +151,15 @@ void SceneMarkers::addTissues() {
 /// Links that touch tissue are drawn as the shapes that touch, meshes with the edges they act with; the others as the URDF draws them, paler.
 void SceneMarkers::addInstrument(int instrument) {
   const Instrument& tool = simulator_.instruments()[static_cast<std::size_t>(instrument)];
+  // Finding the surface of a sampled mesh takes a while: not for markers that nobody is to see.
+  const bool is_shown = simulator_.scene().publish.markers_rate_hz > 0.0;
   std::set<int> touching;
   for (std::size_t c = 0; c < tool.contactLinks().size(); ++c) {
     const ContactLink& link = tool.contactLinks()[c];
     touching.insert(link.link);
     for (std::size_t s = 0; s < link.shapes.size(); ++s) {
-      const TriangleMesh* surface = simulator_.actingSurface(instrument, static_cast<int>(c), static_cast<int>(s));
+      const TriangleMesh* surface =
+          is_shown ? simulator_.actingSurface(instrument, static_cast<int>(c), static_cast<int>(s)) : nullptr;
       addShape(instrument, link.link, {link.shapes[s].geometry, link.shapes[s].X_LS}, surface, true);
     }
   }

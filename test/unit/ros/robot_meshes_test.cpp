@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -146,6 +147,8 @@ class RobotMeshes : public testing::Test {
 
 /// A robot's own shapes act as primitives do: nothing hooks, and no force is such as no tissue bears.
 void expectLikePrimitives(const Outcome& meshes, const Outcome& primitives) {
+  std::printf("peak %.3f N, RMS %.3f N; primitives %.3f N, %.3f N\n", meshes.peak_n, meshes.rms_n, primitives.peak_n,
+              primitives.rms_n);  // what README states
   EXPECT_EQ(meshes.rows, primitives.rows);
   EXPECT_EQ(primitives.not_converged, 0);
   EXPECT_EQ(meshes.not_converged, 0);
