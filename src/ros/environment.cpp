@@ -3,12 +3,7 @@
 #include "tissue_contact/ros/environment.h"
 
 #include <ros/console.h>
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
 #include <rospack/rospack.h>
-#include <tf2/buffer_core.h>
-#include <tf2/exceptions.h>
-#include <tf2_msgs/TFMessage.h>
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 
@@ -23,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "bag_frames.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/ros/conversions.h"
 
@@ -82,33 +78,6 @@ std::string readText(const std::string& file) {
   text << stream.rdbuf();
   if (!stream) throw std::invalid_argument("URDF file '" + file + "' cannot be read");
   return text.str();
-}
-
-/// Adds the transforms of one message; what tf2 itself refuses (NaN, a frame that is its own parent) is left out.
-void addTransforms(const rosbag::MessageInstance& instance, bool is_static, tf2::BufferCore& buffer) {
-  const tf2_msgs::TFMessage::ConstPtr message = instance.instantiate<tf2_msgs::TFMessage>();
-  if (!message) return;
-  for (const geometry_msgs::TransformStamped& transform : message->transforms) {
-    buffer.setTransform(transform, "bag", is_static);
-  }
-}
-
-Pose frameInBag(const std::string& frame, const std::string& world_frame, const std::string& bag_file) {
-  const rosbag::Bag bag(bag_file);
-  tf2::BufferCore buffer(ros::Duration(1e6));  // a bag is not forgotten while it is read
-  rosbag::View static_view(bag, rosbag::TopicQuery(std::vector<std::string>{"/tf_static", "tf_static"}));
-  for (const rosbag::MessageInstance& instance : static_view) addTransforms(instance, true, buffer);
-  rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{"/tf", "tf"}));
-  auto next = view.begin();
-  while (!buffer.canTransform(world_frame, frame, ros::Time(0)) && next != view.end()) {
-    addTransforms(*next++, false, buffer);
-  }
-  try {
-    return toPose(buffer.lookupTransform(world_frame, frame, ros::Time(0)).transform);
-  } catch (const tf2::TransformException& error) {
-    throw std::invalid_argument("tf frame '" + frame + "' has no transform to the world frame '" + world_frame +
-                                "' in " + bag_file + " (" + error.what() + ")");
-  }
 }
 
 }  // namespace

@@ -2,18 +2,49 @@
 /// Room `ros`: see joint_state_bag.h.
 #include "tissue_contact/ros/joint_state_bag.h"
 
-#include <rosbag/view.h>
+#include <ros/message_traits.h>
 #include <sensor_msgs/JointState.h>
 
-#include <exception>
 #include <stdexcept>
 
+#include "bag_reader.h"
+#include "message_reader.h"
 #include "tissue_contact/ros/conversions.h"
 
 namespace tissue_contact {
 namespace {
 
+using sensor_msgs::JointState;
+
 std::string globalName(const std::string& topic) { return !topic.empty() && topic[0] == '/' ? topic : "/" + topic; }
+
+/// Velocities and efforts, which no sample has, are only passed over.
+JointState readJointState(std::string_view data) {
+  MessageReader reader(data);
+  JointState message;
+  message.header.seq = reader.number<std::uint32_t>();
+  message.header.stamp.sec = reader.number<std::uint32_t>();
+  message.header.stamp.nsec = reader.number<std::uint32_t>();
+  message.header.frame_id = reader.text();
+  message.name.resize(reader.count(sizeof(std::uint32_t)));
+  for (std::string& name : message.name) name = reader.text();
+  message.position.resize(reader.count(sizeof(double)));
+  for (double& position : message.position) position = reader.number<double>();
+  for (int i = 0; i < 2; ++i) reader.take(reader.count(sizeof(double)) * sizeof(double));
+  return message;
+}
+
+/// The sum alone, as rosbag does it: a type that was renamed is the same.
+void requireJointStates(const BagReader& bag, const BagConnection& connection) {
+  const std::string md5sum = ros::message_traits::md5sum<JointState>();
+  if (connection.md5sum == md5sum) return;
+  const std::string type = ros::message_traits::datatype<JointState>();
+  if (connection.type == type) {
+    bag.fail("topic " + connection.topic + " is of a " + type + " with another definition (md5sum " +
+             connection.md5sum.substr(0, md5sum.size()) + ", not " + md5sum + ")");
+  }
+  bag.fail("topic " + connection.topic + " is of type " + connection.type + "; it must be " + type);
+}
 
 }  // namespace
 
@@ -23,46 +54,47 @@ std::string joinedNames(const std::set<std::string>& names) {
   return text.empty() ? "none" : text;
 }
 
-JointStateBag::JointStateBag(const std::string& file, const std::vector<std::string>& topics) : file_(file) {
+JointStateBag::JointStateBag(const std::string& file, const std::vector<std::string>& topics)
+    : bag_(std::make_unique<BagReader>(file)) {
   for (std::size_t i = 0; i < topics.size(); ++i) index_[globalName(topics[i])] = static_cast<int>(i);
-  try {
-    bag_.open(file, rosbag::bagmode::Read);
-  } catch (const std::exception& error) {
-    throw std::runtime_error("bag '" + file + "' cannot be read: " + error.what() +
-                             "; if it was cut off, `rosbag reindex` may mend it");
-  }
+  bag_->select([this](const BagConnection& connection) { return index_.count(globalName(connection.topic)) > 0; });
   findTopics();
-  rosbag::View view(bag_, rosbag::TopicQuery(found_));
-  begin_ = view.getBeginTime();
-  end_ = view.getEndTime();
 }
+
+JointStateBag::~JointStateBag() = default;
+
+const ros::Time& JointStateBag::begin() const { return bag_->begin(); }
+
+const ros::Time& JointStateBag::end() const { return bag_->end(); }
 
 void JointStateBag::findTopics() {
   std::set<std::string> in_bag;
   for (const auto& [topic, index] : index_) missing_.insert(topic);
-  rosbag::View view(bag_);
-  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
-    if (!in_bag.insert(connection->topic).second || index_.count(globalName(connection->topic)) == 0) continue;
-    found_.push_back(connection->topic);
-    missing_.erase(globalName(connection->topic));
+  for (const auto& [number, connection] : bag_->connections()) {
+    in_bag.insert(connection.topic);
+    if (bag_->messageCount(number) == 0) continue;
+    requireJointStates(*bag_, connection);
+    missing_.erase(globalName(connection.topic));
   }
-  if (found_.empty()) {
-    throw std::runtime_error("bag '" + file_ + "' has no message on the scene's joint-state topics (" +
-                             joinedNames(missing_) + "); its topics are: " + joinedNames(in_bag));
+  if (missing_.size() == index_.size()) {
+    bag_->fail("it has no message on the scene's joint-state topics (" + joinedNames(missing_) +
+               "); its topics are: " + joinedNames(in_bag));
   }
 }
 
 void JointStateBag::forEach(
     const std::function<void(int topic, JointStateSample sample, ros::Time recorded)>& take) const {
-  rosbag::View view(bag_, rosbag::TopicQuery(found_));
-  for (const rosbag::MessageInstance& instance : view) {
-    const sensor_msgs::JointStateConstPtr message = instance.instantiate<sensor_msgs::JointState>();
-    if (!message) {
-      throw std::runtime_error("topic " + instance.getTopic() + " of bag '" + file_ + "' is of type " +
-                               instance.getDataType() + "; it must be sensor_msgs/JointState");
+  bag_->forEach([&](const BagMessage& message) {
+    const std::string& topic = message.connection.topic;
+    JointState state;
+    try {
+      state = readJointState(message.data);
+    } catch (const BagError& error) {
+      bag_->fail(message, error);
     }
-    take(index_.at(globalName(instance.getTopic())), toSample(*message), instance.getTime());
-  }
+    take(index_.at(globalName(topic)), toSample(state), message.recorded);
+    return true;
+  });
 }
 
 }  // namespace tissue_contact

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <ros/time.h>
-#include <rosbag/bag.h>
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -15,29 +15,37 @@
 
 namespace tissue_contact {
 
+class BagReader;
+
+/// The file is not trusted: whatever it holds, it is read as it was recorded or refused, in memory that its size and
+/// its claims have no say in (limits: bag_reader.h). Refused are all errors of structure, with the file's name; a stamp
+/// or a position that makes no sense is the player's to refuse.
 class JointStateBag {
  public:
-  /// @param topics as JointStatePlayer::topics(). A relative name means the same as in a node without a namespace.
-  /// @throws std::runtime_error when the bag cannot be read or has a message on none of the topics.
+  /// @param file of format 2.0, compressed or not. @param topics as JointStatePlayer::topics(). A relative name means
+  ///   the same as in a node without a namespace.
+  /// @throws std::runtime_error when the bag cannot be read, has a message on none of the topics, or has on one of them
+  ///   what is no sensor_msgs/JointState.
   JointStateBag(const std::string& file, const std::vector<std::string>& topics);
+  ~JointStateBag();
+  JointStateBag(const JointStateBag&) = delete;
+  JointStateBag& operator=(const JointStateBag&) = delete;
 
   const std::set<std::string>& missingTopics() const { return missing_; }  ///< of those asked for
-  const ros::Time& begin() const { return begin_; }                        ///< when the first was recorded
-  const ros::Time& end() const { return end_; }
+  const ros::Time& begin() const;                                          ///< when the first was recorded
+  const ros::Time& end() const;
 
-  /// @param take index into the topics, sample, time of recording.
-  /// @throws std::runtime_error for a message that is no sensor_msgs/JointState.
+  /// By time of recording; among equal times as rosbag::View has them.
+  /// @param take index into the topics, sample, time of recording. What it throws goes through.
+  /// @throws std::runtime_error at the first place where the bag is damaged.
   void forEach(const std::function<void(int topic, JointStateSample sample, ros::Time recorded)>& take) const;
 
  private:
   void findTopics();
 
-  std::string file_;
-  rosbag::Bag bag_;
+  std::unique_ptr<BagReader> bag_;
   std::map<std::string, int> index_;  ///< by global name
-  std::vector<std::string> found_;    ///< as the bag spells them
   std::set<std::string> missing_;
-  ros::Time begin_, end_;
 };
 
 /// "a, b", or "none".

@@ -1,0 +1,352 @@
+/// @file
+/// Joint states of a bag: those that were recorded, in rosbag's order, and from a bag that somebody has spoilt or made
+/// up nothing but an error. rosbag itself reads outside its buffers, or takes gigabytes, on most of the bags here.
+
+#include "tissue_contact/ros/joint_state_bag.h"
+
+#include <gtest/gtest.h>
+#include <rosbag/view.h>
+#include <std_msgs/String.h>
+#include <sys/stat.h>
+
+#include <functional>
+#include <iostream>
+#include <optional>
+#include <random>
+#include <tuple>
+
+#include "unit/ros/bag_fixture.h"
+
+namespace tissue_contact {
+namespace {
+
+using rosbag::compression::BZ2;
+using rosbag::compression::LZ4;
+using rosbag::compression::Uncompressed;
+
+/// Topic, stamp, first name, positions, time of recording.
+using Row = std::tuple<int, std::int64_t, std::string, std::vector<double>, std::uint64_t>;
+
+std::vector<Row> rowsOf(const std::string& file, const std::vector<std::string>& topics = {kTopic}) {
+  std::vector<Row> rows;
+  JointStateBag(file, topics).forEach([&](int topic, const JointStateSample& sample, ros::Time recorded) {
+    const std::string name = sample.names.empty() ? "" : sample.names.front();
+    rows.emplace_back(topic, sample.stamp_ns, name, sample.positions, recorded.toNSec());
+  });
+  return rows;
+}
+
+/// What reading says; nothing when it succeeds.
+std::optional<std::string> errorOf(const std::string& file) {
+  try {
+    rowsOf(file);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return std::nullopt;
+}
+
+class JointStateBagTest : public testing::Test {
+ protected:
+  std::string write(const std::string& name, const std::string& bytes) const {
+    writeBytes(directory_.file(name), bytes);
+    return directory_.file(name);
+  }
+
+  std::string sound(int count = 100, rosbag::CompressionType compression = Uncompressed,
+                    std::uint32_t chunk_bytes = 768 * 1024) const {
+    writeJointStates(directory_.file("sound.bag"), count, compression, chunk_bytes);
+    return readBytes(directory_.file("sound.bag"));
+  }
+
+  void expectRefused(const std::string& bytes, const std::vector<std::string>& words) const {
+    const std::string file = write("spoilt.bag", bytes);
+    const std::optional<std::string> error = errorOf(file);
+    ASSERT_TRUE(error) << "not refused: " << words.front();
+    EXPECT_NE(error->find("bag '" + file + "'"), std::string::npos) << *error;
+    for (const std::string& word : words) EXPECT_NE(error->find(word), std::string::npos) << *error;
+  }
+
+  TemporaryDirectory directory_;
+};
+
+/// Seeded; times of recording repeat, go back and forth across chunks, and differ from the stamps; some topics have
+/// several publishers.
+void writeShuffled(const std::string& file, unsigned seed, rosbag::CompressionType compression) {
+  std::mt19937 random(seed);
+  rosbag::Bag bag(file, rosbag::bagmode::Write);
+  bag.setCompression(compression);
+  bag.setChunkThreshold(700);  // some four messages
+  for (int i = 0; i < 400; ++i) {
+    const unsigned connection = random() % 6;
+    sensor_msgs::JointState state = jointState(i);
+    state.name = {"publisher " + std::to_string(connection), "other"};
+    auto header = boost::make_shared<ros::M_string>();
+    (*header)["callerid"] = "/publisher" + std::to_string(connection);
+    (*header)["type"] = "sensor_msgs/JointState";
+    (*header)["md5sum"] = ros::message_traits::md5sum(state);
+    (*header)["message_definition"] = ros::message_traits::definition(state);
+    const unsigned time = static_cast<unsigned>(i) / 10 + random() % (random() % 8 == 0 ? 30 : 3);
+    bag.write("/topic" + std::to_string(connection % 3), ros::Time(100 + time / 8, 1000000 * (time % 8)), state,
+              header);
+  }
+}
+
+std::vector<Row> rowsOfRosbag(const std::string& file, const std::vector<std::string>& topics) {
+  std::vector<Row> rows;
+  const rosbag::Bag bag(file);
+  rosbag::View view(bag, rosbag::TopicQuery(topics));
+  for (const rosbag::MessageInstance& instance : view) {
+    const auto state = instance.instantiate<sensor_msgs::JointState>();
+    const int topic = static_cast<int>(std::find(topics.begin(), topics.end(), instance.getTopic()) - topics.begin());
+    rows.emplace_back(topic, static_cast<std::int64_t>(state->header.stamp.toNSec()), state->name.front(),
+                      state->position, instance.getTime().toNSec());
+  }
+  return rows;
+}
+
+TEST_F(JointStateBagTest, OrderIsRosbags) {
+  const std::vector<std::string> topics{"/topic2", "/topic0"};
+  for (const auto compression : {Uncompressed, BZ2, LZ4}) {
+    for (unsigned seed = 0; seed < 30; ++seed) {
+      const std::string file = directory_.file("shuffled.bag");
+      writeShuffled(file, seed, compression);
+      const std::vector<Row> expected = rowsOfRosbag(file, topics);
+      ASSERT_GT(expected.size(), 200u);
+      ASSERT_EQ(rowsOf(file, topics), expected) << "seed " << seed << ", compression " << compression;
+      const rosbag::Bag bag(file);
+      rosbag::View view(bag, rosbag::TopicQuery(topics));
+      const JointStateBag ours(file, topics);
+      EXPECT_EQ(ours.begin(), view.getBeginTime());
+      EXPECT_EQ(ours.end(), view.getEndTime());
+    }
+  }
+}
+
+TEST_F(JointStateBagTest, RecordingOfARealRobotIsRosbags) {
+  const std::string file = TISSUE_CONTACT_SHARED_DATA "/dvrk/psm2_classic_motion.bag";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recording at " << file;
+  const std::vector<std::string> topics{"/PSM2/measured_js", "/PSM2/setpoint_js"};
+  EXPECT_EQ(rowsOf(file, topics), rowsOfRosbag(file, topics));
+}
+
+TEST_F(JointStateBagTest, MessagesOfOtherTopicsArePassedOver) {
+  const std::string file = directory_.file("camera.bag");
+  {
+    rosbag::Bag bag(file, rosbag::bagmode::Write);
+    bag.setChunkThreshold(1 << 16);
+    std_msgs::String image;
+    image.data.assign(1 << 20, 'x');
+    for (int i = 0; i < 30; ++i) {
+      bag.write("/camera", jointState(i).header.stamp, image);
+      bag.write(kTopic, jointState(i).header.stamp, jointState(i));
+    }
+  }
+  EXPECT_EQ(rowsOf(file), rowsOfRosbag(file, {kTopic}));
+}
+
+TEST_F(JointStateBagTest, FileThatIsNoBag) {
+  const std::string none = directory_.file("none.bag");
+  const std::optional<std::string> missing = errorOf(none);
+  ASSERT_TRUE(missing);
+  EXPECT_EQ(*missing, "bag '" + none + "': no such file");
+  expectRefused("", {"empty"});
+  expectRefused("not a bag, but a text", {"no ROS bag"});
+  expectRefused("#ROSBAG V2.0\n", {"cut off"});
+  expectRefused(patched(sound(), 0, "#ROSBAG V1.2\n"), {"format 1.2", "rosbag filter"});
+  // None of these may be waited for or read without end.
+  const std::string pipe = directory_.file("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& file : {pipe, directory_.file(""), std::string("/dev/zero")}) {
+    const std::optional<std::string> error = errorOf(file);
+    ASSERT_TRUE(error) << file;
+    EXPECT_NE(error->find("bag '" + file + "': not a regular file"), std::string::npos) << *error;
+  }
+}
+
+/// A length of 2^28 in a bag of some kilobytes was 8.4 GB.
+TEST_F(JointStateBagTest, LengthsInAMessageAreCheckedBeforeMemoryIsTaken) {
+  const std::string bytes = sound();
+  const RecordPlace message = messageOf(bytes, 50);
+  // After sequence number, stamp and the empty frame's length: count of names, "yaw", "pitch", count of positions.
+  const std::size_t names = message.data + 16;
+  const std::size_t positions = names + 4 + 4 + 3 + 4 + 5;
+  ASSERT_EQ(numberAt<std::uint32_t>(bytes, names), 2u);
+  ASSERT_EQ(numberAt<std::uint32_t>(bytes, positions), 2u);
+  const std::size_t before = peakMemory();
+  for (const std::size_t place : {names - 4, names, names + 4, positions, positions + 20, positions + 24}) {
+    for (const std::uint32_t length : {1U << 28U, 0xffffffffU}) {
+      expectRefused(patched(bytes, place, bytesOf(length)),
+                    {kTopic, "1000.05", std::to_string(length), "copy it again"});
+    }
+  }
+  EXPECT_LT(peakMemory() - before, std::size_t{16} << 20U);  // of bags of 20 kB; the test's own copies are in it
+}
+
+TEST_F(JointStateBagTest, LengthsInRecords) {
+  const std::string bytes = sound();
+  const RecordPlace chunk = recordOf(bytes, kChunkOp);
+  const RecordPlace message = messageOf(bytes, 50);
+  const RecordPlace last = messageOf(bytes, 99);
+  const std::size_t before = peakMemory();
+  for (const std::uint32_t length : {0x00ffffffU, 0x7fffffffU, 0xffffffffU}) {
+    const std::string number = bytesOf(length);
+    expectRefused(patched(bytes, message.position, number), {"chunk at byte", std::to_string(length), "copy it again"});
+    expectRefused(patched(bytes, message.position + 4, number), {"header field", "copy it again"});
+    expectRefused(patched(bytes, message.data - 4, number), {"chunk at byte", std::to_string(length)});
+    expectRefused(patched(bytes, last.data - 4, number), {"chunk at byte", std::to_string(length)});
+    expectRefused(patched(bytes, chunk.position, number), {std::to_string(length)});
+    expectRefused(patched(bytes, chunk.data - 4, number), {std::to_string(length)});
+    expectRefused(patched(bytes, chunk.field.at("size"), number), {"chunk at byte", std::to_string(length)});
+  }
+  expectRefused(patched(bytes, last.data - 4, bytesOf(last.size - 4)), {kTopic, "cut off"});
+  expectRefused(patched(bytes, last.data - 4, bytesOf(last.size + 1)), {"chunk at byte"});
+  expectRefused(patched(bytes, message.field.at("op"), "\x03"), {"chunk at byte", "no message"});
+  expectRefused(patched(bytes, message.field.at("time"), bytesOf(~std::uint64_t{0})), {"4294967295 ns"});
+  EXPECT_LT(peakMemory() - before, std::size_t{16} << 20U);
+}
+
+/// An offset beyond its chunk was a segmentation fault.
+TEST_F(JointStateBagTest, IndexThatDoesNotFit) {
+  const std::string bytes = sound(300, Uncompressed, 4000);
+  const RecordPlace index = recordOf(bytes, kIndexOp, 1);
+  const RecordPlace connection = recordOf(bytes, kConnectionOp);
+  const std::size_t head = 13;
+  const RecordPlace header = recordsOf(bytes, head, bytes.size()).front();
+  const std::string too_many = bytesOf(0xffffffffU);
+  expectRefused(patched(bytes, index.data + 12 * 5 + 8, bytesOf(0x7fffffffU)), {"beyond its chunk", "reindex"});
+  expectRefused(patched(bytes, index.data + 12 * 5 + 8, bytesOf(9000U)), {"beyond its chunk", "reindex"});
+  expectRefused(patched(bytes, index.field.at("count"), too_many), {"count", "reindex"});
+  expectRefused(patched(bytes, index.field.at("count"), bytesOf(1U)), {"count", "reindex"});
+  expectRefused(patched(bytes, index.field.at("ver"), bytesOf(2U)), {"version", "reindex"});
+  expectRefused(patched(bytes, index.data, bytesOf(ros::Time(999, 0))), {kTopic, "index", "reindex"});
+  expectRefused(patched(bytes, index.data, bytesOf(std::uint64_t{0})), {kTopic, "index", "reindex"});
+  expectRefused(patched(bytes, index.data, bytesOf(~std::uint64_t{0})), {"4294967295 ns", "reindex"});
+  expectRefused(patched(bytes, index.data, bytesOf(ros::Time(4000000000U, 0))), {"4000000000 s", "68 years"});
+  expectRefused(patched(bytes, header.field.at("conn_count"), too_many), {"4294967295", "reindex"});
+  expectRefused(patched(bytes, header.field.at("chunk_count"), too_many), {"4294967295", "reindex"});
+  expectRefused(patched(bytes, header.field.at("index_pos"), bytesOf(std::uint64_t{0})), {"no index", "reindex"});
+  expectRefused(patched(bytes, header.field.at("index_pos"), bytesOf(std::uint64_t{1} << 62U)), {"cut off", "reindex"});
+  expectRefused(patched(bytes, header.field.at("index_pos"), bytesOf(~std::uint64_t{0})), {"cut off", "reindex"});
+  expectRefused(patched(bytes, index.field.at("conn"), bytesOf(7U)), {"not listed", "reindex"});
+  expectRefused(patched(bytes, connection.field.at("topic") - 6, "t0pic"), {"'topic' is missing", "reindex"});
+  expectRefused(patched(bytes, bytes.find("md5sum=", connection.data), "md5sun="), {"'md5sum' is missing", "reindex"});
+}
+
+/// A chunk whose index names another connection would lose its joint states without a word.
+TEST_F(JointStateBagTest, IndexOfAnotherConnection) {
+  {
+    rosbag::Bag bag(directory_.file("two.bag"), rosbag::bagmode::Write);
+    bag.setChunkThreshold(4000);
+    bag.write("/other", ros::Time(999), jointState(0));
+    for (int i = 0; i < 100; ++i) bag.write(kTopic, jointState(i).header.stamp, jointState(i));
+  }
+  const std::string bytes = readBytes(directory_.file("two.bag"));
+  expectRefused(patched(bytes, recordOf(bytes, kIndexOp, 2).field.at("conn"), bytesOf(0U)), {kTopic, "100", "reindex"});
+}
+
+/// What rosbag does not look at either: joint states are found by reading the chunks.
+TEST_F(JointStateBagTest, SummaryOfChunksIsNotNeeded) {
+  const std::string bytes = sound(300, Uncompressed, 4000);
+  const std::vector<Row> rows = rowsOf(directory_.file("sound.bag"));
+  const RecordPlace summary = recordOf(bytes, kChunkInfoOp, 1);
+  for (const char* field : {"chunk_pos", "start_time", "end_time"}) {  // a range of time back to front, too
+    const std::string file = write("spoilt.bag", patched(bytes, summary.field.at(field), bytesOf(~std::uint64_t{0})));
+    EXPECT_EQ(rowsOf(file), rows) << field;
+  }
+}
+
+TEST_F(JointStateBagTest, TypeAndDefinition) {
+  const std::string bytes = sound();
+  const std::string sum = ros::message_traits::md5sum<sensor_msgs::JointState>();
+  std::string other = bytes;
+  for (std::size_t at = 0; (at = other.find(sum, at)) != std::string::npos;) other[at] = '!';
+  expectRefused(other, {kTopic, "another definition", "!" + sum.substr(1), sum});
+  {
+    rosbag::Bag bag(directory_.file("strings.bag"), rosbag::bagmode::Write);
+    bag.write(kTopic, ros::Time(1), std_msgs::String());
+  }
+  expectRefused(readBytes(directory_.file("strings.bag")), {kTopic, "std_msgs/String", "sensor_msgs/JointState"});
+  {
+    rosbag::Bag bag(directory_.file("others.bag"), rosbag::bagmode::Write);
+    bag.write("/other", ros::Time(1), jointState(1));
+  }
+  expectRefused(readBytes(directory_.file("others.bag")), {kTopic, "/other"});
+}
+
+/// The player refuses such a stamp and counts it; the messages before and behind it are played.
+TEST_F(JointStateBagTest, ImpossibleStampIsHandedOver) {
+  const std::string bytes = sound();
+  const std::string all_ones = bytesOf(~std::uint64_t{0});
+  const std::vector<Row> rows = rowsOf(write("spoilt.bag", patched(bytes, messageOf(bytes, 50).data + 4, all_ones)));
+  ASSERT_EQ(rows.size(), 100u);
+  constexpr std::int64_t kLastStamp_ns = 4294967295999999999;  // of ROS time
+  EXPECT_GT(std::get<1>(rows[50]), kLastStamp_ns);
+  EXPECT_EQ(std::get<1>(rows[51]), 1000051000000);
+}
+
+class CompressedBag : public JointStateBagTest, public testing::WithParamInterface<rosbag::CompressionType> {};
+
+INSTANTIATE_TEST_SUITE_P(AllKinds, CompressedBag, testing::Values(Uncompressed, BZ2, LZ4));
+
+TEST_P(CompressedBag, CutAtEveryPercent) {
+  const std::string bytes = sound(400, GetParam(), 4000);
+  const std::vector<Row> rows = rowsOf(directory_.file("sound.bag"));
+  ASSERT_EQ(rows.size(), 400u);
+  const std::size_t first_chunk = recordOf(bytes, kChunkOp).position;
+  const std::size_t before = peakMemory();
+  for (std::size_t percent = 1; percent < 100; ++percent) {
+    SCOPED_TRACE(percent);
+    const std::string cut = bytes.substr(0, bytes.size() * percent / 100);
+    if (cut.size() < first_chunk) {
+      expectRefused(cut, {"copy it again"});  // reindexing has nothing to work on
+    } else {
+      expectRefused(cut, {"cut off", "rosbag reindex"});
+    }
+  }
+  EXPECT_EQ(rowsOf(write("whole.bag", bytes)), rows);
+  EXPECT_LT(peakMemory() - before, std::size_t{16} << 20U);
+}
+
+/// Where the index lies, byte by byte.
+TEST_P(CompressedBag, CutInTheIndex) {
+  const std::string bytes = sound(400, GetParam(), 4000);
+  const std::size_t index = recordOf(bytes, kConnectionOp).position;
+  const std::string file = write("cut.bag", bytes);
+  for (std::size_t size = bytes.size() - 1; size >= index; --size) {
+    std::filesystem::resize_file(file, size);
+    const std::optional<std::string> error = errorOf(file);
+    ASSERT_TRUE(error) << size;
+    ASSERT_EQ(error->find("bag '" + file + "': its index is cut off or damaged"), 0u) << *error;
+    ASSERT_NE(error->find("rosbag reindex"), std::string::npos) << *error;
+  }
+}
+
+/// Two bits of each byte in turn: an error that names the file, or as many joint states as there were.
+TEST_P(CompressedBag, EveryByteSpoilt) {
+  const std::string bytes = sound(60, GetParam(), 4000);
+  const std::string file = write("spoilt.bag", bytes);
+  std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+  const auto put = [&](std::size_t at, char byte) { stream.seekp(static_cast<std::streamoff>(at)).put(byte).flush(); };
+  const std::size_t before = peakMemory();
+  int refused = 0;
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    if (bytes[at] == ' ') continue;  // padding of the header
+    for (const char mask : {'\x01', '\x40'}) {
+      put(at, static_cast<char>(bytes[at] ^ mask));
+      try {
+        ASSERT_EQ(rowsOf(file).size(), 60u) << "byte " << at;
+      } catch (const std::runtime_error& error) {
+        ASSERT_EQ(std::string(error.what()).find("bag '" + file + "': "), 0u) << error.what();
+        ++refused;
+      }
+    }
+    put(at, bytes[at]);
+  }
+  EXPECT_EQ(rowsOf(file).size(), 60u);
+  EXPECT_GT(refused, 1000);  // lengths, kinds, names; what is left are values
+  EXPECT_LT(peakMemory() - before, std::size_t{16} << 20U);
+}
+
+}  // namespace
+}  // namespace tissue_contact
