@@ -60,16 +60,14 @@ ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
     if (known == keys.end()) throw std::invalid_argument("unknown argument '" + arguments[i] + "'; see --help");
     if (!known->second->empty()) throw std::invalid_argument("argument " + key + " is given twice");
     const bool in_next = equals == std::string::npos;
-    if (in_next && i + 1 < arguments.size()) *known->second = arguments[++i];
+    // "--csv --urdf x": a forgotten value, no file of that name.
+    if (in_next && i + 1 < arguments.size() && arguments[i + 1].rfind("--", 0) != 0) *known->second = arguments[++i];
     if (!in_next) *known->second = arguments[i].substr(equals + 1);
     requireGiven(*known->second, key);
   }
   requireGiven(options.scene_file, "--scene");
   requireGiven(options.bag_file, "--bag");
   requireGiven(options.csv_file, "--csv");
-  if (options.timing_file == options.csv_file) {
-    throw std::invalid_argument("--timing and --csv name the same file '" + options.csv_file + "'; give two");
-  }
   if (!dump_step.empty() || !options.dump_file.empty()) {
     requireGiven(dump_step, "--dump-step");
     requireGiven(options.dump_file, "--dump-file");
