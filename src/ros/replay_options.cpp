@@ -32,13 +32,16 @@ std::string replayUsage() {
          "  --scene FILE  the scene (doc/scene.md)\n"
          "  --bag FILE    a ROS bag with the scene's joint-state topics; tf frames are taken from its /tf_static and "
          "/tf\n"
-         "  --csv FILE    the result; replaced when the replay is complete, untouched when it fails\n"
+         "  --csv FILE    the result; replaced when the replay is complete, untouched when it fails or is interrupted\n"
          "  --urdf FILE   text for the robot_description parameter that the scene takes its URDF from\n"
          "  --timing FILE   wall times of this run, one line per simulated interval; replaced or untouched as the CSV\n"
          "  --dump-step N   with --dump-file: write the contact problem of implicit step N (from 1), for "
          "tissue_contact_solve\n"
+         "  --dump-file FILE  where to; replaced when that step is taken\n"
          "  --help        this text\n"
          "\n"
+         "Results replace regular files only, and keep their permissions: no input, link, device, FIFO or folder.\n"
+         "Inputs must be regular files.\n"
          "Exit code: 0 when the CSV was written, 1 with a message on stderr otherwise.\n";
 }
 

@@ -195,7 +195,7 @@ class FilesTest(unittest.TestCase):
                 for name in ["out.csv", "times.csv", "p.txt"]:
                     self.write(name)
                 more = {"--csv": [], "--timing": ["--timing", self.path("times.csv")],
-                        "--dump-file": ["--dump-step", "15", "--dump-file", self.path("p.txt")]}[option]
+                        "--dump-file": ["--dump-step", "50", "--dump-file", self.path("p.txt")]}[option]
                 # The longer recording, so that the times alone are more than may be written.
                 done = self.replay(*more, bag=self.long_bag if option == "--timing" else self.bag,
                                    preexec_fn=limit_file_size)
@@ -267,6 +267,38 @@ class FilesTest(unittest.TestCase):
                                       timeout=DEADLINE_S, check=False)
                 self.assertNotEqual(done.returncode, 0)
                 self.assertIn("No space left on device", done.stderr)
+
+    # ------------------------------------------------------------------ the scripts
+
+    def make_bag(self, output, table=None):
+        table = table or os.path.join(SOURCE, "config", "grasp_path.csv")
+        return run([sys.executable, os.path.join(SOURCE, "scripts", "make_joint_bag.py"), table, output, "--topic", "/a"])
+
+    def test_scripts_write_whole_files(self):
+        bag = self.write("out.bag")
+        os.chmod(bag, 0o600)
+        self.write("victim")
+        os.symlink("victim", bag + ".part")
+        done = self.make_bag(bag)
+        self.assertEqual(done.returncode, 0, done)
+        self.assertEqual(stat.S_IMODE(os.stat(bag).st_mode), 0o600)
+        self.assertTrue(self.read("out.bag").startswith(b"#ROSBAG"))
+        self.assertEqual(self.read("victim"), BEFORE)
+        self.assertEqual(sorted(os.listdir(self.directory)), ["out.bag", "out.bag.part", "victim"])
+
+    def test_scripts_refuse_what_is_no_result(self):
+        table = self.copy(os.path.join(SOURCE, "config", "grasp_path.csv"), "table.csv")
+        os.symlink("table.csv", self.path("link"))
+        os.mkfifo(self.path("fifo"))
+        before = self.read("table.csv")
+        for name, what in [("table.csv", "the same file as the input"), ("link", "the same file as the input"),
+                           ("fifo", "FIFO"), ("", "directory"), ("none/x.bag", "No such file or directory")]:
+            with self.subTest(name=name):
+                done = self.make_bag(self.path(name), table)
+                self.assertEqual(done.returncode, 1, done)
+                self.assertIn(what, done.stderr)
+        self.assertEqual(self.read("table.csv"), before)
+        self.assertEqual(sorted(os.listdir(self.directory)), ["fifo", "link", "table.csv"])
 
     # ------------------------------------------------------------------ inputs are plain files
 
