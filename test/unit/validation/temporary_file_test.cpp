@@ -21,7 +21,7 @@ TEST(TemporaryFile, IsPrivateAndGoneAfterwards) {
   {
     const TemporaryFile file("cone.stl", "solid");
     path = file.path();
-    struct stat status{};
+    struct stat status {};
     ASSERT_EQ(stat(path.c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 07777u, 0600u);
     std::ostringstream text;
