@@ -12,6 +12,9 @@ import genpy
 import rosbag
 from sensor_msgs.msg import JointState
 
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
+from whole_file import whole_file
+
 TOPIC = "/probe/joint_states"
 RATE_HZ = 500
 START_S = 1700000000  # a fixed wall-clock time, so that the recording does not depend on when it was made
@@ -61,14 +64,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("output", nargs="?", default=os.path.normpath(default), help="default: %(default)s")
     arguments = parser.parse_args()
-    part = arguments.output + ".part"
     count = 0
     try:
-        with rosbag.Bag(part, "w", compression=rosbag.Compression.BZ2) as bag:
+        with whole_file(arguments.output) as part, rosbag.Bag(part, "w", compression=rosbag.Compression.BZ2) as bag:
             for stamp, message in messages():
                 bag.write(TOPIC, message, stamp)
                 count += 1
-        os.replace(part, arguments.output)
     except OSError as error:
         sys.exit("make_demo_bag.py: cannot write %s: %s" % (arguments.output, error.strerror))
     print("%s: %d joint states on %s" % (arguments.output, count, TOPIC))

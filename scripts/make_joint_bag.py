@@ -16,6 +16,9 @@ import genpy
 import rosbag
 from sensor_msgs.msg import JointState
 
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
+from whole_file import whole_file
+
 RATE_HZ = 500
 START_S = 1700000000  # a fixed wall-clock time, so that the recording does not depend on when it was made
 
@@ -76,14 +79,13 @@ def main():
     parser.add_argument("--topic", required=True, help="joint-state topic of the scene, such as /PSM1/joint_states")
     arguments = parser.parse_args()
     names, rows = read_table(arguments.table)
-    part = arguments.output + ".part"
     count = 0
     try:
-        with rosbag.Bag(part, "w", compression=rosbag.Compression.BZ2) as bag:
+        with whole_file(arguments.output, [arguments.table]) as part, \
+                rosbag.Bag(part, "w", compression=rosbag.Compression.BZ2) as bag:
             for stamp, message in messages(names, rows):
                 bag.write(arguments.topic, message, stamp)
                 count += 1
-        os.replace(part, arguments.output)
     except OSError as error:
         fail("cannot write %s: %s" % (arguments.output, error.strerror))
     print("%s: %d joint states on %s" % (arguments.output, count, arguments.topic))

@@ -22,6 +22,8 @@ import sys
 import rosbag
 import yaml
 
+from whole_file import whole_file
+
 PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 SCENES = {
     "press-drag": "Press and drag",
@@ -264,7 +266,7 @@ def main():
         parts.append("Speed against error: the quick grid, with fewer settings and meshes than the full one.")
     parts += validation_section(results) + speed_section(out) + advisor_section(advisor_file)
     doc = os.path.join(PACKAGE, "doc")
-    with open(os.path.join(doc, "validation.md"), "w", encoding="utf-8") as stream:
+    with whole_file(os.path.join(doc, "validation.md")) as part, open(part, "w", encoding="utf-8") as stream:
         stream.write("\n\n".join(parts) + "\n")
     for name in list(SCENES) + ["growth"]:
         picture = os.path.join(out, name + ".png")

@@ -30,6 +30,9 @@ from sensor_msgs.msg import JointState
 
 from tissue_contact.msg import ContactArray, ContactPoint, TissueMesh, TissueTopology
 
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
+from whole_file import whole_file
+
 QUIET_S = 10.0  # so long after the last joint state the node has either answered or never will
 RVIZ_START_S = 30.0
 LAUNCH_END_S = 10.0  # roslaunch ends its nodes within this, us among them
@@ -200,7 +203,8 @@ def finish(pyplot, figure, axes, end, path):
     axes.set_xlim(0.0, max(end, 1e-3))
     axes.legend(loc="best", fontsize=9)
     figure.tight_layout()
-    figure.savefig(path)
+    with whole_file(path) as part:
+        figure.savefig(part)
     pyplot.close(figure)
     return path
 
@@ -313,8 +317,11 @@ def main():
         fail("the node gave no wrench; its warnings say why")
     if not answered:
         print("the last joint state has no wrench; the node's warnings say why", flush=True)
-    for path in plot(recorder, friction_of(rospy.get_param(arguments.node + "/scene")), arguments.output):
-        print("wrote " + path, flush=True)
+    try:
+        for path in plot(recorder, friction_of(rospy.get_param(arguments.node + "/scene")), arguments.output):
+            print("wrote " + path, flush=True)
+    except OSError as error:
+        fail("cannot write %s: %s" % (error.filename, error.strerror))
     if os.environ.get("TISSUE_CONTACT_DONE_FILE"):
         with open(os.environ["TISSUE_CONTACT_DONE_FILE"], "w", encoding="utf-8"):
             pass

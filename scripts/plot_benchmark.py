@@ -21,6 +21,9 @@ except ImportError:
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
+from whole_file import whole_file  # noqa: E402
+
 SCENES = ["press-drag", "grasp", "partial-slip", "robot"]
 TITLES = {
     "press-drag": "Press and drag",
@@ -169,7 +172,15 @@ def plot_scene(rows, folder, scene):
         1e3 * next(r["dt_s"] for r in rows if r["shipped"])), fontsize=12)
     lines = legend(figure, rows, markers)
     figure.tight_layout(rect=(0, 0.035 * lines + 0.02, 1, 1))
-    figure.savefig(os.path.join(folder, scene + ".png"), dpi=100)
+    save(figure, os.path.join(folder, scene + ".png"))
+
+
+def save(figure, file):
+    try:
+        with whole_file(file) as part:
+            figure.savefig(part, dpi=100)
+    except OSError as error:
+        sys.exit("plot_benchmark.py: cannot write %s: %s" % (file, error.strerror))
     plt.close(figure)
 
 
@@ -207,8 +218,7 @@ def plot_growth(rows, folder):
         plain(axes.yaxis)
     figure.suptitle("Press and drag, shipped solver, %g ms steps, one core" % (1e3 * shipped["dt_s"]), fontsize=12)
     figure.tight_layout()
-    figure.savefig(os.path.join(folder, "growth.png"), dpi=100)
-    plt.close(figure)
+    save(figure, os.path.join(folder, "growth.png"))
     return True
 
 

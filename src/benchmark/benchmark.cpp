@@ -6,12 +6,14 @@
 
 #include <exception>
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 #include "benchmark/progress.h"
 #include "benchmark/sweep.h"
 #include "benchmark/table.h"
+#include "tissue_contact/core/read_file.h"
+#include "tissue_contact/core/whole_file.h"
 #include "validation/package_directory.h"
 
 namespace tissue_contact {
@@ -75,31 +77,43 @@ void plot(const std::string& directory, std::ostream& out) {
   out << "no pictures; to make them: python3 " << script << " " << directory << "\n";
 }
 
-void write(const SceneResult& result, const std::string& directory) {
-  const std::string name = directory + "/" + result.scene + ".csv";
-  std::ofstream csv(name);
-  writeCsv(result, csv);
-  if (!csv.flush()) throw std::runtime_error("cannot write '" + name + "'");
+std::string summaryFile(const BenchmarkOptions& options) { return options.out_directory + "/summary.txt"; }
+
+std::string tableFile(const BenchmarkOptions& options, const std::string& scene) {
+  return options.out_directory + "/" + scene + ".csv";
 }
 
-void runScenes(const BenchmarkOptions& options, std::ostream& out, std::ostream* bar) {
+/// What would otherwise show after half an hour.
+void prepareFolder(const BenchmarkOptions& options, const std::vector<ScenePlan>& plans) {
   std::error_code error;
   std::filesystem::create_directories(options.out_directory, error);
   if (error) throw std::runtime_error("--out: cannot make '" + options.out_directory + "': " + error.message());
+  std::vector<NamedFile> outputs = {{"summary", summaryFile(options)}};
+  for (const ScenePlan& plan : plans) outputs.push_back({"table", tableFile(options, plan.scene.name)});
+  requireFreeOutputs(outputs, {{"--robot-bag", options.scenes.robot_bag}});
+}
+
+void runScenes(const BenchmarkOptions& options, std::ostream& out, std::ostream* bar) {
+  if (!options.scenes.robot_bag.empty()) requireRegularFile(options.scenes.robot_bag, "bag");
   const std::vector<ScenePlan> plans = plansFor(options, out);
+  prepareFolder(options, plans);
   double work = 0.0;
   for (const ScenePlan& plan : plans) work += sweepWork(plan, options.scenes);
   Progress progress(bar, work);
-  std::ofstream summary(options.out_directory + "/summary.txt");
+  std::ostringstream summary;
   for (const ScenePlan& plan : plans) {
     const SceneResult result = sweep(plan, options.scenes, progress);
-    write(result, options.out_directory);
+    WholeFile table(tableFile(options, result.scene));
+    writeCsv(result, table.stream());
+    table.commit();
     progress.clear();
     printSummary(result, out);
+    requireWritten(out);
     printSummary(result, summary);
-    out << std::flush;
+    WholeFile text(summaryFile(options));  // after every scene: the next may take long, or fail
+    text.stream() << summary.str();
+    text.commit();
   }
-  if (!summary.flush()) throw std::runtime_error("cannot write '" + options.out_directory + "/summary.txt'");
   out << "\ntables: " << options.out_directory << "\n";
   if (options.plot) plot(options.out_directory, out);
 }
@@ -114,15 +128,18 @@ int runBenchmark(const std::vector<std::string>& arguments, std::ostream& out, s
     messages << "tissue_contact_benchmark: " << error.what() << '\n' << kUsage;
     return 2;
   }
-  if (options.help) {
-    out << kUsage;
-    return 0;
-  }
   std::ostream* const bar = show_bar ? &messages : nullptr;
   try {
-    if (!options.own.scene_file.empty()) return reportOwnScene(options.own, out, bar) ? 0 : 1;
-    runScenes(options, out, bar);
-    return 0;
+    int code = 0;
+    if (options.help) {
+      out << kUsage;
+    } else if (!options.own.scene_file.empty()) {
+      code = reportOwnScene(options.own, out, bar) ? 0 : 1;
+    } else {
+      runScenes(options, out, bar);
+    }
+    requireWritten(out);
+    return code;
   } catch (const std::exception& error) {
     messages << "tissue_contact_benchmark: " << error.what() << '\n';
     return 1;

@@ -72,7 +72,7 @@ BenchmarkOptions parseBenchmarkOptions(const std::vector<std::string>& arguments
     const auto found = values.find(key);
     if (found == values.end()) throw std::invalid_argument("unknown argument '" + arguments[i] + "'");
     const bool in_next = equals == std::string::npos;
-    if (in_next && i + 1 < arguments.size())
+    if (in_next && i + 1 < arguments.size() && arguments[i + 1].rfind("--", 0) != 0)
       *found->second = arguments[++i];
     else
       *found->second = in_next ? "" : arguments[i].substr(equals + 1);

@@ -10,6 +10,7 @@
 #include "benchmark/measures.h"
 #include "benchmark/progress.h"
 #include "benchmark/verdict.h"
+#include "tissue_contact/core/read_file.h"
 #include "tissue_contact/ros/environment.h"
 #include "tissue_contact/scene/load_scene.h"
 
@@ -28,6 +29,7 @@ std::string yamlNumber(double value) {
 class OwnScene {
  public:
   OwnScene(const OwnSceneOptions& options, std::ostream& out, std::ostream* bar) : out_(out), progress_(bar, kWork) {
+    requireRegularFile(options.bag_file, "bag");
     scene_.scene = loadScene(options.scene_file, packagePath);
     scene_.scene.solver.time_budget_s = 0.0;  // its answers would depend on the machine
     scene_.environment = bagEnvironment(options.bag_file, options.urdf_file, scene_.scene.world_frame);

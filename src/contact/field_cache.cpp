@@ -1,18 +1,20 @@
 #include "contact/field_cache.h"
 
-#include <unistd.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <cstring>
+#include <exception>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 #include <utility>
 #include <vector>
+
+#include "tissue_contact/core/read_file.h"
+#include "tissue_contact/core/whole_file.h"
 
 namespace tissue_contact {
 namespace {
@@ -22,6 +24,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kFormat = 1;  // raise it when the samples or this file change
 constexpr std::uintmax_t kMostBytes = 256u << 20;
 constexpr const char* kExtension = ".field";
+constexpr std::size_t kKeyDigits = 32;
 
 /// Fowler, Noll and Vo's hash over 64-bit words.
 class Hash {
@@ -49,7 +52,7 @@ class Hash {
 struct Header {
   std::array<char, 8> magic = {'T', 'C', 'F', 'I', 'E', 'L', 'D', '\n'};
   std::uint64_t format = kFormat;
-  std::array<char, 32> key{};
+  std::array<char, kKeyDigits> key{};
   std::array<std::int64_t, 3> size{};
   std::array<double, 13> numbers{};  ///< origin, spacing, low, high, deviations
   std::uint64_t checksum = 0;        ///< of all the rest
@@ -97,18 +100,27 @@ MeshField fieldOf(const Header& header, std::vector<float> samples) {
   return field;
 }
 
+/// Whether a file in the directory is one of ours: the key's digits, the extension and what follows it.
+bool isOurs(const std::string& name, const std::string& ending) {
+  return name.size() >= kKeyDigits + ending.size() && name.compare(kKeyDigits, ending.size(), ending) == 0 &&
+         name.find_first_not_of("0123456789abcdef") == kKeyDigits;
+}
+
+/// What a run that was killed has left where files cannot be without a name; one that still writes is done in minutes.
+bool isLeft(const fs::directory_entry& entry) {
+  std::error_code error;
+  return isOurs(entry.path().filename().string(), std::string(kExtension) + ".partial-") &&
+         entry.last_write_time(error) < fs::file_time_type::clock::now() - std::chrono::hours(1) && !error;
+}
+
 void removeOldest(const fs::path& directory) {
   std::vector<std::pair<fs::file_time_type, fs::path>> files;
   std::uintmax_t bytes = 0;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
-    if (entry.path().extension() != kExtension) {
-      // What a run that was killed has left; one that still writes is done within minutes.
-      const bool is_left = entry.path().filename().string().find(kExtension) != std::string::npos &&
-                           entry.last_write_time(error) < fs::file_time_type::clock::now() - std::chrono::hours(1);
-      if (is_left && !error) fs::remove(entry.path(), error);
-      continue;
-    }
+    if (isLeft(entry)) fs::remove(entry.path(), error);
+    const std::string name = entry.path().filename().string();
+    if (!isOurs(name, kExtension) || name.size() != kKeyDigits + std::strlen(kExtension)) continue;
     files.emplace_back(entry.last_write_time(error), entry.path());
     const std::uintmax_t size = entry.file_size(error);
     if (!error) bytes += size;
@@ -119,6 +131,20 @@ void removeOldest(const fs::path& directory) {
     const std::uintmax_t size = fs::file_size(path, error);
     if (!error && fs::remove(path, error)) bytes -= std::min(bytes, size);
   }
+}
+
+/// Only the last one is private to us; those above it belong to all programs.
+void makeDirectory(const std::string& directory) {
+  std::error_code error;
+  fs::create_directories(fs::path(directory).parent_path(), error);
+  mkdir(directory.c_str(), S_IRWXU);  // where it fails, writing says why
+}
+
+/// Why files there are not to be believed; empty when they are. The check sum finds damage, not forgery.
+std::string distrust(const std::string& directory) {
+  struct stat status {};
+  if (stat(directory.c_str(), &status) != 0 || (status.st_mode & S_IWOTH) == 0) return "";
+  return "everybody may write there; chmod o-w it";
 }
 
 }  // namespace
@@ -139,14 +165,16 @@ std::string fieldKey(const TriangleMesh& mesh, double sample_count) {
 }
 
 bool readField(const std::string& directory, const std::string& key, MeshField& field) {
-  if (directory.empty()) return false;
-  const fs::path file = fs::path(directory) / (key + kExtension);
-  std::error_code error;
-  const std::uintmax_t bytes = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
-  if (error || bytes < sizeof(Header) || bytes > kMostBytes) return false;
-  std::ifstream stream(file, std::ios::binary);
+  if (directory.empty() || !distrust(directory).empty()) return false;
+  std::string content;
+  try {
+    content = readFile((fs::path(directory) / (key + kExtension)).string(), "prepared mesh", kMostBytes);
+  } catch (const std::exception&) {
+    return false;
+  }
   Header header;
-  if (!stream.read(reinterpret_cast<char*>(&header), sizeof header)) return false;
+  if (content.size() < sizeof header) return false;
+  std::memcpy(&header, content.data(), sizeof header);
   if (header.magic != Header().magic || header.format != kFormat) return false;
   if (!std::equal(header.key.begin(), header.key.end(), key.begin(), key.end())) return false;
   std::uintmax_t count = 1;
@@ -154,10 +182,9 @@ bool readField(const std::string& directory, const std::string& key, MeshField& 
     if (size < 4 || size > 1 << 20 || count > kMostBytes) return false;
     count *= static_cast<std::uintmax_t>(size);
   }
-  if (bytes != sizeof header + count * sizeof(float)) return false;
+  if (content.size() != sizeof header + count * sizeof(float)) return false;
   std::vector<float> samples(count);
-  if (!stream.read(reinterpret_cast<char*>(samples.data()), static_cast<std::streamsize>(count * sizeof(float))))
-    return false;
+  std::memcpy(samples.data(), content.data() + sizeof header, count * sizeof(float));
   if (checksumOf(header, samples) != header.checksum) return false;
   field = fieldOf(header, std::move(samples));
   return true;
@@ -165,26 +192,18 @@ bool readField(const std::string& directory, const std::string& key, MeshField& 
 
 std::string writeField(const std::string& directory, const std::string& key, const MeshField& field) {
   if (directory.empty()) return "";
-  std::error_code error;
-  fs::create_directories(directory, error);
-  const fs::path place = fs::path(directory) / (key + kExtension);
-  fs::path beside = place;
-  static std::atomic<int> written{0};  // threads of this process write beside each other
-  beside += "." + std::to_string(getpid()) + "." + std::to_string(written++) + ".part";
-  {
-    std::ofstream stream(beside, std::ios::binary | std::ios::trunc);
+  makeDirectory(directory);
+  if (const std::string why = distrust(directory); !why.empty())
+    return "cannot write to '" + directory + "' (" + why + ")";
+  try {
+    WholeFile file((fs::path(directory) / (key + kExtension)).string());
     const Header header = headerOf(field, key);
-    stream.write(reinterpret_cast<const char*>(&header), sizeof header);
-    stream.write(reinterpret_cast<const char*>(field.grid.samples.data()),
-                 static_cast<std::streamsize>(field.grid.samples.size() * sizeof(float)));
-    stream.flush();
-    if (!stream) error = std::make_error_code(std::errc::io_error);
-  }
-  if (!error) fs::rename(beside, place, error);
-  if (error) {
-    std::error_code ignored;
-    fs::remove(beside, ignored);
-    return "cannot write to '" + directory + "' (" + error.message() + ")";
+    file.stream().write(reinterpret_cast<const char*>(&header), sizeof header);
+    file.stream().write(reinterpret_cast<const char*>(field.grid.samples.data()),
+                        static_cast<std::streamsize>(field.grid.samples.size() * sizeof(float)));
+    file.commit();
+  } catch (const std::exception& error) {
+    return error.what();
   }
   removeOldest(directory);
   return "";

@@ -3,9 +3,14 @@
 /// `version`); git-annex's pointer files ("/annex/objects/<key>") and links (into ".git/annex/objects").
 #include "tissue_contact/core/stand_in_file.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
+
+#include "core/descriptor.h"
 
 namespace tissue_contact {
 namespace {
@@ -17,10 +22,10 @@ bool begins(const std::string& text, const char* with) { return text.rfind(with,
 std::string beginningOf(const std::string& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return "";
+  const Descriptor opened(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   std::string beginning(64, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
-  beginning.resize(static_cast<std::size_t>(stream.gcount()));
+  const ssize_t count = opened.isOpen() ? read(opened.number(), beginning.data(), beginning.size()) : 0;
+  beginning.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
   return beginning;
 }
 

@@ -8,7 +8,7 @@
 
 #include "assimp_reader.h"
 #include "mesh_cleanup.h"
-#include "read_file.h"
+#include "tissue_contact/core/read_file.h"
 #include "tissue_contact/instrument/collision_shape.h"
 
 namespace tissue_contact {

@@ -15,13 +15,11 @@
 #include <utility>
 #include <vector>
 
-#include "read_file.h"
+#include "tissue_contact/core/read_file.h"
 #include "urdfdom_document.h"
 
 namespace tissue_contact {
 namespace {
-
-constexpr std::uintmax_t kMaxUrdfBytes = 16u << 20;
 
 /// Position of a moving joint as a function of one independent joint: multiplier * position[joint] + offset.
 struct Drive {

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "tissue_contact/instrument/parse_urdf.h"
 #include "xml_tags.h"
 
 namespace tissue_contact {
@@ -18,7 +19,6 @@ constexpr std::size_t kMaxDepth = 64;
 // urdfdom frees a chain of links recursively, so an endless chain overflows the stack. The largest humanoids have some
 // hundred links.
 constexpr std::size_t kMaxLinks = 10000;
-constexpr std::size_t kMaxBytes = 16u << 20;  // PSM-sized URDFs have 20 kB, whole operating theatres below 1 MB
 constexpr std::size_t kMaxReasonLength = 600;
 
 std::mutex& consoleBridgeMutex() {
@@ -63,9 +63,9 @@ class CapturedErrors : public console_bridge::OutputHandler {
 
 void checkText(const std::string& xml, const std::string& source) {
   if (xml.empty()) throw std::invalid_argument(source + ": the URDF is empty");
-  if (xml.size() > kMaxBytes) {
+  if (xml.size() > kMaxUrdfBytes) {
     throw std::invalid_argument(source + ": the URDF has " + std::to_string(xml.size()) + " bytes; at most " +
-                                std::to_string(kMaxBytes) + " are read");
+                                std::to_string(kMaxUrdfBytes) + " are read");
   }
   const std::size_t zero = xml.find('\0');
   if (zero != std::string::npos) {

@@ -9,7 +9,6 @@
 
 #include <chrono>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -20,6 +19,8 @@
 
 #include "bag_frames.h"
 #include "tissue_contact/core/check.h"
+#include "tissue_contact/core/read_file.h"
+#include "tissue_contact/instrument/parse_urdf.h"
 #include "tissue_contact/ros/conversions.h"
 
 namespace tissue_contact {
@@ -72,12 +73,6 @@ Pose waitForFrame(const std::string& frame, const std::string& world_frame, doub
   return toPose(buffer.lookupTransform(world_frame, frame, ros::Time(0)).transform);
 }
 
-std::string readText(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw std::invalid_argument("URDF file '" + file + "' cannot be read");
-  return text.str();
 }
 
 }  // namespace
@@ -131,7 +126,7 @@ SceneEnvironment bagEnvironment(const std::string& bag_file, const std::string& 
       throw std::invalid_argument("the scene takes a URDF from parameter '" + parameter +
                                   "', but a bag holds no parameters; give its text with --urdf FILE");
     }
-    return readText(urdf_file);
+    return readFile(urdf_file, "URDF file", kMaxUrdfBytes);
   };
   environment.frame_pose = [bag_file, world_frame](const std::string& frame) {
     return frameInBag(frame, world_frame, bag_file);

@@ -5,21 +5,21 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdint>
 #include <exception>
-#include <fstream>
 #include <iostream>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "tissue_contact/core/whole_file.h"
 #include "tissue_contact/ros/conversions.h"
 #include "tissue_contact/ros/environment.h"
 #include "tissue_contact/ros/joint_state_bag.h"
+#include "tissue_contact/ros/replay_files.h"
 #include "tissue_contact/ros/replay_progress.h"
 #include "tissue_contact/ros/replay_table.h"
-#include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 #include "tissue_contact/simulation/simulator.h"
 #include "tissue_contact/solver/delassus.h"
@@ -35,9 +35,10 @@ class Replay {
  public:
   explicit Replay(const ReplayOptions& options)
       : options_(options),
-        scene_(loadScene(options.scene_file, packagePath)),
+        scene_(loadReplayedScene(options)),
         simulator_(scene_, bagEnvironment(options.bag_file, options.urdf_file, scene_.world_frame)),
         player_(simulator_) {
+    requireModelsKept(options, simulator_);
     for (const std::string& line : simulator_.advice()) std::cerr << kPrefix << "advisor: " << line << "\n";
     simulator_.setStepObserver([this] { stepTaken(); });
   }
@@ -50,6 +51,7 @@ class Replay {
     }
     ReplayTable table(options_.csv_file);
     if (!options_.timing_file.empty()) timing_.emplace(options_.timing_file);
+    if (!options_.dump_file.empty()) dump_.emplace(options_.dump_file);
     start_ = Clock::now();
     length_s_ = (bag.end() - bag.begin()).toSec();
     progress_.emplace(std::cerr, isatty(STDERR_FILENO) == 1, kPrefix, length_s_);
@@ -66,6 +68,8 @@ class Replay {
       throw std::runtime_error("no joint state of bag '" + options_.bag_file +
                                "' was accepted; the first was refused: " + first_refusal_);
     }
+    table.finish();
+    if (timing_) timing_->finish();
     table.commit();
     if (timing_) timing_->commit();
     summarize();
@@ -87,16 +91,15 @@ class Replay {
 
   /// Writes the contact problem of the step asked for, the first time it is taken.
   void dumpIfWanted() {
-    if (options_.dump_step == 0 || dumped_ || simulator_.stepCount() != options_.dump_step) return;
-    std::ofstream stream(options_.dump_file);
-    writeContactProblem(stream, makeDelassusProblem(simulator_.lastProblem()), simulator_.lastSolution().states);
-    stream.flush();
-    if (!stream) throw std::runtime_error("cannot write '" + options_.dump_file + "'");
-    dumped_ = true;
+    if (!dump_ || simulator_.stepCount() != options_.dump_step) return;
+    writeContactProblem(dump_->stream(), makeDelassusProblem(simulator_.lastProblem()),
+                        simulator_.lastSolution().states);
+    dump_->commit();
+    dump_.reset();
   }
 
   void requireDumped() const {
-    if (options_.dump_step == 0 || dumped_) return;
+    if (!dump_) return;
     throw std::runtime_error("--dump-step " + std::to_string(options_.dump_step) + ": the replay took only " +
                              std::to_string(simulator_.stepCount()) + " steps; ask for one of those");
   }
@@ -142,12 +145,6 @@ class Replay {
               << "\n";
   }
 
-  static std::string stampText(std::int64_t stamp_ns) {
-    std::ostringstream text;
-    text << toTime(stamp_ns);
-    return text.str();
-  }
-
   void summarize() const {
     std::cerr << kPrefix << player_.count(Verdict::kAccepted) << " joint states accepted";
     for (int v = 1; v < kVerdictCount; ++v) {
@@ -184,6 +181,7 @@ class Replay {
   Simulator simulator_;
   JointStatePlayer player_;
   std::optional<TimingTable> timing_;
+  std::optional<WholeFile> dump_;  ///< until it is written
   std::optional<ReplayProgress> progress_;
   Clock::time_point start_;
   double length_s_ = 0.0;  ///< of the recording
@@ -192,7 +190,6 @@ class Replay {
   Approach approach_;      ///< until then
   std::int64_t approach_ns_ = 0;
   std::string first_refusal_;
-  bool dumped_ = false;
   long jumps_ = 0;
   long discarded_ = 0;
   long not_converged_ = 0;
@@ -209,6 +206,7 @@ int runReplay(int argc, char** argv) {
     const ReplayOptions options = parseReplayOptions({argv + 1, argv + argc});
     if (options.help) {
       std::cout << replayUsage();
+      requireWritten(std::cout);
     } else {
       replay(options);
     }

@@ -32,13 +32,16 @@ std::string replayUsage() {
          "  --scene FILE  the scene (doc/scene.md)\n"
          "  --bag FILE    a ROS bag with the scene's joint-state topics; tf frames are taken from its /tf_static and "
          "/tf\n"
-         "  --csv FILE    the result; replaced when the replay is complete, untouched when it fails\n"
+         "  --csv FILE    the result; replaced when the replay is complete, untouched when it fails or is interrupted\n"
          "  --urdf FILE   text for the robot_description parameter that the scene takes its URDF from\n"
          "  --timing FILE   wall times of this run, one line per simulated interval; replaced or untouched as the CSV\n"
          "  --dump-step N   with --dump-file: write the contact problem of implicit step N (from 1), for "
          "tissue_contact_solve\n"
+         "  --dump-file FILE  where to; replaced when that step is taken\n"
          "  --help        this text\n"
          "\n"
+         "Results replace regular files only, and keep their permissions: no input, link, device, FIFO or folder.\n"
+         "Inputs must be regular files.\n"
          "Exit code: 0 when the CSV was written, 1 with a message on stderr otherwise.\n";
 }
 
@@ -60,16 +63,14 @@ ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
     if (known == keys.end()) throw std::invalid_argument("unknown argument '" + arguments[i] + "'; see --help");
     if (!known->second->empty()) throw std::invalid_argument("argument " + key + " is given twice");
     const bool in_next = equals == std::string::npos;
-    if (in_next && i + 1 < arguments.size()) *known->second = arguments[++i];
+    // "--csv --urdf x": a forgotten value, no file of that name.
+    if (in_next && i + 1 < arguments.size() && arguments[i + 1].rfind("--", 0) != 0) *known->second = arguments[++i];
     if (!in_next) *known->second = arguments[i].substr(equals + 1);
     requireGiven(*known->second, key);
   }
   requireGiven(options.scene_file, "--scene");
   requireGiven(options.bag_file, "--bag");
   requireGiven(options.csv_file, "--csv");
-  if (options.timing_file == options.csv_file) {
-    throw std::invalid_argument("--timing and --csv name the same file '" + options.csv_file + "'; give two");
-  }
   if (!dump_step.empty() || !options.dump_file.empty()) {
     requireGiven(dump_step, "--dump-step");
     requireGiven(options.dump_file, "--dump-file");

@@ -2,13 +2,20 @@
 /// Room `ros`: see replay_table.h.
 #include "tissue_contact/ros/replay_table.h"
 
-#include <utility>
-
-#include "tissue_contact/ros/conversions.h"
+#include <cinttypes>
+#include <cstdio>
 
 namespace tissue_contact {
 
-ReplayTable::ReplayTable(std::string file) : file_(std::move(file)) {
+std::string stampText(std::int64_t stamp_ns) {
+  constexpr std::int64_t kNanosecondsPerSecond = 1000000000;
+  char text[40];
+  std::snprintf(text, sizeof text, "%" PRId64 ".%09" PRId64, stamp_ns / kNanosecondsPerSecond,
+                stamp_ns % kNanosecondsPerSecond);
+  return text;
+}
+
+ReplayTable::ReplayTable(const std::string& file) : file_(file) {
   file_.stream()
       << "stamp_s,instrument,tip_x_m,tip_y_m,tip_z_m,tip_qx,tip_qy,tip_qz,tip_qw,force_x_n,force_y_n,force_z_n,"
          "torque_x_nm,torque_y_nm,torque_z_nm,static_contacts,kinetic_contacts,momentum_residual,penetration_m,"
@@ -21,7 +28,7 @@ void ReplayTable::add(const Simulator& simulator, const PlayedSample& played) {
   const Residuals& residuals = report.residuals;
   std::ostream& out = file_.stream();
   for (const int instrument : played.instruments) {
-    out << toTime(played.stamp_ns) << ',';
+    out << stampText(played.stamp_ns) << ',';
     addInstrument(simulator, instrument);
     out << ',' << residuals.momentum << ',' << residuals.penetration_m << ',' << residuals.adhesion_n << ','
         << residuals.complementarity_w << ',' << residuals.cone_violation_n << ',' << residuals.static_slip_m_per_s
@@ -51,10 +58,10 @@ void ReplayTable::addInstrument(const Simulator& simulator, int instrument) {
                  << ',' << held << ',' << sliding;
 }
 
-TimingTable::TimingTable(std::string file) : file_(std::move(file)) { file_.stream() << "stamp_s,step_time_s,steps\n"; }
+TimingTable::TimingTable(const std::string& file) : file_(file) { file_.stream() << "stamp_s,step_time_s,steps\n"; }
 
 void TimingTable::add(std::int64_t stamp_ns, double elapsed_s, long steps) {
-  file_.stream() << toTime(stamp_ns) << ',' << elapsed_s / static_cast<double>(steps) << ',' << steps << '\n';
+  file_.stream() << stampText(stamp_ns) << ',' << elapsed_s / static_cast<double>(steps) << ',' << steps << '\n';
 }
 
 }  // namespace tissue_contact

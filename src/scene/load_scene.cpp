@@ -1,10 +1,10 @@
 #include "tissue_contact/scene/load_scene.h"
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 
 #include "scene_sections.h"
+#include "tissue_contact/core/read_file.h"
 
 namespace tissue_contact {
 namespace {
@@ -76,24 +76,6 @@ void parseBodies(const YamlMap& map, const PathContext& paths, Scene& scene) {
   }
 }
 
-std::string readText(const std::string& file) {
-  std::error_code error;
-  if (!fs::exists(file, error)) {
-    throw std::invalid_argument(file + ": scene file does not exist; correct the path");
-  }
-  // A device or a pipe might never end.
-  if (!fs::is_regular_file(file, error))
-    throw std::invalid_argument(file + ": is not a file; give a scene file (YAML)");
-  std::ifstream stream(file, std::ios::binary);
-  std::string text(kMaxSceneBytes + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream.is_open() || stream.bad()) {
-    throw std::invalid_argument(file + ": scene file cannot be read; check its permissions");
-  }
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return text;
-}
-
 }  // namespace
 
 Scene parseScene(const std::string& yaml, const std::string& file, const PackagePath& package_path) {
@@ -117,7 +99,7 @@ Scene loadScene(const std::string& file, const PackagePath& package_path) {
   // Only URIs: messages and Scene::file keep a plain path as it was given.
   const bool is_uri = file.find("://") != std::string::npos;
   const std::string path = is_uri ? resolvePath(file, "", package_path) : file;
-  return parseScene(readText(path), path, package_path);
+  return parseScene(readFile(path, "scene file", kMaxSceneBytes), path, package_path);
 }
 
 }  // namespace tissue_contact

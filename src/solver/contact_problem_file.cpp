@@ -1,14 +1,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+#include <cstdint>
 #include <limits>
 #include <ostream>
-#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
+#include "tissue_contact/core/read_file.h"
 #include "tissue_contact/friction/friction_law.h"
 #include "tissue_contact/solver/delassus.h"
 
@@ -18,17 +17,8 @@ namespace {
 /// W is held dense: 650 MB at this number. More contacts in one file are refused before anything is allocated.
 constexpr int kMaxContacts = 3000;
 
-std::string readAll(const std::string& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    throw std::invalid_argument("contact problem file '" + file + "' does not exist or is no regular file");
-  }
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw std::invalid_argument("contact problem file '" + file + "' cannot be read");
-  return text.str();
-}
+/// W of kMaxContacts in full, 25 characters a number; a file of our own has fewer.
+constexpr std::uintmax_t kMaxFileBytes = 25ull * 9ull * kMaxContacts * kMaxContacts + (1u << 20);
 
 /// The words of a file one by one, with the place for messages.
 class Words {
@@ -147,7 +137,7 @@ void writeMatrix(std::ostream& stream, const Eigen::MatrixXd& W) {
 }  // namespace
 
 DelassusProblem readContactProblem(const std::string& file) {
-  const std::string text = readAll(file);
+  const std::string text = readFile(file, "contact problem file", kMaxFileBytes);
   Words words(file, text);
   words.expect("FC3D");
   words.expect("1");

@@ -8,15 +8,13 @@
 #include "tissue/mesh_file.h"
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "tissue_contact/core/check.h"
-#include "tissue_contact/core/stand_in_file.h"
+#include "tissue_contact/core/read_file.h"
 #include "tissue_contact/tissue/tet_mesh.h"
 
 namespace tissue_contact {
@@ -25,32 +23,8 @@ namespace {
 // 1 GiB is some 10 million nodes as text: far beyond what can be simulated, and small enough to hold in memory.
 constexpr std::uintmax_t kMaximumFileBytes = std::uintmax_t{1} << 30U;
 
-std::string readWholeFile(const std::string& file) {
-  if (const std::string problem = standInProblem(file); !problem.empty()) {
-    throw std::invalid_argument("mesh file '" + file + "' " + problem);
-  }
-  std::error_code error;
-  // Anything else (a directory, a pipe, /dev/zero) might block or never end.
-  if (!std::filesystem::is_regular_file(file, error)) {
-    throw std::invalid_argument("mesh file '" + file + "' does not exist or is no regular file; check the path");
-  }
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error) throw std::invalid_argument("mesh file '" + file + "': " + error.message());
-  if (size > kMaximumFileBytes) {
-    throw std::invalid_argument("mesh file '" + file + "' has " + std::to_string(size) +
-                                " bytes; it must have at most " + std::to_string(kMaximumFileBytes) +
-                                "; use a coarser mesh");
-  }
-  std::string bytes(size, '\0');
-  std::ifstream in(file, std::ios::binary);
-  if (!in || !in.read(bytes.data(), static_cast<std::streamsize>(size))) {
-    throw std::invalid_argument("mesh file '" + file + "' cannot be read; check its permissions");
-  }
-  return bytes;
-}
-
 MeshFileContents readContents(const std::string& file) {
-  std::string bytes = readWholeFile(file);
+  std::string bytes = readFile(file, "mesh file", kMaximumFileBytes);
   const bool gmsh = !bytes.empty() && bytes[0] == '$';
   const bool vtk = bytes.rfind("# vtk ", 0) == 0;
   const bool xml = !bytes.empty() && bytes[0] == '<';

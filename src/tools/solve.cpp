@@ -6,9 +6,11 @@
 #include <iomanip>
 #include <limits>
 #include <ostream>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
+#include "tissue_contact/core/whole_file.h"
 #include "tissue_contact/solver/delassus.h"
 
 namespace tissue_contact {
@@ -48,8 +50,12 @@ Options parseArguments(const std::vector<std::string>& arguments) {
   Options options;
   options.solver.tolerance = 1e-8;
   options.solver.iterations = 10000;
+  std::set<std::string> given;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string& argument = arguments[i];
+    if (argument.rfind("--", 0) == 0 && !given.insert(argument).second) {
+      throw std::invalid_argument(argument + " is given twice");
+    }
     const auto value = [&]() -> const std::string& {
       if (i + 1 == arguments.size()) throw std::invalid_argument(argument + " needs a value");
       return arguments[++i];
@@ -167,18 +173,14 @@ void printJson(std::ostream& output, const Options& options, const Outcome& outc
   output << "]}\n";
 }
 
-int solve(const Options& options, std::ostream& output, std::ostream& errors) {
+int solve(const Options& options, std::ostream& output) {
   const DelassusProblem problem = readContactProblem(options.file);
   Outcome outcome;
   const auto start = std::chrono::steady_clock::now();
   outcome.report = solveDelassus(problem, options.solver, outcome.solution);
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   options.json ? printJson(output, options, outcome) : printText(output, options, outcome);
-  output.flush();
-  if (!output) {
-    errors << "tissue_contact_solve: the answer could not be written\n";
-    return 2;
-  }
+  requireWritten(output);
   return outcome.report.converged ? 0 : 1;
 }
 
@@ -189,9 +191,10 @@ int runSolve(const std::vector<std::string>& arguments, std::ostream& output, st
     const Options options = parseArguments(arguments);
     if (options.help) {
       output << kUsage;
+      requireWritten(output);
       return 0;
     }
-    return solve(options, output, errors);
+    return solve(options, output);
   } catch (const std::bad_alloc&) {
     errors << "tissue_contact_solve: not enough memory for this problem and solver\n";
   } catch (const std::exception& error) {

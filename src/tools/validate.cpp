@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <exception>
-#include <fstream>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
+#include "tissue_contact/core/whole_file.h"
 #include "tools/validation_table.h"
 #include "validation/cases.h"
 
@@ -16,9 +17,11 @@ constexpr const char* kUsage =
     "usage: tissue_contact_validate [--case NAME]... [--json FILE] [--list]\n"
     "Runs closed forms and hard cases through the product's own pipeline and prints, per quantity: verdict, what it "
     "is,\n"
-    "unit, expected, got, error, tolerance, source. Exit code 0: all within tolerance; 1: not; 2: wrong arguments.\n"
+    "unit, expected, got, error, tolerance, source. Exit code 0: all within tolerance; 1: not; 2: wrong arguments, or "
+    "results\n"
+    "that could not be written.\n"
     "  --case NAME  this case only; may be repeated\n"
-    "  --json FILE  the same results, with convergence studies, as JSON\n"
+    "  --json FILE  the same results, with convergence studies, as JSON; replaced when all cases have run\n"
     "  --list       names and titles of all cases\n";
 
 struct Options {
@@ -46,10 +49,14 @@ Options parseOptions(const std::vector<std::string>& arguments) {
     } else if (key == "--help" || key == "-h") {
       options.help = true;
     } else if (key == "--case" || key == "--json") {
-      if (i + 1 == arguments.size()) throw std::invalid_argument(key + " needs a value");
+      if (i + 1 == arguments.size() || arguments[i + 1].empty() || arguments[i + 1].rfind("--", 0) == 0) {
+        throw std::invalid_argument(key + " needs a value");
+      }
       const std::string& value = arguments[++i];
       if (key == "--case") {
         options.cases.push_back(caseByName(value));
+      } else if (!options.json.empty()) {
+        throw std::invalid_argument(key + " is given twice");
       } else {
         options.json = value;
       }
@@ -87,26 +94,18 @@ CaseResult runCase(const ValidationCase& one, std::size_t done, std::size_t coun
   return result;
 }
 
-/// The file is opened before the long run, so that a wrong path costs nothing.
-std::ofstream openJson(const std::string& file) {
-  std::ofstream json;
-  if (file.empty()) return json;
-  json.open(file);
-  if (!json) throw std::invalid_argument("--json: cannot write '" + file + "'");
-  return json;
-}
-
 int runCases(const Options& options, std::ostream& out, std::ostream* bar) {
-  std::ofstream json = openJson(options.json);
+  std::optional<WholeFile> json;  // from before the long run, so that a wrong path costs nothing
+  if (!options.json.empty()) json.emplace(options.json);
   std::vector<CaseResult> results;
   for (const ValidationCase* const one : options.cases) {
     results.push_back(runCase(*one, results.size(), options.cases.size(), bar));
     printCase(results.back(), out);
-    out << std::flush;
+    requireWritten(out);
   }
-  if (!options.json.empty()) {
-    writeJson(results, json);
-    if (!json.flush()) throw std::invalid_argument("--json: writing '" + options.json + "' failed; is the disk full?");
+  if (json) {
+    writeJson(results, json->stream());
+    json->commit();
   }
   const auto passed = std::count_if(results.begin(), results.end(), [](const CaseResult& r) { return r.passed(); });
   out << passed << " of " << results.size() << " cases pass\n";
@@ -118,19 +117,22 @@ int runCases(const Options& options, std::ostream& out, std::ostream* bar) {
 int runValidate(const std::vector<std::string>& arguments, std::ostream& out, std::ostream& messages, bool show_bar) {
   try {
     const Options options = parseOptions(arguments);
+    int code = 0;
     if (options.help) {
       out << kUsage;
-      return 0;
-    }
-    if (options.list) {
+    } else if (options.list) {
       for (const ValidationCase* const one : options.cases) out << one->name << ": " << one->title << '\n';
-      return 0;
+    } else {
+      code = runCases(options, out, show_bar ? &messages : nullptr);
     }
-    return runCases(options, out, show_bar ? &messages : nullptr);
+    requireWritten(out);
+    return code;
   } catch (const std::invalid_argument& error) {
     messages << "tissue_contact_validate: " << error.what() << '\n' << kUsage;
-    return 2;
+  } catch (const std::exception& error) {
+    messages << "tissue_contact_validate: " << error.what() << '\n';
   }
+  return 2;
 }
 
 }  // namespace tissue_contact

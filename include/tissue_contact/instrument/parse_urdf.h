@@ -2,12 +2,16 @@
 /// Room `instrument`: URDF text or file in, RobotModel out (urdfdom).
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "tissue_contact/instrument/robot_model.h"
 #include "tissue_contact/scene/load_scene.h"
 
 namespace tissue_contact {
+
+/// Larger files are refused. PSM-sized URDFs have 20 kB, whole operating theatres below 1 MB.
+constexpr std::uintmax_t kMaxUrdfBytes = 16u << 20;
 
 /// @param xml URDF text. @param source what to call it in messages (file path or parameter name).
 /// @param base_directory base of relative mesh paths (directory of the URDF file; "" if it came from a parameter).

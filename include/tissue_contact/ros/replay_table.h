@@ -2,27 +2,31 @@
 /// Room `ros`: the CSV files of an offline replay.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
-#include "tissue_contact/ros/whole_file.h"
+#include "tissue_contact/core/whole_file.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
 
+/// "seconds.nanoseconds", exact. Not ros::Time's own: that throws where a stream has failed.
+std::string stampText(std::int64_t stamp_ns);
+
 /// Wrenches, contacts and residuals: the same bytes whenever the same bag is replayed over the same scene. Stamps are
 /// exact to the nanosecond.
 class ReplayTable {
  public:
-  /// Writes the header line. @throws std::runtime_error when the file cannot be written.
-  explicit ReplayTable(std::string file);
+  /// Writes the header line. This, add(), finish() and commit() throw as WholeFile.
+  explicit ReplayTable(const std::string& file);
 
   /// One line per instrument of an accepted sample: stamp, tip pose in the world frame, wrench in the tip frame,
   /// contacts of this instrument per state, residuals of the last step over all contacts, 0 or 1 for `discarded` and
   /// `jumped` of the interval that ended here, and what its loads were like (see StepReport, ImplausibleLoad).
   void add(const Simulator& simulator, const PlayedSample& played);
 
-  /// @throws std::runtime_error when the file could not be written completely.
+  void finish() { file_.finish(); }
   void commit() { file_.commit(); }
 
  private:
@@ -34,13 +38,13 @@ class ReplayTable {
 /// Wall times, which differ from run to run.
 class TimingTable {
  public:
-  /// Writes the header line. @throws std::runtime_error when the file cannot be written.
-  explicit TimingTable(std::string file);
+  /// Writes the header line. This, add(), finish() and commit() throw as WholeFile.
+  explicit TimingTable(const std::string& file);
 
   /// One line per simulated interval: stamp of its end, mean wall time per implicit step, number of steps (> 0).
   void add(std::int64_t stamp_ns, double elapsed_s, long steps);
 
-  /// @throws std::runtime_error when the file could not be written completely.
+  void finish() { file_.finish(); }
   void commit() { file_.commit(); }
 
  private:

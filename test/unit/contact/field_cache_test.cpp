@@ -2,8 +2,9 @@
 #include "contact/field_cache.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
+#include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -20,12 +21,14 @@ namespace fs = std::filesystem;
 class FieldCache : public testing::Test {
  protected:
   void SetUp() override {
-    directory_ = fs::temp_directory_path() / ("tissue_contact_field_cache_" + std::to_string(getpid()));
-    fs::remove_all(directory_);
+    std::string pattern = (fs::temp_directory_path() / "field_cache_test_XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    parent_ = pattern;
+    directory_ = parent_ / "cache";
     preparation_.cache_directory = directory_;
     preparation_.say = [this](const std::string& line) { said_.push_back(line); };
   }
-  void TearDown() override { fs::remove_all(directory_); }
+  void TearDown() override { fs::remove_all(parent_); }
 
   bool fromCache() {
     said_.clear();
@@ -39,6 +42,7 @@ class FieldCache : public testing::Test {
     return files.at(0);
   }
 
+  fs::path parent_;
   fs::path directory_;
   MeshPreparation preparation_;
   std::vector<std::string> said_;
@@ -95,6 +99,51 @@ TEST_F(FieldCache, WithoutADirectoryItWorksAndSaysSo) {
   EXPECT_NE(said_[1].find(directory_.string()), std::string::npos) << said_[1];
   EXPECT_FALSE(fromCache());
   EXPECT_EQ(said_.size(), 1u);  // of the mesh alone
+}
+
+TEST_F(FieldCache, IsPrivateToItsOwner) {
+  prepareMeshField(mesh_, "jaw", preparation_);
+  EXPECT_EQ(fs::status(directory_).permissions(), fs::perms::owner_all);
+}
+
+TEST_F(FieldCache, IsNotUsedWhereEverybodyMayWrite) {
+  prepareMeshField(mesh_, "jaw", preparation_);
+  fs::permissions(directory_, fs::perms::all);
+  EXPECT_FALSE(fromCache());
+  ASSERT_EQ(said_.size(), 2u);
+  EXPECT_NE(said_[1].find("chmod o-w"), std::string::npos) << said_[1];
+  fs::permissions(directory_, fs::perms::owner_all);
+  preparation_.cache_directory = directory_;  // given up after the first trouble
+  EXPECT_TRUE(fromCache());
+}
+
+TEST_F(FieldCache, APlantedLinkIsNotFollowed) {
+  prepareMeshField(mesh_, "jaw", preparation_);
+  const fs::path file = onlyFile();
+  fs::rename(file, directory_ / "victim");
+  fs::resize_file(directory_ / "victim", 5);
+  fs::create_symlink("victim", file);
+  EXPECT_FALSE(fromCache());
+  EXPECT_EQ(fs::file_size(directory_ / "victim"), 5u);
+  EXPECT_NE(said_.back().find("symbolic link to 'victim'"), std::string::npos) << said_.back();
+}
+
+TEST_F(FieldCache, RemovesItsOwnOldFilesOnly) {
+  prepareMeshField(mesh_, "jaw", preparation_);
+  const std::string key(32, 'a');
+  const std::vector<std::string> others = {"notes.field", "my.field.txt", key + ".field.partial", key + ".fields"};
+  const std::vector<std::string> ours = {key + ".field.partial-0123456789abcdef", key + ".field"};
+  for (const std::vector<std::string>& list : {others, ours}) {
+    for (const std::string& name : list) {
+      std::ofstream(directory_ / name) << "x";
+      fs::resize_file(directory_ / name, 300u << 20);  // more than is kept; a hole takes no room on the disk
+      fs::last_write_time(directory_ / name, fs::file_time_type::clock::now() - std::chrono::hours(2));
+    }
+  }
+  mesh_.vertices(0, 0) *= 1.0 + 1e-12;
+  prepareMeshField(mesh_, "jaw", preparation_);
+  for (const std::string& name : others) EXPECT_TRUE(fs::exists(directory_ / name)) << name;
+  for (const std::string& name : ours) EXPECT_FALSE(fs::exists(directory_ / name)) << name;
 }
 
 TEST_F(FieldCache, TwoAtOnceLeaveOneWholeFile) {

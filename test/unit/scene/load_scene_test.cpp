@@ -235,7 +235,7 @@ TEST_F(SceneTest, RefusesWhatIsNotAReadableFile) {
       loadScene(file, nullptr);
       ADD_FAILURE() << file << " was accepted";
     } catch (const std::invalid_argument& error) {
-      EXPECT_EQ(std::string(error.what()).find(file + ": "), 0U) << error.what();
+      EXPECT_EQ(std::string(error.what()).find("scene file '" + file + "' "), 0U) << error.what();
     }
   }
 }

@@ -142,7 +142,8 @@ TEST_F(ContactProblemFile, RefusesWhatIsWrongAndSaysWhere) {
       {"FC3D 1 n 1 W dense 1 0 0 0 1 0 0 0 1 q 0 0 0 mu nan", "found 'nan'"},
       {"FC3D 1 n 1 W dense 1 0 0 0 1 0 0 0 1 q 0 0 0\n\n", "line 3: found the end of the file, expected 'mu'"},
       {"FC3D 1 n 1 W dense 1 0 0 0 1 0 0 0 1 q 0 0 0 mu 1 2", "found '2', expected the end of the file"},
-      {"", "line 1: found the end of the file, expected 'FC3D'"},
+      {" ", "line 1: found the end of the file, expected 'FC3D'"},
+      {"", "is empty"},
   };
   for (const auto& bad : cases) {
     const std::string message = failure(bad.text);

@@ -30,8 +30,8 @@ void expectPathRefused(const std::string& path, const char* words) {
 
 TEST(MeshFile, RefusesPathsThatAreNoFile) {
   expectPathRefused("/no/such/mesh.vtk", "does not exist");
-  expectPathRefused(testing::TempDir(), "no regular file");
-  expectPathRefused("/dev/zero", "no regular file");
+  expectPathRefused(testing::TempDir(), "not a regular file");
+  expectPathRefused("/dev/zero", "not a regular file");
   expectPathRefused("", "does not exist");
 }
 
@@ -44,7 +44,7 @@ TEST(MeshFile, PointersOfLfsAndAnnexAreCalledThat) {
 TEST(MeshFile, DoesNotWaitForAPipe) {
   const std::string pipe = testing::TempDir() + "tissue_contact_pipe_" + std::to_string(getpid());
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  expectPathRefused(pipe, "no regular file");
+  expectPathRefused(pipe, "not a regular file");
   std::filesystem::remove(pipe);
 }
 

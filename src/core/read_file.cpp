@@ -1,0 +1,93 @@
+/// @file
+/// Room `core`: see read_file.h.
+#include "tissue_contact/core/read_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+
+#include "core/descriptor.h"
+#include "tissue_contact/core/stand_in_file.h"
+
+namespace tissue_contact {
+namespace {
+
+[[noreturn]] void refuse(const std::string& file, const std::string& what, const std::string& why) {
+  throw std::invalid_argument(what + " '" + file + "' " + why);
+}
+
+[[noreturn]] void refuseUnreadable(const std::string& file, const std::string& what, int error) {
+  if (error == ENOENT || error == ENOTDIR) refuse(file, what, "does not exist; correct the path");
+  refuse(file, what, "cannot be read: " + std::generic_category().message(error));
+}
+
+void requireRegular(const std::string& file, const std::string& what, const struct stat& status) {
+  if (S_ISREG(status.st_mode)) return;
+  const std::string advice = S_ISDIR(status.st_mode) ? "give a file in it" : "save what it yields and give that file";
+  refuse(file, what, "is not a regular file but " + fileTypeName(status.st_mode) + "; " + advice);
+}
+
+void requireSize(const std::string& file, const std::string& what, std::uintmax_t bytes, std::uintmax_t max_bytes) {
+  if (bytes == 0) refuse(file, what, "is empty");
+  if (bytes > max_bytes) {
+    refuse(file, what, "has " + std::to_string(bytes) + " bytes; at most " + std::to_string(max_bytes) + " are read");
+  }
+}
+
+struct OpenFile {
+  Descriptor descriptor;
+  std::uintmax_t bytes = 0;
+};
+
+OpenFile openRegular(const std::string& file, const std::string& what, std::uintmax_t max_bytes) {
+  if (const std::string problem = standInProblem(file); !problem.empty()) refuse(file, what, problem);
+  struct stat status {};
+  // Looked at before it is opened, since opening alone does something to some devices ...
+  if (stat(file.c_str(), &status) != 0) refuseUnreadable(file, what, errno);
+  requireRegular(file, what, status);
+  OpenFile opened{Descriptor(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)), 0};
+  if (!opened.descriptor.isOpen()) refuseUnreadable(file, what, errno);
+  // ... and after, since another file may have taken the name.
+  if (fstat(opened.descriptor.number(), &status) != 0) refuseUnreadable(file, what, errno);
+  requireRegular(file, what, status);
+  opened.bytes = static_cast<std::uintmax_t>(status.st_size);
+  requireSize(file, what, opened.bytes, max_bytes);
+  return opened;
+}
+
+}  // namespace
+
+std::string fileTypeName(unsigned mode) {
+  if (S_ISREG(mode)) return "";
+  if (S_ISDIR(mode)) return "a directory";
+  if (S_ISFIFO(mode)) return "a FIFO (named pipe)";
+  if (S_ISSOCK(mode)) return "a socket";
+  if (S_ISLNK(mode)) return "a symbolic link";
+  return S_ISCHR(mode) || S_ISBLK(mode) ? "a device" : "of an unknown type";
+}
+
+void requireRegularFile(const std::string& file, const std::string& what, std::uintmax_t max_bytes) {
+  openRegular(file, what, max_bytes);
+}
+
+std::string readFile(const std::string& file, const std::string& what, std::uintmax_t max_bytes) {
+  const OpenFile opened = openRegular(file, what, max_bytes);
+  const auto bytes = static_cast<std::size_t>(opened.bytes);
+  std::string content(bytes + 1, '\0');  // one more, to see whether it has grown since
+  std::size_t filled = 0;
+  while (filled < content.size()) {
+    const ssize_t count = read(opened.descriptor.number(), content.data() + filled, content.size() - filled);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) refuseUnreadable(file, what, errno);
+    if (count == 0) break;
+    filled += static_cast<std::size_t>(count);
+  }
+  if (filled != bytes) refuse(file, what, "changes while it is read; give a copy that nobody writes to");
+  content.resize(bytes);
+  return content;
+}
+
+}  // namespace tissue_contact
