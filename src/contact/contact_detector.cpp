@@ -12,6 +12,7 @@
 #include "contact/shape_union.h"
 #include "contact/triangle_tree.h"
 #include "tissue_contact/core/check.h"
+#include "tissue_contact/core/entry_error.h"
 
 namespace tissue_contact {
 namespace {
@@ -48,8 +49,10 @@ std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instrum
     for (std::size_t l = 0; l < links.size(); ++l) {
       for (std::size_t s = 0; s < links[l].shapes.size(); ++s) {
         const CollisionShape& shape = links[l].shapes[s];
+        auto distance = atEntry(elementOf(elementOf("instruments", i) + ".contact_links", l),
+                                [&] { return distances.make(shape); });
         result.push_back({static_cast<int>(i), static_cast<int>(l), static_cast<int>(s), links[l].link, shape.X_LS,
-                          distances.make(shape), smallestHalfExtent(shape)});
+                          std::move(distance), smallestHalfExtent(shape)});
       }
     }
   }

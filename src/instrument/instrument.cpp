@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tissue_contact/core/entry_error.h"
+
 namespace tissue_contact {
 namespace {
 
@@ -28,24 +30,26 @@ class Builder {
   Builder(const InstrumentDescription& description, const RobotModel& model)
       : description_(description), model_(model) {}
 
-  [[noreturn]] void refuse(const std::string& what) const {
-    throw std::invalid_argument("instrument '" + description_.name + "': " + what);
+  /// @param entry of the instrument in the scene
+  [[noreturn]] void refuse(const std::string& entry, const std::string& what) const {
+    throw EntryError(entry, "instrument '" + description_.name + "': " + what);
   }
 
-  int findLink(const std::string& role, const std::string& name) const {
+  int findLink(const std::string& entry, const std::string& role, const std::string& name) const {
     const int link = model_.findLink(name);
     if (link < 0) {
-      refuse(role + " '" + name + "' is not a link of robot '" + model_.name() +
-             "'; its links are: " + listNames(model_.links()));
+      refuse(entry, role + " '" + name + "' is not a link of robot '" + model_.name() +
+                        "'; its links are: " + listNames(model_.links()));
     }
     return link;
   }
 
-  int findJoint(const std::string& role, const std::string& name) const {
+  int findJoint(const std::string& entry, const std::string& role, const std::string& name) const {
     const int joint = model_.findJoint(name);
     if (joint < 0) {
-      refuse(role + " '" + name + "', which is not an independent joint of robot '" + model_.name() +
-             "' (fixed and mimic joints cannot be set); its independent joints are: " + listNames(model_.joints()));
+      refuse(entry,
+             role + " '" + name + "', which is not an independent joint of robot '" + model_.name() +
+                 "' (fixed and mimic joints cannot be set); its independent joints are: " + listNames(model_.joints()));
     }
     return joint;
   }
@@ -53,35 +57,38 @@ class Builder {
   void checkTopics() const {
     const bool moves = !model_.joints().empty();
     if (moves && description_.joint_state_topics.empty()) {
-      refuse("its URDF has moving joints (" + listNames(model_.joints()) +
-             ") but no joint-state topic is given; name one in joint_state_topics");
+      refuse("", "its URDF has moving joints (" + listNames(model_.joints()) +
+                     ") but no joint-state topic is given; name one in joint_state_topics");
     }
     if (!moves && !description_.joint_state_topics.empty()) {
-      refuse("joint_state_topics names '" + description_.joint_state_topics.front().name +
-             "' but its URDF has no moving joint; leave the key out for a fixed obstacle");
+      refuse("joint_state_topics", "joint_state_topics names '" + description_.joint_state_topics.front().name +
+                                       "' but its URDF has no moving joint; leave the key out for a fixed obstacle");
     }
   }
 
-  ContactLink makeContactLink(const ContactLinkDescription& contact) const {
+  ContactLink makeContactLink(const std::string& entry, const ContactLinkDescription& contact) const {
     ContactLink result;
     result.name = contact.link;
-    result.link = findLink("contact link", contact.link);
+    result.link = findLink(entry, "contact link", contact.link);
     const LinkGeometry& geometry = model_.links()[static_cast<std::size_t>(result.link)].geometry;
     const auto& [shapes, origin] = !contact.shapes.empty() ? std::make_pair(&contact.shapes, "shape of the scene")
                                    : !geometry.collision.empty()
                                        ? std::make_pair(&geometry.collision, "<collision> of the URDF")
                                        : std::make_pair(&geometry.visual, "<visual> of the URDF");
     if (shapes->empty()) {
-      refuse("contact link '" + contact.link +
-             "' has neither <collision> nor <visual> in its URDF; name its shapes in the scene or drop it from "
-             "contact_links");
+      refuse(entry,
+             "contact link '" + contact.link +
+                 "' has neither <collision> nor <visual> in its URDF; name its shapes in the scene or drop it from "
+                 "contact_links");
     }
     for (std::size_t i = 0; i < shapes->size(); ++i) {
       try {
         result.shapes.push_back(makeCollisionShape((*shapes)[i]));
       } catch (const std::invalid_argument& error) {
-        refuse("contact link '" + contact.link + "', " + origin + " number " + std::to_string(i + 1) + ": " +
-               error.what());
+        const bool of_scene = shapes == &contact.shapes;
+        refuse(of_scene ? elementOf(entry + ".shapes", i) : entry, "contact link '" + contact.link + "', " + origin +
+                                                                       " number " + std::to_string(i + 1) + ": " +
+                                                                       error.what());
       }
     }
     return result;
@@ -91,8 +98,9 @@ class Builder {
     std::vector<ContactLink> links;
     std::set<std::string> seen;
     for (const ContactLinkDescription& contact : description_.contact_links) {
-      if (!seen.insert(contact.link).second) refuse("contact link '" + contact.link + "' is listed twice");
-      links.push_back(makeContactLink(contact));
+      const std::string entry = elementOf("contact_links", links.size());
+      if (!seen.insert(contact.link).second) refuse(entry, "contact link '" + contact.link + "' is listed twice");
+      links.push_back(makeContactLink(entry, contact));
     }
     return links;
   }
@@ -100,10 +108,11 @@ class Builder {
   VectorX makeInitialPositions() const {
     VectorX positions = VectorX::Zero(static_cast<Eigen::Index>(model_.joints().size()));
     for (const auto& [name, position] : description_.initial_joint_positions) {
-      const int joint = findJoint("an initial position is given for joint", name);
+      const std::string entry = "initial_joint_positions." + name;
+      const int joint = findJoint(entry, "an initial position is given for joint", name);
       if (!std::isfinite(position)) {
-        refuse("initial position of joint '" + name + "' is " + std::to_string(position) +
-               "; it must be finite (rad or m)");
+        refuse(entry, "initial position of joint '" + name + "' is " + std::to_string(position) +
+                          "; it must be finite (rad or m)");
       }
       positions[joint] = position;
     }
@@ -126,12 +135,12 @@ class Builder {
 
  private:
   int findMappedJoint(const std::string& recorded, const std::string& name) const {
-    return findJoint("the joint map sends '" + recorded + "' to", name);
+    return findJoint("joint_names." + recorded, "the joint map sends '" + recorded + "' to", name);
   }
 
   [[noreturn]] void refuseSharedJoint(const std::string& first, const std::string& second,
                                       const std::string& name) const {
-    refuse("the joint map sends both '" + first + "' and '" + second + "' to '" + name + "'");
+    refuse("joint_names." + second, "the joint map sends both '" + first + "' and '" + second + "' to '" + name + "'");
   }
 
   const InstrumentDescription& description_;
@@ -143,9 +152,9 @@ class Builder {
 Instrument::Instrument(const InstrumentDescription& description, RobotModel model, const Pose& X_WB)
     : name_(description.name), model_(std::move(model)), X_WB_(X_WB) {
   const Builder builder(description, model_);
-  if (!X_WB.matrix().allFinite()) builder.refuse("its base pose is not finite");
+  if (!X_WB.matrix().allFinite()) builder.refuse("base_pose", "its base pose is not finite");
   builder.checkTopics();
-  tip_link_ = builder.findLink("tip link", description.tip_link);
+  tip_link_ = builder.findLink("tip_link", "tip link", description.tip_link);
   contact_links_ = builder.makeContactLinks();
   initial_positions_ = builder.makeInitialPositions();
   joint_of_recorded_name_ = builder.makeJointMap();

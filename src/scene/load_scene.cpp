@@ -92,6 +92,7 @@ Scene parseScene(const std::string& yaml, const std::string& file, const Package
   if (const YamlCursor* value = map.find("solver")) scene.solver = parseSolver(*value);
   if (const YamlCursor* value = map.find("advisor")) scene.advisor = parseAdvisor(*value);
   if (const YamlCursor* value = map.find("publish")) scene.publish = parsePublish(*value);
+  map.cursor().addLines(scene.entry_lines);
   return scene;
 }
 

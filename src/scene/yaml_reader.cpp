@@ -117,6 +117,15 @@ void YamlCursor::fail(const std::string& problem) const {
                               problem);
 }
 
+void YamlCursor::addLines(std::map<std::string, int>& lines) const {
+  lines.emplace(path_, line_);
+  if (node_.IsMap()) {
+    for (const auto& entry : entries()) entry.second.addLines(lines);
+  } else if (node_.IsSequence()) {
+    for (const YamlCursor& value : list(0)) value.addLines(lines);
+  }
+}
+
 YamlMap YamlCursor::map(MapKind kind) const { return {*this, kind}; }
 
 std::vector<std::pair<std::string, YamlCursor>> YamlCursor::entries() const {

@@ -6,6 +6,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,6 +48,9 @@ class YamlCursor {
   const std::string& path() const { return path_; }
   int line() const { return line_; }
   bool isScalar() const { return node_.IsScalar(); }
+
+  /// Adds the lines of this value and of all below it, by key path.
+  void addLines(std::map<std::string, int>& lines) const;
 
   YamlMap map(MapKind kind) const;
   /// Entries of a map with free keys, in file order; keys given twice are refused.

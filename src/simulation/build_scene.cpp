@@ -1,7 +1,9 @@
 #include "tissue_contact/simulation/build_scene.h"
 
 #include <stdexcept>
+#include <utility>
 
+#include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/instrument/parse_urdf.h"
 
 namespace tissue_contact {
@@ -9,11 +11,13 @@ namespace {
 
 Pose placeInWorld(const PoseDescription& pose, const std::string& owner, const SceneEnvironment& environment) {
   if (pose.tf_frame.empty()) return pose.X;
-  if (!environment.frame_pose) {
-    throw std::invalid_argument(owner + " is placed in tf frame '" + pose.tf_frame +
-                                "', but no tf is available here; give position_m and rpy_rad without tf_frame");
-  }
-  return environment.frame_pose(pose.tf_frame) * pose.X;
+  return atEntry("tf_frame", [&]() -> Pose {
+    if (!environment.frame_pose) {
+      throw std::invalid_argument(owner + " is placed in tf frame '" + pose.tf_frame +
+                                  "', but no tf is available here; give position_m and rpy_rad without tf_frame");
+    }
+    return environment.frame_pose(pose.tf_frame) * pose.X;
+  });
 }
 
 RobotModel readUrdf(const InstrumentDescription& instrument, const SceneEnvironment& environment) {
@@ -31,8 +35,14 @@ RobotModel readUrdf(const InstrumentDescription& instrument, const SceneEnvironm
 std::vector<Instrument> buildInstruments(const Scene& scene, const SceneEnvironment& environment) {
   std::vector<Instrument> instruments;
   for (const InstrumentDescription& description : scene.instruments) {
-    const Pose X_WB = placeInWorld(description.base_pose, "instrument '" + description.name + "'", environment);
-    instruments.emplace_back(description, readUrdf(description, environment), X_WB);
+    atEntry(elementOf("instruments", instruments.size()), [&] {
+      const Pose X_WB = atEntry("base_pose", [&] {
+        return placeInWorld(description.base_pose, "instrument '" + description.name + "'", environment);
+      });
+      RobotModel model = atEntry(description.urdf_file.empty() ? "robot_description" : "urdf",
+                                 [&] { return readUrdf(description, environment); });
+      instruments.emplace_back(description, std::move(model), X_WB);
+    });
   }
   return instruments;
 }
@@ -40,7 +50,11 @@ std::vector<Instrument> buildInstruments(const Scene& scene, const SceneEnvironm
 std::vector<Tissue> buildTissues(const Scene& scene, const SceneEnvironment& environment) {
   std::vector<Tissue> tissues;
   for (const TissueDescription& description : scene.tissues) {
-    tissues.emplace_back(description, placeInWorld(description.pose, "tissue '" + description.name + "'", environment));
+    atEntry(elementOf("tissues", tissues.size()), [&] {
+      const Pose X_WT = atEntry(
+          "pose", [&] { return placeInWorld(description.pose, "tissue '" + description.name + "'", environment); });
+      tissues.emplace_back(description, X_WT);
+    });
   }
   return tissues;
 }
@@ -53,7 +67,9 @@ std::vector<TouchingTissues> buildTissuePairs(const Scene& scene) {
     throw std::invalid_argument("tissue_pairs names the unknown tissue '" + name + "'");
   };
   std::vector<TouchingTissues> pairs;
-  for (const TissuePair& pair : scene.tissue_pairs) pairs.push_back({index(pair.tissue), index(pair.other)});
+  for (const TissuePair& pair : scene.tissue_pairs) {
+    atEntry(elementOf("tissue_pairs", pairs.size()), [&] { pairs.push_back({index(pair.tissue), index(pair.other)}); });
+  }
   return pairs;
 }
 
@@ -61,14 +77,17 @@ void requireMethodForLaws(const Scene& scene) {
   const SolverMethod method = scene.solver.method;
   if (method == SolverMethod::kPredictorCorrector || method == SolverMethod::kReference) return;
   if (scene.advisor.general_friction) {
-    throw std::invalid_argument("solver.method " + std::string(solverMethodName(method)) +
-                                " handles isotropic friction only, but advisor.friction_path is general; make it auto");
+    throw EntryError("advisor.friction_path",
+                     "solver.method " + std::string(solverMethodName(method)) +
+                         " handles isotropic friction only, but advisor.friction_path is general; make it auto");
   }
-  for (const FrictionDescription& pair : scene.friction) {
+  for (std::size_t i = 0; i < scene.friction.size(); ++i) {
+    const FrictionDescription& pair = scene.friction[i];
     if (pair.law.kind == FrictionLawDescription::Kind::kIsotropic) continue;
-    throw std::invalid_argument("solver.method " + std::string(solverMethodName(method)) +
-                                " handles isotropic friction only, but friction on tissue '" + pair.tissue +
-                                "' depends on direction; use predictor_corrector or reference");
+    throw EntryError(elementOf("friction", i) + ".law",
+                     "solver.method " + std::string(solverMethodName(method)) +
+                         " handles isotropic friction only, but friction on tissue '" + pair.tissue +
+                         "' depends on direction; use predictor_corrector or reference");
   }
 }
 

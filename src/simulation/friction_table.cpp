@@ -1,9 +1,12 @@
 #include "tissue_contact/simulation/friction_table.h"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "tissue_contact/core/entry_error.h"
 
 namespace tissue_contact {
 
@@ -101,11 +104,14 @@ FrictionTable::FrictionTable(const Scene& scene, const std::vector<Instrument>& 
       for (const int node : tissues[t].surface()[i]) surface.triangles_of_node[node].push_back(static_cast<int>(i));
     }
   }
-  std::vector<FrictionDescription> sorted = scene.friction;
-  std::stable_sort(sorted.begin(), sorted.end(), [](const FrictionDescription& a, const FrictionDescription& b) {
-    return specificity(a) < specificity(b);
+  std::vector<std::size_t> sorted(scene.friction.size());
+  std::iota(sorted.begin(), sorted.end(), std::size_t{0});
+  std::stable_sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
+    return specificity(scene.friction[a]) < specificity(scene.friction[b]);
   });
-  for (const FrictionDescription& description : sorted) add(description, scene, instruments, tissues);
+  for (const std::size_t i : sorted) {
+    atEntry(elementOf("friction", i), [&] { add(scene.friction[i], scene, instruments, tissues); });
+  }
 }
 
 void FrictionTable::add(const FrictionDescription& description, const Scene& scene,

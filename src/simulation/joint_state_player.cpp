@@ -42,7 +42,7 @@ JointStatePlayer::JointStatePlayer(Simulator& simulator)
   }
   if (topics_.empty()) {
     throw std::invalid_argument(
-        simulator.scene().file +
+        placeOf(simulator.scene(), "instruments") +
         ": no instrument has a joint-state topic, so nothing would ever move; give at least one "
         "instrument a joint_state_topics entry");
   }

@@ -6,6 +6,7 @@
 
 #include "simulation/simulator_implementation.h"
 #include "tissue_contact/core/check.h"
+#include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/simulation/advisor.h"
 
 namespace tissue_contact {
@@ -63,11 +64,11 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       mean_edge(meanSurfaceEdge(tissues)),
       motion(instruments),
       detector(instruments, surfacesOf(tissues), restPositionsOf(tissues), environment.meshes),
-      solver(makeContactSolver(scene.solver, environment.clock)),
+      solver(atEntry("solver", [&] { return makeContactSolver(scene.solver, environment.clock); })),
       load_watch(scene, tissues) {
   requireMethodForLaws(scene);
-  requirePositive("step.max_step_s", scene.step.max_step_s, "s");
-  requireNonNegative("advisor.sleep_error", scene.advisor.sleep_error);
+  atEntry("step.max_step_s", [&] { requirePositive("step.max_step_s", scene.step.max_step_s, "s"); });
+  atEntry("advisor.sleep_error", [&] { requireNonNegative("advisor.sleep_error", scene.advisor.sleep_error); });
   if (!scene.tissue_pairs.empty()) {
     const std::vector<TouchingTissues> pairs = buildTissuePairs(scene);
     pair_detector.emplace(pairs, surfacesOf(tissues), restPositionsOf(tissues));
@@ -138,8 +139,16 @@ void Simulator::Implementation::detectContacts(double dt) {
   memory.addKeptPoints(detector, x, motion.startPoses(), margin, contacts);
 }
 
+std::unique_ptr<Simulator::Implementation> Simulator::build(const Scene& scene, const SceneEnvironment& environment) {
+  try {
+    return atEntry("", [&] { return std::make_unique<Implementation>(scene, environment); });
+  } catch (const EntryError& error) {
+    throw std::invalid_argument(placeOf(scene, error.entry()) + ": " + error.what());
+  }
+}
+
 Simulator::Simulator(const Scene& scene, const SceneEnvironment& environment)
-    : implementation_(std::make_unique<Implementation>(scene, environment)) {}
+    : implementation_(build(scene, environment)) {}
 Simulator::~Simulator() = default;
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;

@@ -3,10 +3,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <sstream>
-#include <stdexcept>
 
 #include "element_patches.h"
 #include "region.h"
+#include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/tissue/element_materials.h"
 #include "tissue_contact/tissue/sheet_mesh.h"
 #include "tissue_contact/tissue/tet_mesh.h"
@@ -23,8 +23,8 @@ void setVolume(TetMesh mesh, const std::string& source, PlacedMesh& placed) {
 
 void setSheet(SheetMesh mesh, double thickness, const std::string& source, PlacedMesh& placed) {
   if (!(thickness > 0.0) || !std::isfinite(thickness)) {
-    throw std::invalid_argument(source + ": thickness_m is " + std::to_string(thickness) +
-                                " m; it must be finite and > 0");
+    throw EntryError("thickness_m",
+                     source + ": thickness_m is " + std::to_string(thickness) + " m; it must be finite and > 0");
   }
   checkSheetMesh(mesh, source);
   placed.rest = std::move(mesh.positions);
@@ -35,16 +35,17 @@ void setSheet(SheetMesh mesh, double thickness, const std::string& source, Place
 void setGeometry(const TissueDescription& description, const std::string& source, PlacedMesh& placed) {
   const auto inFile = [&](const std::string& file) { return source + ", mesh file '" + file + "'"; };
   if (const auto* block = std::get_if<BlockDescription>(&description.geometry)) {
-    setVolume(makeBlockMesh(*block), source, placed);
+    atEntry("block", [&] { setVolume(makeBlockMesh(*block), source, placed); });
     placed.patch_of = patchesByCells(placed.tetrahedra.size(), kTetrahedraPerCell);
   } else if (const auto* mesh = std::get_if<MeshDescription>(&description.geometry)) {
-    setVolume(loadTetMesh(*mesh), inFile(mesh->file), placed);
+    atEntry("mesh.file", [&] { setVolume(loadTetMesh(*mesh), inFile(mesh->file), placed); });
     placed.patch_of = patchesByFaces(placed.rest, placed.tetrahedra);
   } else if (const auto* sheet = std::get_if<SheetDescription>(&description.geometry)) {
-    setSheet(makeSheetMesh(*sheet), sheet->thickness_m, source, placed);
+    atEntry("sheet", [&] { setSheet(makeSheetMesh(*sheet), sheet->thickness_m, source, placed); });
   } else {
     const auto& shell = std::get<ShellDescription>(description.geometry);
-    setSheet(loadShellMesh(shell), shell.thickness_m, inFile(shell.file), placed);
+    SheetMesh read = atEntry("shell.file", [&] { return loadShellMesh(shell); });
+    atEntry("shell", [&] { setSheet(std::move(read), shell.thickness_m, inFile(shell.file), placed); });
   }
 }
 
@@ -87,7 +88,7 @@ void setRegions(const TissueDescription& description, const std::string& source,
             << "' holds no element's centroid (or later regions hold them all); the mesh lies within ("
             << placed.rest.rowwise().minCoeff().transpose() << ") to (" << placed.rest.rowwise().maxCoeff().transpose()
             << ") m of the tissue frame: move or enlarge the region, or refine the mesh";
-    throw std::invalid_argument(message.str());
+    throw EntryError(elementOf("regions", r) + ".where", message.str());
   }
 }
 
@@ -105,18 +106,19 @@ Vector2 fibreIn(const NodalVectors& x, const Triangle& triangle, const Vector3& 
   return gram.inverse() * (edges.transpose() * along.normalized());
 }
 
-void checkFibre(const Vector3& fibre, const std::string& owner) {
+void checkFibre(const Vector3& fibre, const std::string& entry, const std::string& owner) {
   if (fibre.allFinite()) return;
   std::ostringstream message;
   message << owner << "fibre_direction is (" << fibre.transpose() << "); it must be finite";
-  throw std::invalid_argument(message.str());
+  throw EntryError(entry + "fibre_direction", message.str());
 }
 
 void setFibres(const TissueDescription& description, const std::string& source, PlacedMesh& placed) {
-  checkFibre(description.fibre_direction, source + ": ");
+  checkFibre(description.fibre_direction, "", source + ": ");
   bool any = !description.fibre_direction.isZero(0.0);
-  for (const TissueRegion& region : description.regions) {
-    checkFibre(region.fibre_direction, source + ", region '" + region.name + "': ");
+  for (std::size_t r = 0; r < description.regions.size(); ++r) {
+    const TissueRegion& region = description.regions[r];
+    checkFibre(region.fibre_direction, elementOf("regions", r) + ".", source + ", region '" + region.name + "': ");
     any = any || !region.fibre_direction.isZero(0.0);
   }
   if (!any) return;

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "mesh_checks.h"
+#include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/tissue/tet_mesh.h"
 
 namespace tissue_contact {
@@ -49,7 +50,7 @@ void describe(const SphereRegion& sphere, std::ostream& out) {
   } else {
     message << "the mesh has no nodes";
   }
-  refuseMesh(source, message.str());
+  throw EntryError(elementOf("fixed", index), source + ": " + message.str());
 }
 
 }  // namespace

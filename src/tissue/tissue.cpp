@@ -5,6 +5,7 @@
 
 #include "placed_mesh.h"
 #include "tissue_contact/core/check.h"
+#include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/tissue/make_elasticity.h"
 #include "tissue_contact/tissue/membrane.h"
 #include "tissue_contact/tissue/sheet_mesh.h"
@@ -20,17 +21,20 @@ void checkModel(const TissueDescription& description, bool is_volume) {
                                  ? "'; a block or mesh is a volume and takes linear, corotational, neo_hookean or "
                                    "mass_spring: change the model, or give a sheet or shell"
                                  : "'; a sheet or shell takes membrane: change the model, or give a block or mesh";
-    throw std::invalid_argument(tissueLabel(description) + ": model is '" + elasticModelName(model) + fits);
+    throw EntryError("material.model", tissueLabel(description) + ": model is '" + elasticModelName(model) + fits);
   }
-  for (const TissueRegion& region : description.regions) {
+  for (std::size_t r = 0; r < description.regions.size(); ++r) {
+    const TissueRegion& region = description.regions[r];
+    const std::string entry = elementOf("regions", r) + ".material";
     if (region.material.dilatation != description.material.dilatation) {
-      throw std::invalid_argument(tissueLabel(description) + ", region '" + region.name +
-                                  "': dilatation is not that of the tissue; give all regions the same");
+      throw EntryError(entry + ".dilatation", tissueLabel(description) + ", region '" + region.name +
+                                                  "': dilatation is not that of the tissue; give all regions the same");
     }
     if (region.material.model == model) continue;
-    throw std::invalid_argument(tissueLabel(description) + ", region '" + region.name + "': model is '" +
-                                elasticModelName(region.material.model) + "'; it must be that of the tissue, '" +
-                                elasticModelName(model) + "': give parts of different models as tissues of their own");
+    throw EntryError(entry + ".model", tissueLabel(description) + ", region '" + region.name + "': model is '" +
+                                           elasticModelName(region.material.model) +
+                                           "'; it must be that of the tissue, '" + elasticModelName(model) +
+                                           "': give parts of different models as tissues of their own");
   }
 }
 
@@ -42,11 +46,18 @@ void checkNumbers(const MaterialDescription& material, double damping_stiffness_
 
 void checkDescription(const TissueDescription& description, bool is_volume) {
   checkModel(description, is_volume);
-  checkNumbers(description.material, description.damping.stiffness_s, tissueLabel(description) + ": ");
-  requireNonNegative(tissueLabel(description) + ": damping mass_per_s", description.damping.mass_per_s, "1/s");
-  for (const TissueRegion& region : description.regions) {
-    checkNumbers(region.material, region.damping_stiffness_s,
-                 tissueLabel(description) + ", region '" + region.name + "': ");
+  atEntry("material", [&] {
+    checkNumbers(description.material, description.damping.stiffness_s, tissueLabel(description) + ": ");
+  });
+  atEntry("damping.mass_per_s", [&] {
+    requireNonNegative(tissueLabel(description) + ": damping mass_per_s", description.damping.mass_per_s, "1/s");
+  });
+  for (std::size_t r = 0; r < description.regions.size(); ++r) {
+    const TissueRegion& region = description.regions[r];
+    atEntry(elementOf("regions", r) + ".material", [&] {
+      checkNumbers(region.material, region.damping_stiffness_s,
+                   tissueLabel(description) + ", region '" + region.name + "': ");
+    });
   }
 }
 

@@ -281,6 +281,8 @@ struct PublishDescription {
 
 struct Scene {
   std::string file;  ///< where it was read from, for messages; may be empty
+  /// Line of each entry of that file by its path of keys, "tissues[0].material"; empty for a scene that was not read.
+  std::map<std::string, int> entry_lines;
   std::string world_frame = "world";
   Vector3 gravity_m_per_s2 = Vector3::Zero();
   std::vector<TissueDescription> tissues;
@@ -292,5 +294,9 @@ struct Scene {
   AdvisorDescription advisor;
   PublishDescription publish;
 };
+
+/// "file:line: entry" for messages, the line being that of the nearest entry around it that the file has; without what
+/// the scene does not know.
+std::string placeOf(const Scene& scene, const std::string& entry);
 
 }  // namespace tissue_contact

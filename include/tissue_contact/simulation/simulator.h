@@ -60,7 +60,7 @@ struct AdvanceLimits {
 
 class Simulator {
  public:
-  /// Builds every tissue and instrument. @throws std::invalid_argument naming what is wrong in the scene or its files.
+  /// Builds every tissue and instrument. @throws std::invalid_argument "<file>:<line>: <key path>: <what is wrong>".
   Simulator(const Scene& scene, const SceneEnvironment& environment);
   ~Simulator();
   Simulator(Simulator&&) noexcept;
@@ -124,6 +124,7 @@ class Simulator {
   void requireJointPositions(int instrument, const VectorX& joint_positions) const;
 
   struct Implementation;
+  static std::unique_ptr<Implementation> build(const Scene& scene, const SceneEnvironment& environment);
   std::unique_ptr<Implementation> implementation_;
 };
 
