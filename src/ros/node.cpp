@@ -13,8 +13,10 @@
 #include <exception>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "tissue_contact/ros/environment.h"
+#include "tissue_contact/ros/private_parameters.h"
 #include "tissue_contact/scene/load_scene.h"
 
 namespace tissue_contact {
@@ -24,29 +26,39 @@ namespace {
 /// machine waits here. Bounded, because nothing may grow for ever: 200 s of a 500 Hz topic, about 60 MB.
 constexpr std::size_t kJointStateQueue = 100000;
 
-Simulator makeSimulator(const ros::NodeHandle& private_node) {
+Simulator makeSimulator(const ros::NodeHandle& private_node, const std::vector<std::string>& arguments) {
   const std::string parameter = private_node.resolveName("scene");
   std::string file;
   if (!private_node.getParam("scene", file) || file.empty()) {
+    refuseUnknownParameters(private_node, nullptr, arguments);  // it may be there, misspelt
     throw std::invalid_argument(
         "parameter '" + parameter +
         "' is not set to the path of a scene file; start the node with _scene:=/path/scene.yaml "
         "or <param name=\"scene\" value=\"...\"/>");
   }
+  const auto naming_file = [&](const std::exception& error) {
+    return std::invalid_argument("parameter '" + parameter + "' (" + file + "): " + error.what());
+  };
+  Scene scene;
   try {
-    const Scene scene = loadScene(file, packagePath);
+    scene = loadScene(file, packagePath);
+  } catch (const std::exception& error) {
+    throw naming_file(error);
+  }
+  refuseUnknownParameters(private_node, &scene, arguments);
+  try {
     return {scene, nodeEnvironment(private_node, scene.world_frame)};
   } catch (const std::exception& error) {
-    throw std::invalid_argument("parameter '" + parameter + "' (" + file + "): " + error.what());
+    throw naming_file(error);
   }
 }
 
 }  // namespace
 
-Node::Node(ShutdownGuard& guard)
+Node::Node(ShutdownGuard& guard, const std::vector<std::string>& arguments)
     : guard_(guard),
       private_node_("~"),
-      simulator_(makeSimulator(private_node_)),
+      simulator_(makeSimulator(private_node_, arguments)),
       player_(simulator_),
       inbox_(kJointStateQueue),
       health_(simulator_, player_, inbox_),
@@ -58,6 +70,7 @@ Node::Node(ShutdownGuard& guard)
   updater_.add("tissue contact", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     health_.fill(receiver_.missing(), status);
   });
+  updater_.add("ROS master", [this](diagnostic_updater::DiagnosticStatusWrapper& status) { master_.fill(status); });
 }
 
 Node::~Node() {
@@ -73,6 +86,7 @@ int Node::run() {
   outputs_.start([this] { inbox_.wake(); });
   stepper_.start();
   receiver_.start(player_.topics());
+  master_.start();
   diagnostics_thread_ = std::thread([this] { tellDiagnostics(); });
   constexpr double kWakeUp = 0.05;  // s: how long a signal may go unseen
   while (ros::ok() && !guard_.asked() && !stepper_.failed()) {
@@ -87,6 +101,7 @@ int Node::run() {
 void Node::stop() {
   stepper_.stop();
   receiver_.stop();
+  master_.stop();
   {
     const std::lock_guard<std::mutex> lock(diagnostics_mutex_);
     diagnostics_stop_ = true;
@@ -118,12 +133,19 @@ void Node::tellCounts() {
 
 int runNode(int argc, char** argv) {
   ShutdownGuard guard;
+  // Before anything of ROS, which would wait for a master.
+  const std::string problem = argumentProblem(argc, argv);
+  if (!problem.empty()) {
+    ROS_FATAL_STREAM(problem);
+    return 1;
+  }
+  const std::vector<std::string> arguments = privateArguments(argc, argv);
   ros::init(argc, argv, "tissue_contact", ros::init_options::NoSigintHandler);
   int code = 1;
   try {
     const ros::NodeHandle keep_alive;  // so that the fatal message still reaches /rosout
     try {
-      code = Node(guard).run();
+      code = Node(guard, arguments).run();
     } catch (const std::exception& error) {
       if (guard.asked()) return 0;  // what was waited for need not be there any more
       ROS_FATAL_STREAM(error.what());

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <locale>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+
+#include "tissue_contact/core/nearest_word.h"
 
 namespace tissue_contact {
 namespace {
@@ -25,22 +26,6 @@ std::string typeName(const YAML::Node& node) {
   if (node.IsSequence()) return "a list";
   if (node.IsNull()) return "empty";
   return inQuotes(node.Scalar());
-}
-
-/// Levenshtein distance: insertions, deletions and replacements that turn `a` into `b`.
-std::size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
-    }
-  }
-  return row.back();
 }
 
 /// The number that the whole of `text` spells, independent of the process's locale.
@@ -96,16 +81,7 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& allowed) {
-  if (word.empty() || word.size() > kMaxShownBytes) return "";
-  std::string nearest;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 2);
-  for (const std::string& candidate : allowed) {
-    const bool lacks_suffix = candidate.size() > word.size() && candidate.compare(0, word.size() + 1, word + "_") == 0;
-    const std::size_t distance = lacks_suffix ? 1 : editDistance(word, candidate);
-    if (distance > least || (distance == least && !nearest.empty())) continue;
-    nearest = candidate;
-    least = distance;
-  }
+  const std::string nearest = nearestWord(word, allowed);
   return nearest.empty() ? "" : "did you mean " + inQuotes(nearest) + "? ";
 }
 

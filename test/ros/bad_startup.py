@@ -9,6 +9,7 @@ import unittest
 import rosgraph
 import rospy
 import rostest
+from geometry_msgs.msg import WrenchStamped
 
 import harness
 
@@ -111,16 +112,44 @@ class BadStartup(unittest.TestCase):
     def test_bad_tf_timeout(self):
         for bad in ["-1.0", "soon"]:
             self.assert_refused(["_scene:=" + harness.SCENE, "_tf_timeout_s:=" + bad], "tf_timeout_s")
-        rospy.delete_param("/tissue_contact/tf_timeout_s")
 
     def test_bad_marker_scale(self):
         self.assert_refused(["_scene:=" + harness.SCENE, "_markers/displacement_full_scale_m:=0.0"],
                             "displacement_full_scale_m")
-        rospy.delete_param("/tissue_contact/markers")
+
+    def test_misspelt_argument(self):
+        self.assert_refused(["_sceen:=" + harness.SCENE], "/tissue_contact/sceen", "'scene'", "_sceen:=")
+        self.assertFalse(rospy.has_param("/tissue_contact/sceen"))  # the next start must not meet it
+        self.assert_refused(["_scene:=" + harness.SCENE, "_marker/force_arrow_m_per_n:=0.1"],
+                            "/tissue_contact/marker/force_arrow_m_per_n", "'markers/force_arrow_m_per_n'")
+
+    def test_misspelt_parameter_of_a_launch_file(self):
+        rospy.set_param("/tissue_contact/tf_timeout", 1.0)
+        self.assert_refused(["_scene:=" + harness.SCENE], "/tissue_contact/tf_timeout", "'tf_timeout_s'", "rosparam delete")
+
+    def test_parameter_like_none(self):
+        self.assert_refused(["_scene:=" + harness.SCENE, "_gravity:=9.81"], "/tissue_contact/gravity", "tf_timeout_s")
+
+    def test_extra_argument(self):
+        for extra in [harness.SCENE, "--scene", "_scene=" + harness.SCENE, ""]:
+            self.assert_refused(["_scene:=" + harness.SCENE, extra], "'" + extra + "'", "_scene:=")
+
+    def test_known_parameters_start_the_node(self):
+        # Of the node, of diagnostic_updater, of roscpp and of nodes beside it.
+        path = self.changed("urdf: package://tissue_contact/urdf/probe.urdf", "robot_description: arm/description")
+        with open(os.path.join(harness.PACKAGE, "urdf", "probe.urdf"), encoding="utf-8") as stream:
+            rospy.set_param("/tissue_contact/arm/description", stream.read())
+        rospy.set_param("/tissue_contact_of_another/sceen", "x")
+        for name, value in [("robot_description", "<unused/>"), ("diagnostic_period", 1.0), ("tf_timeout_s", 1.0),
+                            ("markers/force_arrow_m_per_n", 0.1), ("markers/displacement_full_scale_m", 0.01)]:
+            rospy.set_param("/tissue_contact/" + name, value)
+        arguments = ["__log:=" + os.path.join(self.directory, "log"), "chatter:=elsewhere", "/tissue_contact/status:=/s"]
+        with harness.node(path, *arguments):
+            harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)  # waits for the publisher
 
     def tearDown(self):
-        if rospy.has_param("/tissue_contact/scene"):
-            rospy.delete_param("/tissue_contact/scene")
+        if rospy.has_param("/tissue_contact"):
+            rospy.delete_param("/tissue_contact")
 
 
 if __name__ == "__main__":

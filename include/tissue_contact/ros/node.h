@@ -8,10 +8,13 @@
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "tissue_contact/ros/health.h"
 #include "tissue_contact/ros/joint_state_inbox.h"
+#include "tissue_contact/ros/master_watch.h"
 #include "tissue_contact/ros/outputs.h"
 #include "tissue_contact/ros/receiver.h"
 #include "tissue_contact/ros/shutdown_guard.h"
@@ -30,13 +33,15 @@ namespace tissue_contact {
 ///   stepping     Stepper: inbox_ -> player_ -> simulator_ -> wrenches; alone in touching player_, simulator_ and outputs_
 ///   publishing   SnapshotPublisher inside outputs_: snapshots through a locked queue; of simulator_ only what is const
 ///   diagnostics  here: LiveFigures of health_, which is locked for a copy at a time
+///   master       MasterWatch: asks the ROS master once per second whether it knows this node
 ///   main         callbacks of roscpp: a subscriber came (an atomic flag, and inbox_ wakes the stepping thread)
 /// None waits for another's work.
 class Node {
  public:
   /// Builds the scene; advertises and subscribes nothing yet. @param guard must outlive this.
+  /// @param arguments names of the private parameters that came by the command line.
   /// @throws std::exception naming the parameter or file at fault and what to do.
-  explicit Node(ShutdownGuard& guard);
+  Node(ShutdownGuard& guard, const std::vector<std::string>& arguments);
   ~Node();
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
@@ -59,6 +64,7 @@ class Node {
   Outputs outputs_;
   Stepper stepper_;
   Receiver receiver_;
+  MasterWatch master_;
   std::atomic<bool> counts_told_{false};
 
   diagnostic_updater::Updater updater_;

@@ -1,0 +1,32 @@
+/// @file
+/// Room `ros`: the arguments and private parameters the node was started with, against those it knows. What nobody reads
+/// would otherwise be accepted silently.
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <string>
+#include <vector>
+
+#include "tissue_contact/scene/scene.h"
+
+namespace tissue_contact {
+
+/// Why the node cannot start with these arguments (any but name:=value); empty if it can. Needs no master.
+std::string argumentProblem(int argc, const char* const* argv);
+
+/// "scene" for every argument _scene:=value.
+std::vector<std::string> privateArguments(int argc, const char* const* argv);
+
+/// Those of `set` (names from / on) that lie below `own`, a namespace without its last slash, and not in `known`.
+std::vector<std::string> unknownNames(const std::vector<std::string>& set, const std::string& own,
+                                      const std::vector<std::string>& known);
+
+/// Looks through the parameter server for private parameters that neither the node nor a library it uses reads. What
+/// came by the command line of this process is removed from the server again, so that the next start does not meet it.
+/// @param scene names the parameters that hold URDFs; null: not known. @param arguments see privateArguments().
+/// @throws std::invalid_argument naming the first, the nearest known name, and where to correct it.
+void refuseUnknownParameters(const ros::NodeHandle& private_node, const Scene* scene,
+                             const std::vector<std::string>& arguments);
+
+}  // namespace tissue_contact

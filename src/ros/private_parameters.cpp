@@ -1,0 +1,101 @@
+/// @file
+/// Room `ros`: see private_parameters.h.
+#include "tissue_contact/ros/private_parameters.h"
+
+#include <ros/param.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "tissue_contact/core/nearest_word.h"
+
+namespace tissue_contact {
+namespace {
+
+const std::string kBecomes = ":=";
+
+bool contains(const std::vector<std::string>& all, const std::string& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+/// Relative to the private namespace. diagnostic_period is diagnostic_updater's; roscpp, rosconsole and tf2_ros read none.
+std::vector<std::string> knownNames(const Scene* scene) {
+  std::vector<std::string> names = {"diagnostic_period",
+                                    "markers/displacement_full_scale_m",
+                                    "markers/force_arrow_m_per_n",
+                                    "robot_description",
+                                    "scene",
+                                    "tf_timeout_s"};
+  if (scene == nullptr) return names;
+  for (const InstrumentDescription& instrument : scene->instruments) {
+    const std::string& name = instrument.robot_description_parameter;
+    if (!name.empty() && !contains(names, name)) names.push_back(name);
+  }
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+}  // namespace
+
+std::string argumentProblem(int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument.find(kBecomes) != std::string::npos) continue;
+    return "argument '" + argument +
+           "' is not understood; arguments are _parameter:=value (the scene: _scene:=/path/scene.yaml), from:=to and "
+           "__name:=name; --help tells more";
+  }
+  return "";
+}
+
+std::vector<std::string> privateArguments(int argc, const char* const* argv) {
+  std::vector<std::string> names;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const std::size_t end = argument.find(kBecomes);
+    if (end == std::string::npos || end < 2 || argument[0] != '_' || argument[1] == '_') continue;
+    names.push_back(argument.substr(1, end - 1));
+  }
+  return names;
+}
+
+std::vector<std::string> unknownNames(const std::vector<std::string>& set, const std::string& own,
+                                      const std::vector<std::string>& known) {
+  std::vector<std::string> unknown;
+  for (const std::string& name : set) {
+    if (name.compare(0, own.size() + 1, own + "/") == 0 && !contains(known, name)) unknown.push_back(name);
+  }
+  std::sort(unknown.begin(), unknown.end());
+  return unknown;
+}
+
+void refuseUnknownParameters(const ros::NodeHandle& private_node, const Scene* scene,
+                             const std::vector<std::string>& arguments) {
+  std::vector<std::string> set;
+  if (!ros::param::getParamNames(set)) return;  // the master went away: told by who needs it
+  const std::vector<std::string> names = knownNames(scene);
+  std::vector<std::string> known;
+  for (const std::string& name : names) known.push_back(private_node.resolveName(name));
+  const std::string& own = private_node.getNamespace();
+  const std::vector<std::string> unknown = unknownNames(set, own, known);
+  if (unknown.empty()) return;
+  for (const std::string& argument : arguments) {
+    const std::string name = own + "/" + argument;
+    if (contains(unknown, name)) ros::param::del(name);
+  }
+  const std::string first = unknown.front().substr(own.size() + 1);
+  const std::string nearest = nearestWord(first, names);
+  const bool is_argument = contains(arguments, first);
+  throw std::invalid_argument(
+      "parameter '" + unknown.front() + "' is none that this node reads; " +
+      (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") + "It reads " + joined(names) + ". " +
+      (is_argument ? "It was given as _" + first + ":=..."
+                   : "Correct it where it is set (a launch file?), or remove it: rosparam delete " + unknown.front()));
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,49 @@
+"""Shared by the faults_*.py: what the node says it did with every joint state, and its end."""
+import re
+import signal
+import socket
+import time
+
+import harness
+
+OK, WARN = 0, 1
+
+
+def values_of(status):
+    return {v.key: v.value for v in status.values}
+
+
+def status_named(diagnostics, name):
+    """The node's status of this name in a DiagnosticArray, or None."""
+    return next((s for s in diagnostics.status if s.name.endswith(": " + name)), None)
+
+
+def figures(diagnostics):
+    """The node's counts in a DiagnosticArray as a dictionary of texts; empty at the start-up."""
+    status = status_named(diagnostics, "tissue contact")
+    return values_of(status) if status else {}
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return probe.getsockname()[1]
+
+
+def counts_at_the_end(process, number=signal.SIGINT):
+    """Sends the signal; the node ends within a second, with exit code 0, and its counts add up. Returns them."""
+    start = time.monotonic()
+    process.send_signal(number)
+    code = process.wait(harness.DEADLINE_S)
+    took = time.monotonic() - start
+    process.output.seek(0)
+    output = process.output.read()
+    assert code == 0, output
+    assert took < 1.0, "took %.2f s to end: %s" % (took, output)
+    lines = [line for line in output.splitlines() if line.startswith("joint states: ")]
+    assert len(lines) == 1, output
+    counts = {word: int(number) for number, word in
+              re.findall(r"(\d+) (received|accepted|merged|dropped|refused|waiting|wrenches)", lines[0])}
+    assert counts["received"] == sum(counts[part] for part in
+                                     ["accepted", "merged", "dropped", "refused", "waiting"]), lines[0]
+    return counts

@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+"""The ROS master is killed, restarted, stopped: the node goes on, and whoever comes later finds it. On a master of its
+own, since rostest's must not be killed."""
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rosgraph
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import WrenchStamped
+
+import faults
+import harness
+
+PORT = faults.free_port()
+NODE = "/tissue_contact"
+
+
+class Master:
+    def __init__(self):
+        self.start()
+
+    def start(self):
+        self._process = subprocess.Popen(["rosmaster", "--core", "-p", str(PORT)], stdin=subprocess.DEVNULL,
+                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        harness.wait_until(rosgraph.is_master_online, "a ROS master on port %d" % PORT)
+
+    def signal(self, number):
+        self._process.send_signal(number)
+
+    def kill(self):
+        self._process.kill()
+        self._process.wait()
+
+
+def registrations():
+    """What the master knows of the node: (kind, topic or service), and where its service is."""
+    master = rosgraph.Master("/test")
+    known = {(kind, name) for kind, entries in enumerate(master.getSystemState()) for name, nodes in entries if NODE in nodes}
+    return known | {master.lookupService(name) for kind, name in known if kind == 2}
+
+
+class FaultsMaster(unittest.TestCase):
+    def setUp(self):
+        self.directory = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.directory)
+        self.master = Master()
+        self.addCleanup(self.master.kill)
+
+    def master_status(self, diagnostics, condition, what):
+        def holds(messages):
+            status = faults.status_named(messages[-1], "ROS master") if messages else None
+            return status is not None and condition(status)
+        return faults.status_named(diagnostics.wait(holds, what)[-1], "ROS master")
+
+    def play(self, samples):
+        """By a program that was not there before either."""
+        bag = os.path.join(self.directory, "more.bag")
+        harness.write_bag(bag, samples)
+        command = [harness.program_of("rosbag", "play"), "--quiet", "--wait-for-subscribers", "--rate", "10", bag]
+        subprocess.run(command, check=True, timeout=harness.DEADLINE_S, stdin=subprocess.DEVNULL)
+
+    def seen_by_newcomer(self):
+        """Stamp of the latched topology, by a program that was not there before."""
+        program = ("import rospy; from tissue_contact.msg import TissueTopology; rospy.init_node('newcomer'); "
+                   "print(rospy.wait_for_message('%s/block/topology', TissueTopology).header.stamp.to_nsec())" % NODE)
+        return int(subprocess.run([sys.executable, "-c", program], check=True, stdout=subprocess.PIPE, text=True,
+                                  timeout=harness.DEADLINE_S).stdout)
+
+    def assert_wrench_for_each(self, source, wrenches, samples):
+        source.send_all(samples)
+        wrenches.wait_for_stamp(samples[-1][0])
+
+    def test_stopped_then_killed_and_restarted(self):
+        samples = harness.press(160)
+        with harness.node(harness.SCENE) as process:
+            wrenches = harness.Listener(NODE + "/probe/wrench", WrenchStamped)
+            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+            source = harness.JointSource()
+            self.master_status(diagnostics, lambda s: s.level == faults.OK, "a node that is registered")
+            before = registrations()
+            self.assertGreater(len(before), 5)
+
+            self.master.signal(signal.SIGSTOP)  # answers nothing, closes nothing
+            status = self.master_status(diagnostics, lambda s: s.level == faults.WARN, "a warning that it is stopped")
+            self.assertIn("does not answer", status.message)
+            self.assert_wrench_for_each(source, wrenches, samples[:50])
+            self.master.signal(signal.SIGCONT)
+            status = self.master_status(diagnostics, lambda s: s.level == faults.OK, "that it answers again")
+            self.assertEqual(faults.values_of(status)["times registered again"], "0")
+
+            self.master.kill()
+            self.master_status(diagnostics, lambda s: s.level == faults.WARN, "a warning that the master is gone")
+            self.assert_wrench_for_each(source, wrenches, samples[50:100])  # over the connections that live
+            self.master.start()
+            status = self.master_status(diagnostics, lambda s: s.level == faults.OK, "a node that registered again")
+            self.assertEqual(faults.values_of(status)["times lost"], "2")
+            self.assertEqual(faults.values_of(status)["times registered again"], "1")
+            self.assertEqual(registrations(), before)
+            self.assert_wrench_for_each(source, wrenches, samples[100:110])  # they were not cut by it
+            self.assertEqual(self.seen_by_newcomer(), samples[0][0].to_nsec())
+            self.play(samples[110:])
+            everything = wrenches.wait_for_stamp(samples[-1][0])
+            self.assertEqual([w.header.stamp for w in everything], [stamp for stamp, _ in samples])
+
+            self.master.signal(signal.SIGSTOP)
+            try:
+                counts = faults.counts_at_the_end(process)
+            finally:
+                self.master.signal(signal.SIGCONT)
+        self.assertEqual(counts["received"], len(samples))
+        self.assertEqual(counts["wrenches"], len(samples))
+
+
+if __name__ == "__main__":
+    os.environ["ROS_MASTER_URI"] = "http://localhost:%d" % PORT
+    first = Master()  # for init_node; every test begins with one that knows nothing
+    rospy.init_node("faults_master")
+    first.kill()
+    rostest.rosrun("tissue_contact", "faults_master", FaultsMaster, sys.argv)

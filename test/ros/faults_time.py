@@ -1,0 +1,118 @@
+#!/usr/bin/python3
+"""Time that stands still or jumps: the node is stopped for 10 s beside a driver, the clock is stepped. Every state is counted,
+and the answers that follow are right."""
+import math
+import signal
+import sys
+import threading
+import time
+import unittest
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import WrenchStamped
+from rosgraph_msgs.msg import Clock
+
+import faults
+import harness
+
+NODE = "/tissue_contact"
+
+
+class Driver:
+    """Joint states stamped with the present, at 200 Hz from a thread of its own until stopped."""
+
+    def __init__(self):
+        self.sent = 0
+        self.last = rospy.Time()
+        self._source = harness.JointSource()
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run)
+        self._thread.start()
+
+    def _run(self):
+        while not self._stop.wait(0.005):
+            stamp = rospy.Time.from_sec(time.time())
+            self._source.send(stamp, (0.0, 0.0, -0.002 + 0.001 * math.sin(6.0 * time.monotonic())))
+            self.sent += 1
+            self.last = stamp
+
+    def stop(self):
+        self._stop.set()
+        self._thread.join()
+
+
+def is_finite(wrench):
+    f, t = wrench.wrench.force, wrench.wrench.torque
+    return all(math.isfinite(x) for x in [f.x, f.y, f.z, t.x, t.y, t.z])
+
+
+class FaultsTime(unittest.TestCase):
+    def all_told(self, diagnostics, sent):
+        def complete(messages):
+            values = faults.figures(messages[-1]) if messages else {}
+            return values.get("joint states: received") == str(sent) and values["joint states: waiting"] == "0"
+        return faults.figures(diagnostics.wait(complete, "%d joint states" % sent)[-1])
+
+    def test_node_stopped_for_ten_seconds(self):
+        with harness.node(harness.SCENE) as process:
+            wrenches = harness.Listener(NODE + "/probe/wrench", WrenchStamped)
+            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+            driver = Driver()
+            try:
+                wrenches.wait(lambda all: len(all) > 100, "wrenches before")
+                process.send_signal(signal.SIGSTOP)
+                end = time.monotonic() + 10.0
+                harness.wait_until(lambda: time.monotonic() > end, "ten seconds")
+                process.send_signal(signal.SIGCONT)
+                # As prompt as before: wrenches of what is sent now.
+                now = rospy.Time.from_sec(time.time())
+                wrenches.wait(lambda all: len([w for w in all if w.header.stamp > now]) > 100, "wrenches after")
+            finally:
+                process.send_signal(signal.SIGCONT)
+                driver.stop()
+            wrenches.wait_for_stamp(driver.last)
+            values = self.all_told(diagnostics, driver.sent)
+            counts = faults.counts_at_the_end(process)
+        self.assertEqual(values["policy"], "newest_state")
+        self.assertEqual((counts["received"], counts["dropped"], counts["refused"]), (driver.sent, 0, 0))
+        self.assertEqual(counts["accepted"] + counts["merged"], driver.sent)
+        self.assertEqual(len(wrenches.messages), counts["wrenches"])
+        self.assertEqual(values["joint states: missing by header.seq"], "0")
+        self.assertTrue(all(map(is_finite, wrenches.messages)))
+
+    def test_clock_stepped(self):
+        rospy.set_param("/use_sim_time", True)
+        self.addCleanup(rospy.delete_param, "/use_sim_time")
+        blocks = [harness.press(40, start_s=10 * harness.START_S + offset) for offset in [0, 3600, 10, -3600, -3590]]
+        with harness.node(harness.SCENE) as process:
+            wrenches = harness.Listener(NODE + "/probe/wrench", WrenchStamped)
+            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+            clock = rospy.Publisher("/clock", Clock, queue_size=10)
+            harness.wait_until(lambda: clock.get_num_connections() > 0, "the node listening to /clock")
+            source = harness.JointSource()
+            for block in blocks:
+                now = block[0][0]
+                clock.publish(Clock(now))
+                # The node's own stamps tell that it has seen the clock.
+                diagnostics.wait(lambda all, now=now: all and all[-1].header.stamp == now, "the node at %s" % now)
+                source.send_all(block)
+                wrenches.wait_for_stamp(block[-1][0])
+            sent = sum(map(len, blocks))
+            values = self.all_told(diagnostics, sent)
+            counts = faults.counts_at_the_end(process)
+        self.assertEqual((counts["received"], counts["wrenches"]), (sent, counts["accepted"]))
+        self.assertEqual(len(wrenches.messages), counts["wrenches"])
+        self.assertTrue(all(map(is_finite, wrenches.messages)))
+        # Each step back starts the scene again, so what follows is what came first.
+        by_stamp = {w.header.stamp: w.wrench.force.z for w in wrenches.messages}
+        forces = [[by_stamp[stamp] for stamp, _ in block if stamp in by_stamp] for block in blocks]
+        self.assertEqual(forces[2], forces[0])
+        self.assertEqual(forces[3], forces[0])
+        self.assertGreater(max(forces[0]), 0.01)
+
+
+if __name__ == "__main__":
+    rospy.init_node("faults_time")
+    rostest.rosrun("tissue_contact", "faults_time", FaultsTime, sys.argv)
