@@ -11,10 +11,23 @@
 namespace tissue_contact {
 namespace {
 
+/// The last moment that a ROS stamp can name, 2106-02-07: 32 bits of seconds and less than a second of nanoseconds.
+constexpr std::int64_t kLastStamp_ns = 4294967295999999999;
+
+/// As much of a name from outside as a line of a log can bear: neither megabytes nor control characters.
+std::string printable(const std::string& name) {
+  constexpr std::size_t kMaxLength = 60;
+  std::string text = name.substr(0, kMaxLength);
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  std::replace_if(text.begin(), text.end(), is_control, '?');
+  return name.size() > kMaxLength ? text + "..." : text;
+}
+
 std::string listOf(const std::vector<std::string>& names) {
   constexpr std::size_t kMaxNamed = 12;  // a message may hold any number of names, a warning should not
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kMaxNamed); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  for (std::size_t i = 0; i < std::min(names.size(), kMaxNamed); ++i)
+    text += (i == 0 ? "" : ", ") + printable(names[i]);
   return names.size() > kMaxNamed ? text + ", ..." : text;
 }
 
@@ -65,6 +78,10 @@ Verdict JointStatePlayer::judgeContent(const JointStateSample& sample, const Top
     detail = "the stamp must be > 0; fill header.stamp";
     return Verdict::kBadStamp;
   }
+  if (sample.stamp_ns > kLastStamp_ns) {
+    detail = "stamp out of range; ROS time ends at " + stampText(kLastStamp_ns) + ", with nsecs < 1e9";
+    return Verdict::kBadStamp;
+  }
   if (sample.names.size() != sample.positions.size()) {
     detail = std::to_string(sample.names.size()) + " names but " + std::to_string(sample.positions.size()) +
              " positions; each name needs a position";
@@ -82,7 +99,8 @@ Verdict JointStatePlayer::judgeJoints(const JointStateSample& sample, const Topi
       any_known = true;
       if (!std::isfinite(sample.positions[k])) {
         std::ostringstream text;
-        text << "position of joint '" << sample.names[k] << "' is " << sample.positions[k] << "; it must be finite";
+        text << "position of joint '" << printable(sample.names[k]) << "' is " << sample.positions[k]
+             << "; it must be finite";
         detail = text.str();
         return Verdict::kNotFinite;
       }

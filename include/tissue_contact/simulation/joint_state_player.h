@@ -26,7 +26,7 @@ struct JointStateSample {
 enum class Verdict {
   kAccepted,        ///< its joints were taken
   kDuplicateStamp,  ///< same stamp as the topic's last one: ignored
-  kBadStamp,        ///< zero or negative stamp: ignored
+  kBadStamp,        ///< zero or negative stamp, or one that ROS time does not reach: ignored
   kNotFinite,       ///< a position of a known joint is NaN or infinite: ignored
   kBadLength,       ///< as many positions as names are needed: ignored
   kNoKnownJoint,    ///< none of the names means a joint of an instrument on this topic: ignored

@@ -102,6 +102,10 @@ TEST(JointStatePlayer, RefusesBadSamplesAndGoesOnAsIfTheyHadNotCome) {
       {"empty", {next, {}, {}}, Verdict::kNoKnownJoint, "joint"},
       {"stamp zero", sample(0, 0.0), Verdict::kBadStamp, "stamp"},
       {"negative stamp", sample(-5, 0.0), Verdict::kBadStamp, "stamp"},
+      {"all bits of a stamp set", sample(4294967295 * kSecond + 4294967295, 0.0), Verdict::kBadStamp, "out of range"},
+      {"one past the last stamp", sample(4294967296 * kSecond, 0.0), Verdict::kBadStamp, "out of range"},
+      {"largest number", sample(std::numeric_limits<std::int64_t>::max(), 0.0), Verdict::kBadStamp, "out of range"},
+      {"smallest number", sample(std::numeric_limits<std::int64_t>::min(), 0.0), Verdict::kBadStamp, "> 0"},
       {"duplicate stamp", sample(kSecond, 0.001), Verdict::kDuplicateStamp, "same stamp"},
   };
   for (const BadSample& b : bad) {
@@ -125,6 +129,23 @@ TEST(JointStatePlayer, RefusesBadSamplesAndGoesOnAsIfTheyHadNotCome) {
     EXPECT_EQ(player.count(Verdict::kAccepted), 2);
     EXPECT_EQ(player.resets(), 0);
   }
+}
+
+TEST(JointStatePlayer, NamesFromOutsideReachALogCutAndWithoutControlCharacters) {
+  const auto simulator = oneProbe();
+  JointStatePlayer player(*simulator);
+  const std::vector<std::string> names(1000, "\x1b[2J\n\r\x7f" + std::string(1000000, 'n'));
+  const PlayedSample refused = playOne(player, 0, {kSecond, names, std::vector<double>(names.size(), 0.0)});
+  EXPECT_EQ(refused.verdict, Verdict::kNoKnownJoint);
+  EXPECT_LT(refused.detail.size(), 2000U);
+  EXPECT_NE(refused.detail.find("?[2J???nnn"), std::string::npos) << refused.detail;
+  for (const char c : refused.detail) EXPECT_GE(c, ' ');
+}
+
+TEST(JointStatePlayer, TakesTheLastStampThatThereIs) {
+  const auto simulator = oneProbe();
+  JointStatePlayer player(*simulator);
+  EXPECT_EQ(playOne(player, 0, sample(4294967295 * kSecond + 999999999, 0.0)).verdict, Verdict::kAccepted);
 }
 
 TEST(JointStatePlayer, RefusesABadFirstSample) {
