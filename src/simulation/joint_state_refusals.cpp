@@ -41,6 +41,14 @@ std::string stampText(std::int64_t stamp_ns) {
   return text.str();
 }
 
+std::string twoClocksText(std::int64_t stamp_ns, std::int64_t followed_ns) {
+  std::ostringstream text;
+  text << "far off the stamps that this topic follows, now at " << stampText(followed_ns)
+       << ", and not confirmed by those after it (off by " << 1e-9 * static_cast<double>(stamp_ns - followed_ns)
+       << " s); let one publisher alone send this topic, and set the clocks of all computers by one (NTP)";
+  return text.str();
+}
+
 }  // namespace
 
 const char* verdictText(Verdict verdict) {
@@ -59,6 +67,8 @@ const char* verdictText(Verdict verdict) {
       return "no known joint";
     case Verdict::kLate:
       return "too late";
+    case Verdict::kTwoClocks:
+      return "two clocks";
   }
   return "unknown";
 }
@@ -112,37 +122,37 @@ Verdict JointStatePlayer::judgeJoints(const JointStateSample& sample, const Topi
   return Verdict::kNoKnownJoint;
 }
 
-/// Where in time the sample belongs: order and loop, given what its topic and the others have delivered so far.
-Verdict JointStatePlayer::judgeStamp(std::int64_t stamp_ns, Topic& topic, Moment& moment, std::string& detail) const {
-  const int newest = newest_ ? newest_->epoch : 0;
-  moment = {newest, stamp_ns};
-  if (!topic.last) return Verdict::kAccepted;
-  const std::int64_t back_ns = topic.last->stamp_ns - stamp_ns;
-  const bool restarted = topic.restart_before_ns.has_value();
-  if (back_ns == 0 && !restarted) {
-    detail = "same stamp as the topic's last joint state";
-    return Verdict::kDuplicateStamp;
-  }
+/// Whether a sample of a topic that is a loop behind fits the newest.
+bool JointStatePlayer::joinsNewest(std::int64_t stamp_ns, const Topic& topic) const {
+  if (!topic.last || topic.last->epoch >= newest_->epoch) return false;
   // After restart() a stamp that goes on is left over from the loop before, however short the loop is.
-  const bool may_join = topic.last->epoch < newest && (back_ns >= 0 || !restarted);
-  if (may_join && std::abs(stamp_ns - newest_->last_ns) <= max_gap_ns_) return Verdict::kAccepted;
-  moment.epoch = topic.last->epoch;
-  if (back_ns < 0) return Verdict::kAccepted;
-  // Late ones in a row that have gone on for more than a gap and go back again are a short recording played in a loop.
-  const bool turns = topic.late_progress_ns > max_gap_ns_ && stamp_ns < *topic.late_ns;
-  if (back_ns > max_gap_ns_ || restarted || turns) {
-    ++moment.epoch;
-    return Verdict::kAccepted;
+  if (topic.clock.isRestarted() && stamp_ns > topic.last->stamp_ns) return false;
+  return std::abs(stamp_ns - newest_->last_ns) <= max_gap_ns_;
+}
+
+void JointStatePlayer::refuseByClock(ClockRuling ruling, int topic, std::int64_t stamp_ns, bool was_late) {
+  const std::int64_t last_ns = *topic_states_[static_cast<std::size_t>(topic)].clock.last();
+  if (ruling == ClockRuling::kDuplicate) {
+    refuse(Verdict::kDuplicateStamp, topic, stamp_ns, "same stamp as the topic's last joint state");
+  } else if (ruling == ClockRuling::kStray) {
+    refuse(Verdict::kTwoClocks, topic, stamp_ns, twoClocksText(stamp_ns, last_ns));
+  } else {
+    std::string detail = "the topic's last joint state is at " + stampText(last_ns);
+    if (was_late) {
+      detail +=
+          ", as for the one before; if a recording shorter than max_gap_s is played in a loop, let it give the time "
+          "(rosbag play --clock, /use_sim_time), or shorten step.max_gap_s";
+    }
+    refuse(Verdict::kLate, topic, stamp_ns, detail);
   }
-  detail = "the topic's last joint state is at " + stampText(topic.last->stamp_ns);
-  if (topic.late_ns) {
-    topic.late_progress_ns += std::max<std::int64_t>(0, stamp_ns - *topic.late_ns);
-    detail +=
-        ", as for the one before; if a recording shorter than max_gap_s is played in a loop, let it give the time "
-        "(rosbag play --clock, /use_sim_time), or shorten step.max_gap_s";
+}
+
+void JointStatePlayer::refuseHeld(int topic) {
+  Topic& state = topic_states_[static_cast<std::size_t>(topic)];
+  for (const JointStateSample& sample : std::exchange(state.held, {})) {
+    --waiting_;
+    refuse(Verdict::kTwoClocks, topic, sample.stamp_ns, twoClocksText(sample.stamp_ns, *state.clock.last()));
   }
-  topic.late_ns = stamp_ns;
-  return Verdict::kLate;
 }
 
 /// Refuses what waits for a moment that has been played without it, except where its joints still say something new:

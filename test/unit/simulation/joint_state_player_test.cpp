@@ -177,9 +177,12 @@ TEST(JointStatePlayer, TimeGoingBackResetsOnceAndRepeatsTheSameBits) {
     Trace trace;
     int resets = 0;
     for (const JointStateSample& s : press(kSecond, 0.006)) {
-      const PlayedSample played = playOne(player, 0, s);
-      resets += static_cast<int>(played.was_reset);
-      trace.add(played, *simulator);
+      player.push(0, s);
+      while (const auto played = player.playNext()) {
+        EXPECT_EQ(played->verdict, Verdict::kAccepted) << played->detail;
+        resets += static_cast<int>(played->was_reset);
+        trace.add(*played, *simulator);
+      }
     }
     EXPECT_EQ(resets, loop == 0 ? 0 : 1);
     EXPECT_TRUE(trace.pressed());
@@ -194,7 +197,8 @@ TEST(JointStatePlayer, ALoopForgetsWhichJointsWereHeard) {
   const auto simulator = oneProbe();
   JointStatePlayer player(*simulator);
   playOne(player, 0, {2 * kSecond, {"x", "z"}, {0.3, 0.01}});
-  EXPECT_TRUE(playOne(player, 0, {kSecond, {"z"}, {0.02}}).was_reset);
+  for (int i = 0; i < 3; ++i) player.push(0, {kSecond + i * kMillisecond, {"z"}, {0.02}});
+  EXPECT_TRUE(drain(player).front().was_reset);
   EXPECT_EQ(simulator->jointPositions(0), Vector3(0, 0, 0.02));
 }
 
