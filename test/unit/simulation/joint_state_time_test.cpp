@@ -309,8 +309,9 @@ TEST(JointStateTime, TissueStaysDeformedThroughAStampFarAhead) {
     player.push(0, samples[i]);
     for (const PlayedSample& played : drain(player)) EXPECT_EQ(played.was_resumed, i == 21);
     const double force = simulator->wrench(0).force.z();
-    if (i > 20)
-      EXPECT_GT(force, 0.7 * before) << i;  // a reset would start from none; a gap lets the tissue come to rest
+    if (i > 20) {  // a reset would start from none; a gap lets the tissue come to rest
+      EXPECT_GT(force, 0.7 * before) << i;
+    }
     before = force;
   }
   EXPECT_GT(before, 0.01);
@@ -373,7 +374,7 @@ TEST(JointStateTime, ARestartConfirmsWhatIsHeld) {
 
 /// Bursts and turns of any length between clocks: nothing is lost uncounted, and time simulated stays in proportion.
 TEST(JointStateTime, AnyMixtureOfClocksIsCountedAndBounded) {
-  for (unsigned seed = 1; seed <= 20; ++seed) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
     SCOPED_TRACE(seed);
     const auto simulator = oneProbe();
     JointStatePlayer player(*simulator);
@@ -393,8 +394,8 @@ TEST(JointStateTime, AnyMixtureOfClocksIsCountedAndBounded) {
     for (int v = 0; v < kVerdictCount; ++v) sum += player.count(static_cast<Verdict>(v));
     EXPECT_EQ(sum, pushed);
     EXPECT_GT(player.count(Verdict::kAccepted), 100);
-    // 4 s of motion; each change of the clock costs 50 ms, and takes that long to be made.
-    EXPECT_LT(player.gaps() + player.resets(), 40);
+    // In 4 s: what is not trusted changes clocks after 50 ms at the earliest, and that costs a gap or a reset.
+    EXPECT_LE(player.gaps() + player.resets(), 4000 / 50 + 1);
   }
 }
 
