@@ -59,9 +59,11 @@ Health::Health(const Simulator& simulator, const JointStatePlayer& player, const
 bool Health::Throttle::pass() {
   constexpr std::chrono::seconds kPeriod(5);
   const Clock::time_point now = Clock::now();
-  if (last_ && now - *last_ < kPeriod) return false;
-  last_ = now;
-  return true;
+  if (!began_ || now - *began_ >= kPeriod) {
+    began_ = now;
+    passed_ = 0;
+  }
+  return passed_++ < most_;
 }
 
 void Health::noteWork(std::optional<double> received_s) {
@@ -96,14 +98,20 @@ bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
 void Health::warn(const PlayedSample& played) {
   if (played.verdict != Verdict::kAccepted) {
     if (refusals_[static_cast<std::size_t>(played.verdict)].pass()) {
-      ROS_WARN_STREAM("joint state ignored (" << verdictText(played.verdict) << "): " << played.detail);
+      const bool name_publishers = played.verdict == Verdict::kTwoClocks && publishers_;
+      ROS_WARN_STREAM("joint state ignored (" << verdictText(played.verdict) << "): " << played.detail
+                                              << (name_publishers ? "; sent by " + publishers_(played.topic) : ""));
     }
     return;
   }
   const std::string& topic = player_.topics()[static_cast<std::size_t>(played.topic)];
-  if (played.was_reset) {
+  if (played.was_reset && resets_.pass()) {
     ROS_WARN_STREAM("time went backwards on " << topic << " to " << toTime(played.stamp_ns)
                                               << " s: the scene was reset to its start");
+  }
+  if (played.was_resumed && resumptions_.pass()) {
+    ROS_WARN_STREAM("a stamp far off was followed on " << topic << ", which now goes on where it was, at "
+                                                       << toTime(played.stamp_ns) << " s: so does the simulation");
   }
   if (played.was_gap && gaps_.pass()) {
     ROS_WARN_STREAM("no joint state for more than max_gap_s before " << topic << " at " << toTime(played.stamp_ns)
@@ -215,6 +223,7 @@ void Health::addTo(Status& status) const {
   status.refused_bad_length = refused(Verdict::kBadLength);
   status.refused_no_known_joint = refused(Verdict::kNoKnownJoint);
   status.refused_late = refused(Verdict::kLate);
+  status.refused_two_clocks = refused(Verdict::kTwoClocks);
   status.lengthened_intervals = count(figures.lengthened);
 }
 
@@ -241,9 +250,12 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   const StepDescription& step = simulator_.scene().step;
   const double bound_s = lagBound(now, step.max_lag_s);
   const LagVerdict lag = judgeLag(worst_lag_s, bound_s);
+  const auto two_clocks = static_cast<std::size_t>(Verdict::kTwoClocks);
   const bool is_strained = now.newest_state && now.lengthened > told_.lengthened;
   if (now.broken) {
     status.summary(Level::ERROR, "a step had no finite answer");
+  } else if (now.by_verdict[two_clocks] > told_.by_verdict[two_clocks] + 1) {  // one may be an outlier
+    status.summary(Level::ERROR, "two clocks on one topic: joint states of one of them are refused");
   } else if (lag != LagVerdict::kWithinBound) {
     status.summaryf(lag == LagVerdict::kFarOverBound ? Level::ERROR : Level::WARN,
                     "wrenches late by up to %.3g s, more than %.3g s", worst_lag_s, bound_s);

@@ -2,23 +2,37 @@
 /// Room `ros`: see joint_state_inbox.h.
 #include "tissue_contact/ros/joint_state_inbox.h"
 
+#include <string>
 #include <utility>
 
 namespace tissue_contact {
+namespace {
+
+std::size_t bytesOf(const ReceivedState& state) {
+  std::size_t bytes = sizeof(ReceivedState) + state.sample.positions.size() * sizeof(double);
+  for (const std::string& name : state.sample.names) bytes += sizeof(std::string) + name.size();
+  return bytes;
+}
+
+}  // namespace
 
 void JointStateInbox::put(ReceivedState state) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++counts_.received;
   counts_.newest_stamp_ns = state.sample.stamp_ns;
   state.after_restart = std::exchange(restarted_, false);
+  bytes_ += bytesOf(state);
   waiting_.push_back(std::move(state));
-  if (waiting_.size() > most_) {
-    const bool after_restart = waiting_.front().after_restart;
-    waiting_.pop_front();
-    waiting_.front().after_restart |= after_restart;
-    ++counts_.dropped;
-  }
+  while (waiting_.size() > most_ || (bytes_ > most_bytes_ && waiting_.size() > 1)) dropOldest();
   arrived_.notify_one();
+}
+
+void JointStateInbox::dropOldest() {
+  const bool after_restart = waiting_.front().after_restart;
+  bytes_ -= bytesOf(waiting_.front());
+  waiting_.pop_front();
+  waiting_.front().after_restart |= after_restart;
+  ++counts_.dropped;
 }
 
 void JointStateInbox::noteRestart() {
@@ -29,6 +43,7 @@ void JointStateInbox::noteRestart() {
 std::optional<ReceivedState> JointStateInbox::take() {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (waiting_.empty()) return std::nullopt;
+  bytes_ -= bytesOf(waiting_.front());
   std::optional<ReceivedState> oldest = std::move(waiting_.front());
   waiting_.pop_front();
   return oldest;

@@ -66,6 +66,7 @@ Node::Node(ShutdownGuard& guard, const std::vector<std::string>& arguments)
       stepper_(simulator_, player_, inbox_, outputs_, health_, ros::Time::isSimTime()),
       receiver_(inbox_) {
   for (const std::string& line : simulator_.advice()) ROS_INFO_STREAM("advisor: " << line);
+  health_.setPublishers([this](int topic) { return receiver_.publishers(topic); });
   updater_.setHardwareID("none");
   updater_.add("tissue contact", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     health_.fill(receiver_.missing(), status);

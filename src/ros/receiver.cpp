@@ -14,8 +14,8 @@
 namespace tissue_contact {
 namespace {
 
-/// Of roscpp, for what comes while the receiving thread is not scheduled: 10 s of 1 kHz.
-constexpr int kRoscppQueue = 10000;
+/// Of roscpp: each message is taken from it as it is put in.
+constexpr int kRoscppQueue = 1;
 
 }  // namespace
 
@@ -30,18 +30,26 @@ void Receiver::start(const std::vector<std::string>& topics) {
     subscribers_.push_back(
         node_.subscribe<sensor_msgs::JointState>(topics[i], kRoscppQueue, callback, ros::VoidConstPtr(), hints));
   }
-  spinner_.start();
 }
 
-void Receiver::stop() {
-  spinner_.stop();
-  subscribers_.clear();
+void Receiver::stop() { subscribers_.clear(); }
+
+std::int64_t Receiver::missing() const {
+  const std::lock_guard<std::mutex> lock(gaps_mutex_);
+  return gaps_.missing();
+}
+
+std::string Receiver::publishers(int topic) const {
+  const std::lock_guard<std::mutex> lock(gaps_mutex_);
+  return gaps_.publishers(topic);
 }
 
 void Receiver::take(int topic, const ros::MessageEvent<const sensor_msgs::JointState>& event) {
   const sensor_msgs::JointState& message = *event.getConstMessage();
-  gaps_.note(topic, event.getPublisherName(), message.header.seq);
-  missing_ = gaps_.missing();
+  {
+    const std::lock_guard<std::mutex> lock(gaps_mutex_);
+    gaps_.note(topic, event.getPublisherName(), message.header.seq);
+  }
   ReceivedState state;
   state.topic = topic;
   state.sample = toSample(message);

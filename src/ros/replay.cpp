@@ -53,10 +53,10 @@ class Replay {
     if (!options_.timing_file.empty()) timing_.emplace(options_.timing_file);
     if (!options_.dump_file.empty()) dump_.emplace(options_.dump_file);
     start_ = Clock::now();
-    length_s_ = (bag.end() - bag.begin()).toSec();
+    length_s_ = bag.end().toSec() - bag.begin().toSec();  // a ros::Duration ends after 68 years
     progress_.emplace(std::cerr, isatty(STDERR_FILENO) == 1, kPrefix, length_s_);
     bag.forEach([&](int topic, JointStateSample sample, ros::Time recorded) {
-      played_s_ = (recorded - bag.begin()).toSec();
+      played_s_ = recorded.toSec() - bag.begin().toSec();
       player_.push(topic, std::move(sample));
       playAll(table);
     });

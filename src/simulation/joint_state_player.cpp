@@ -33,7 +33,7 @@ JointStatePlayer::JointStatePlayer(Simulator& simulator)
       const auto index = static_cast<std::size_t>(known - topics_.begin());
       if (known == topics_.end()) {
         topics_.push_back(described.name);
-        topic_states_.emplace_back();
+        topic_states_.emplace_back(max_gap_ns_);
       }
       Topic& topic = topic_states_[index];
       topic.listeners.push_back({static_cast<int>(i), described.triggers});
@@ -58,34 +58,87 @@ void JointStatePlayer::setPolicy(StatePolicy policy) {
 
 void JointStatePlayer::push(int topic, JointStateSample sample) {
   assert(topic >= 0 && topic < static_cast<int>(topic_states_.size()));
-  Topic& state = topic_states_[static_cast<std::size_t>(topic)];
-  Moment moment;
   std::string detail;
-  Verdict verdict = judgeContent(sample, state, detail);
-  if (verdict == Verdict::kAccepted) verdict = judgeStamp(sample.stamp_ns, state, moment, detail);
+  const Verdict verdict = judgeContent(sample, topic_states_[static_cast<std::size_t>(topic)], detail);
   if (verdict != Verdict::kAccepted) {
     refuse(verdict, topic, sample.stamp_ns, detail);
     return;
   }
-  const bool is_loop = state.last && moment.epoch != state.last->epoch;
-  if (state.restart_before_ns && (is_loop || sample.stamp_ns > *state.restart_before_ns))
-    state.restart_before_ns.reset();
-  state.late_ns.reset();
-  state.late_progress_ns = 0;
+  place(topic, std::move(sample));
+}
+
+/// Queues the sample in the loop it belongs to, holds or refuses it.
+void JointStatePlayer::place(int topic, JointStateSample sample) {
+  Topic& state = topic_states_[static_cast<std::size_t>(topic)];
+  const int newest = newest_ ? newest_->epoch : 0;
+  if (joinsNewest(sample.stamp_ns, state)) {
+    state.clock.join(sample.stamp_ns);
+    acceptHeld(topic, newest);
+    accept(topic, newest, std::move(sample));
+    return;
+  }
+  const bool was_late = state.clock.isLateInARow();
+  const ClockRuling ruling = state.clock.judge(sample.stamp_ns);
+  const int epoch = state.last ? state.last->epoch : newest;
+  if (ruling == ClockRuling::kLoops) acceptHeld(topic, epoch + 1);
+  if (!state.held.empty() && !state.clock.isHolding()) refuseHeld(topic);
+  switch (ruling) {
+    case ClockRuling::kGoesOn:
+      return accept(topic, epoch, std::move(sample));
+    case ClockRuling::kLoops:
+      return accept(topic, epoch + 1, std::move(sample));
+    case ClockRuling::kResumes:
+      resumption_ = Resumption{newest + 1, state.clock.resumedFrom()};
+      return accept(topic, newest + 1, std::move(sample));
+    case ClockRuling::kHeld:
+      ++waiting_;
+      state.held.push_back(std::move(sample));
+      return;
+    default:
+      refuseByClock(ruling, topic, sample.stamp_ns, was_late);
+  }
+}
+
+void JointStatePlayer::accept(int topic, int epoch, JointStateSample sample) {
+  Topic& state = topic_states_[static_cast<std::size_t>(topic)];
+  const Moment moment = {epoch, sample.stamp_ns};
+  const bool begins = newest_ && newest_->epoch < epoch;
   noteMoment(moment);
   state.last = moment;
   state.queue.push_back({moment, std::move(sample)});
   ++waiting_;
-  if (state.triggers || state.queue.size() <= kMaxWaiting) return;
-  state.queue.pop_front();  // nothing triggers: the newer ones tell where the joints are
-  --waiting_;
-  ++merged_;
+  if (!state.triggers && state.queue.size() > kMaxWaiting) {
+    state.queue.pop_front();  // nothing triggers: the newer ones tell where the joints are
+    --waiting_;
+    ++merged_;
+  }
+  if (!begins) return;
+  for (std::size_t t = 0; t < topic_states_.size(); ++t) {
+    Topic& other = topic_states_[t];
+    if (other.held.empty() || !joinsNewest(other.held.front().stamp_ns, other)) continue;
+    other.clock.join(other.held.back().stamp_ns);
+    acceptHeld(static_cast<int>(t), epoch);
+  }
+}
+
+void JointStatePlayer::acceptHeld(int topic, int epoch) {
+  for (JointStateSample& sample : std::exchange(topic_states_[static_cast<std::size_t>(topic)].held, {})) {
+    --waiting_;
+    accept(topic, epoch, std::move(sample));
+  }
 }
 
 void JointStatePlayer::restart() {
-  for (Topic& topic : topic_states_) {
-    if (topic.last) topic.restart_before_ns = topic.last->stamp_ns + max_gap_ns_;
+  std::vector<int> confirmed;
+  for (std::size_t t = 0; t < topic_states_.size(); ++t) {
+    if (topic_states_[t].clock.restart()) confirmed.push_back(static_cast<int>(t));
   }
+  for (const int t : confirmed) acceptHeld(t, topic_states_[static_cast<std::size_t>(t)].last->epoch + 1);
+}
+
+void JointStatePlayer::finish() {
+  finished_ = true;
+  for (std::size_t t = 0; t < topic_states_.size(); ++t) refuseHeld(static_cast<int>(t));
 }
 
 void JointStatePlayer::noteMoment(const Moment& moment) {
@@ -161,8 +214,10 @@ std::optional<PlayedSample> JointStatePlayer::playNext() {
 
 void JointStatePlayer::play(const Moment& moment, PlayedSample& played) {
   if (moment.epoch > epoch_) {
-    startLoop(moment.epoch);
-    played.was_reset = true;
+    played.was_resumed = resumption_ && resumption_->epoch == moment.epoch && time_ns_;
+    played.was_reset = !played.was_resumed;
+    played.was_reset ? startLoop() : resume();
+    epoch_ = moment.epoch;
   }
   for (std::size_t t = 0; t < topic_states_.size(); ++t) take(moment, static_cast<int>(t), played);
   placeNewJoints();
@@ -170,12 +225,17 @@ void JointStatePlayer::play(const Moment& moment, PlayedSample& played) {
   settle(played);
 }
 
-void JointStatePlayer::startLoop(int epoch) {
+void JointStatePlayer::startLoop() {
   simulator_.reset();
   forgetJoints();
   time_ns_.reset();
-  epoch_ = epoch;
   ++resets_;
+}
+
+/// Where time was before the stamps far off; the tissues and joints stay as these have left them.
+void JointStatePlayer::resume() {
+  time_ns_ = resumption_->from_ns;
+  for (Topic& topic : topic_states_) topic.taken.reset();
 }
 
 void JointStatePlayer::forgetJoints() {

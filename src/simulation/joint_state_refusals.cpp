@@ -11,10 +11,23 @@
 namespace tissue_contact {
 namespace {
 
+/// The last moment that a ROS stamp can name, 2106-02-07: 32 bits of seconds and less than a second of nanoseconds.
+constexpr std::int64_t kLastStamp_ns = 4294967295999999999;
+
+/// As much of a name from outside as a line of a log can bear: neither megabytes nor control characters.
+std::string printable(const std::string& name) {
+  constexpr std::size_t kMaxLength = 60;
+  std::string text = name.substr(0, kMaxLength);
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  std::replace_if(text.begin(), text.end(), is_control, '?');
+  return name.size() > kMaxLength ? text + "..." : text;
+}
+
 std::string listOf(const std::vector<std::string>& names) {
   constexpr std::size_t kMaxNamed = 12;  // a message may hold any number of names, a warning should not
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kMaxNamed); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  for (std::size_t i = 0; i < std::min(names.size(), kMaxNamed); ++i)
+    text += (i == 0 ? "" : ", ") + printable(names[i]);
   return names.size() > kMaxNamed ? text + ", ..." : text;
 }
 
@@ -25,6 +38,14 @@ std::string stampText(std::int64_t stamp_ns) {
   text.width(9);
   text.fill('0');
   text << std::abs(stamp_ns % ns_per_s) << " s";
+  return text.str();
+}
+
+std::string twoClocksText(std::int64_t stamp_ns, std::int64_t followed_ns) {
+  std::ostringstream text;
+  text << "far off the stamps that this topic follows, now at " << stampText(followed_ns)
+       << ", and not confirmed by those after it (off by " << 1e-9 * static_cast<double>(stamp_ns - followed_ns)
+       << " s); let one publisher alone send this topic, and set the clocks of all computers by one (NTP)";
   return text.str();
 }
 
@@ -46,6 +67,8 @@ const char* verdictText(Verdict verdict) {
       return "no known joint";
     case Verdict::kLate:
       return "too late";
+    case Verdict::kTwoClocks:
+      return "two clocks";
   }
   return "unknown";
 }
@@ -65,6 +88,10 @@ Verdict JointStatePlayer::judgeContent(const JointStateSample& sample, const Top
     detail = "the stamp must be > 0; fill header.stamp";
     return Verdict::kBadStamp;
   }
+  if (sample.stamp_ns > kLastStamp_ns) {
+    detail = "stamp out of range; ROS time ends at " + stampText(kLastStamp_ns) + ", with nsecs < 1e9";
+    return Verdict::kBadStamp;
+  }
   if (sample.names.size() != sample.positions.size()) {
     detail = std::to_string(sample.names.size()) + " names but " + std::to_string(sample.positions.size()) +
              " positions; each name needs a position";
@@ -82,7 +109,8 @@ Verdict JointStatePlayer::judgeJoints(const JointStateSample& sample, const Topi
       any_known = true;
       if (!std::isfinite(sample.positions[k])) {
         std::ostringstream text;
-        text << "position of joint '" << sample.names[k] << "' is " << sample.positions[k] << "; it must be finite";
+        text << "position of joint '" << printable(sample.names[k]) << "' is " << sample.positions[k]
+             << "; it must be finite";
         detail = text.str();
         return Verdict::kNotFinite;
       }
@@ -94,37 +122,37 @@ Verdict JointStatePlayer::judgeJoints(const JointStateSample& sample, const Topi
   return Verdict::kNoKnownJoint;
 }
 
-/// Where in time the sample belongs: order and loop, given what its topic and the others have delivered so far.
-Verdict JointStatePlayer::judgeStamp(std::int64_t stamp_ns, Topic& topic, Moment& moment, std::string& detail) const {
-  const int newest = newest_ ? newest_->epoch : 0;
-  moment = {newest, stamp_ns};
-  if (!topic.last) return Verdict::kAccepted;
-  const std::int64_t back_ns = topic.last->stamp_ns - stamp_ns;
-  const bool restarted = topic.restart_before_ns.has_value();
-  if (back_ns == 0 && !restarted) {
-    detail = "same stamp as the topic's last joint state";
-    return Verdict::kDuplicateStamp;
-  }
+/// Whether a sample of a topic that is a loop behind fits the newest.
+bool JointStatePlayer::joinsNewest(std::int64_t stamp_ns, const Topic& topic) const {
+  if (!topic.last || topic.last->epoch >= newest_->epoch) return false;
   // After restart() a stamp that goes on is left over from the loop before, however short the loop is.
-  const bool may_join = topic.last->epoch < newest && (back_ns >= 0 || !restarted);
-  if (may_join && std::abs(stamp_ns - newest_->last_ns) <= max_gap_ns_) return Verdict::kAccepted;
-  moment.epoch = topic.last->epoch;
-  if (back_ns < 0) return Verdict::kAccepted;
-  // Late ones in a row that have gone on for more than a gap and go back again are a short recording played in a loop.
-  const bool turns = topic.late_progress_ns > max_gap_ns_ && stamp_ns < *topic.late_ns;
-  if (back_ns > max_gap_ns_ || restarted || turns) {
-    ++moment.epoch;
-    return Verdict::kAccepted;
+  if (topic.clock.isRestarted() && stamp_ns > topic.last->stamp_ns) return false;
+  return std::abs(stamp_ns - newest_->last_ns) <= max_gap_ns_;
+}
+
+void JointStatePlayer::refuseByClock(ClockRuling ruling, int topic, std::int64_t stamp_ns, bool was_late) {
+  const std::int64_t last_ns = *topic_states_[static_cast<std::size_t>(topic)].clock.last();
+  if (ruling == ClockRuling::kDuplicate) {
+    refuse(Verdict::kDuplicateStamp, topic, stamp_ns, "same stamp as the topic's last joint state");
+  } else if (ruling == ClockRuling::kStray) {
+    refuse(Verdict::kTwoClocks, topic, stamp_ns, twoClocksText(stamp_ns, last_ns));
+  } else {
+    std::string detail = "the topic's last joint state is at " + stampText(last_ns);
+    if (was_late) {
+      detail +=
+          ", as for the one before; if a recording shorter than max_gap_s is played in a loop, let it give the time "
+          "(rosbag play --clock, /use_sim_time), or shorten step.max_gap_s";
+    }
+    refuse(Verdict::kLate, topic, stamp_ns, detail);
   }
-  detail = "the topic's last joint state is at " + stampText(topic.last->stamp_ns);
-  if (topic.late_ns) {
-    topic.late_progress_ns += std::max<std::int64_t>(0, stamp_ns - *topic.late_ns);
-    detail +=
-        ", as for the one before; if a recording shorter than max_gap_s is played in a loop, let it give the time "
-        "(rosbag play --clock, /use_sim_time), or shorten step.max_gap_s";
+}
+
+void JointStatePlayer::refuseHeld(int topic) {
+  Topic& state = topic_states_[static_cast<std::size_t>(topic)];
+  for (const JointStateSample& sample : std::exchange(state.held, {})) {
+    --waiting_;
+    refuse(Verdict::kTwoClocks, topic, sample.stamp_ns, twoClocksText(sample.stamp_ns, *state.clock.last()));
   }
-  topic.late_ns = stamp_ns;
-  return Verdict::kLate;
 }
 
 /// Refuses what waits for a moment that has been played without it, except where its joints still say something new:

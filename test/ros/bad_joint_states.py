@@ -1,18 +1,30 @@
 #!/usr/bin/python3
 """Joint states that cannot be used: no wrench, a count, a warning; the next good one goes on as if they had not come."""
+import os
+import shutil
 import sys
+import tempfile
 import unittest
 
+import rosbag
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from rosgraph_msgs.msg import Log
+from sensor_msgs.msg import JointState
 
 import harness
 
 NAN = float("nan")
 INFINITY = float("inf")
+
+
+def all_bits_set():
+    """As a message may hold it: later than any time that ROS computes with."""
+    stamp = rospy.Time(0)
+    stamp.secs = stamp.nsecs = 0xFFFFFFFF
+    return stamp
 
 
 class BadJointStates(unittest.TestCase):
@@ -35,6 +47,7 @@ class BadJointStates(unittest.TestCase):
             source.send(rospy.Time(0), (0.0, 0.0, 0.01))
             source.send(rospy.Time(1), (0.0, 0.0, NAN))
             source.send(rospy.Time(4000000000), (NAN, 0.0, 0.0))
+            source.send(all_bits_set(), positions)
             source.send(stamp, positions)
             source.send(stamp, (0.0, 0.0, 0.0))
         got = wrenches.wait(lambda all: len(all) >= 2 * len(samples), "the second run")
@@ -48,7 +61,7 @@ class BadJointStates(unittest.TestCase):
         wrenches.wait_for_stamp(last)
         bad = len(samples) - 1
         counts = {"accepted": 2 * len(samples) + 1, "position not finite": 5 * bad, "no known joint": bad,
-                  "names and positions differ in number": bad, "bad stamp": bad, "duplicate stamp": bad, "too late": 0}
+                  "names and positions differ in number": bad, "bad stamp": 2 * bad, "duplicate stamp": bad, "too late": 0}
 
         def told(messages):
             values = {v.key: v.value for v in messages[-1].status[0].values} if messages else {}
@@ -59,6 +72,25 @@ class BadJointStates(unittest.TestCase):
         for words in ["'y' is nan", "names but", "elbow", "stamp must be > 0", "same stamp"]:
             self.assertTrue(any(words in w for w in warnings), (words, warnings))
         self.assertLess(len(warnings), bad)  # throttled
+
+    def test_a_recorded_stamp_past_the_end_of_time_is_refused_by_replay(self):
+        directory = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, directory)
+        samples = harness.press(20)
+        tables = []
+        for name, more in [("clean", []), ("bad", [(all_bits_set(), (0.0, 0.0, 0.0))])]:
+            bag = os.path.join(directory, name + ".bag")
+            with rosbag.Bag(bag, "w") as out:
+                for i, (stamp, positions) in enumerate(samples[:10] + more + samples[10:]):
+                    message = JointState(name=["x", "y", "z"], position=list(positions))
+                    message.header.stamp = stamp
+                    out.write(harness.TOPIC, message, rospy.Time(harness.START_S + i))
+            code, errors = harness.replay(harness.SCENE, bag, bag + ".csv")
+            self.assertEqual(code, 0, errors)
+            tables.append(harness.read_csv(bag + ".csv"))
+        self.assertIn("1 bad stamp", errors)
+        self.assertIn("stamp out of range", errors)
+        self.assertEqual(tables[0], tables[1])
 
 
 if __name__ == "__main__":

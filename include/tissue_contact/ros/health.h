@@ -7,9 +7,11 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "tissue_contact/Status.h"
 #include "tissue_contact/ros/joint_state_inbox.h"
@@ -26,13 +28,16 @@ class Health {
   /// All must outlive this. Only the stepping thread's calls read `simulator` and `player`.
   Health(const Simulator& simulator, const JointStatePlayer& player, const JointStateInbox& inbox);
 
+  /// Who names the publishers of a topic in a warning; before any thread starts.
+  void setPublishers(std::function<std::string(int topic)> publishers) { publishers_ = std::move(publishers); }
+
   // ------------------------------------------------------------------------------------ the stepping thread
 
   /// The newest of the states that are now played was received then, or: nothing is played any more.
   void noteWork(std::optional<double> received_s);
 
   /// Notes one played moment. Warns about each kind of refusal, and about gaps and jumps, at most every 5 s of wall
-  /// time; about every reset once; reports an error when a step gave no finite answer, once until the next reset.
+  /// time, and about every reset unless there are many; reports an error when a step gave no finite answer, once until the next reset.
   /// @param steps implicit steps it took. @param step_cost_s usual wall time of one. @return whether the result is
   ///   finite and so may be published.
   bool note(const PlayedSample& played, int steps, double step_cost_s);
@@ -52,8 +57,8 @@ class Health {
 
   // ------------------------------------------------------------------------------------ the diagnostics thread
 
-  /// Summary and counts. ERROR when a step gave no finite answer since the last reset, or the lag was far over its bound
-  /// since the last call; WARN when it was over it, forces were such as no tissue bears, steps were lengthened to
+  /// Summary and counts. ERROR when a step gave no finite answer since the last reset, or when since the last call
+  /// the lag was far over its bound or joint states came by two clocks; WARN when it was over it, forces were such as no tissue bears, steps were lengthened to
   /// hold the lag, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their
   /// iterations are counted but are no alarm: a fixed budget per step is how the solver keeps real time. The log says
   /// once what to change when the machine does not keep up. @param missing see Receiver::missing().
@@ -61,13 +66,16 @@ class Health {
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// Lets a warning through at most every 5 s of wall time.
+  /// Lets so many warnings through every 5 s of wall time.
   class Throttle {
    public:
+    explicit Throttle(int most = 1) : most_(most) {}
     bool pass();
 
    private:
-    std::optional<Clock::time_point> last_;
+    int most_;
+    int passed_ = 0;
+    std::optional<Clock::time_point> began_;
   };
 
   void warn(const PlayedSample& played);
@@ -82,7 +90,10 @@ class Health {
 
   // The stepping thread's alone.
   std::array<Throttle, kVerdictCount> refusals_;
+  std::function<std::string(int topic)> publishers_;
   Throttle gaps_;
+  Throttle resets_{3};  // short recordings in a loop
+  Throttle resumptions_;
   Throttle jumps_;
   Throttle implausible_loads_;
 

@@ -27,14 +27,16 @@ class JointStateInbox {
  public:
   struct Counts {
     std::int64_t received = 0;
-    std::int64_t dropped = 0;          ///< the oldest, when the inbox was full
+    std::int64_t dropped = 0;          ///< the oldest, when the inbox was full, by number or by bytes
     std::size_t waiting = 0;           ///< not yet taken
     double oldest_received_s = 0.0;    ///< of those waiting; valid when any is
     std::int64_t newest_stamp_ns = 0;  ///< of the last one received; 0: none yet
   };
 
-  /// @param most states that wait at most, > 0.
-  explicit JointStateInbox(std::size_t most) : most_(most) {}
+  /// @param most states that wait at most, > 0. @param most_bytes they take up at most, one of any size apart: how many
+  ///   names a message holds is up to who sends it.
+  explicit JointStateInbox(std::size_t most, std::size_t most_bytes = 256'000'000)
+      : most_(most), most_bytes_(most_bytes) {}
 
   void put(ReceivedState state);
 
@@ -51,10 +53,14 @@ class JointStateInbox {
   Counts counts() const;
 
  private:
+  void dropOldest();
+
   const std::size_t most_;
+  const std::size_t most_bytes_;
   mutable std::mutex mutex_;  ///< guards all below; held for no longer than a move
   std::condition_variable arrived_;
   std::deque<ReceivedState> waiting_;
+  std::size_t bytes_ = 0;  ///< of those waiting
   bool woken_ = false;
   bool restarted_ = false;
   Counts counts_;

@@ -1,17 +1,16 @@
 /// @file
-/// Room `ros`: joint states from their topics into an inbox, by a thread that does nothing else.
+/// Room `ros`: joint states from their topics into an inbox, as they come in from the network.
 #pragma once
 
-#include <ros/callback_queue.h>
+#include <ros/callback_queue_interface.h>
 #include <ros/message_event.h>
 #include <ros/node_handle.h>
-#include <ros/spinner.h>
 #include <ros/subscriber.h>
 #include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/JointState.h>
 
-#include <atomic>
 #include <cstdint>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -20,12 +19,13 @@
 
 namespace tissue_contact {
 
-/// Its one thread copies messages as they come, so roscpp's own queues, which drop without a count, never fill. With
-/// simulated time it also watches /clock: set back, it says so to the inbox.
+/// roscpp's thread that reads the connections hands each message over itself, so that no queue of roscpp's lies between,
+/// which would drop without a count: what does not fit waits in the connection or is dropped, counted, by the inbox; what
+/// a publisher drops shows in its numbers. With simulated time it also watches /clock: set back, it says so to the inbox.
 class Receiver {
  public:
   /// @param inbox must outlive this.
-  explicit Receiver(JointStateInbox& inbox) : inbox_(inbox), spinner_(1, &queue_) { node_.setCallbackQueue(&queue_); }
+  explicit Receiver(JointStateInbox& inbox) : inbox_(inbox) { node_.setCallbackQueue(&at_once_); }
   ~Receiver() { stop(); }
   Receiver(const Receiver&) = delete;
   Receiver& operator=(const Receiver&) = delete;
@@ -35,20 +35,34 @@ class Receiver {
   void stop();
 
   /// Joint states that publishers numbered in header.seq and that never came. Any thread.
-  std::int64_t missing() const { return missing_; }
+  std::int64_t missing() const;
+  /// Names of those heard on the topic. Any thread.
+  std::string publishers(int topic) const;
 
  private:
+  /// Calls back where roscpp would queue: in its reading thread, one at a time.
+  class AtOnce : public ros::CallbackQueueInterface {
+   public:
+    void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t /*owner*/) override {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      callback->call();
+    }
+    void removeByID(std::uint64_t /*owner*/) override {}
+
+   private:
+    std::mutex mutex_;
+  };
+
   void take(int topic, const ros::MessageEvent<const sensor_msgs::JointState>& event);
   void watchClock(const rosgraph_msgs::Clock& clock);
 
   JointStateInbox& inbox_;
-  ros::CallbackQueue queue_;
+  AtOnce at_once_;
   ros::NodeHandle node_;
-  ros::AsyncSpinner spinner_;
   std::vector<ros::Subscriber> subscribers_;
-  // All below but missing_: the spinner's thread alone.
+  mutable std::mutex gaps_mutex_;
   SequenceGaps gaps_;
-  std::atomic<std::int64_t> missing_{0};
+  // Callbacks alone.
   std::int64_t last_stamp_ns_ = 0;
   std::int64_t last_clock_ns_ = 0;
 };

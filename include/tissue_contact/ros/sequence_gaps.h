@@ -2,6 +2,7 @@
 /// Room `ros`: messages that a publisher numbered and that never came: lost in its own queue, or in ours.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -10,12 +11,13 @@
 
 namespace tissue_contact {
 
-/// Counts the gaps in header.seq, per topic and publisher. Not thread-safe.
+/// Counts the gaps in header.seq, per topic and publisher, and knows the publishers. Not thread-safe.
 class SequenceGaps {
  public:
+  /// @param publisher its first 100 characters count.
   void note(int topic, const std::string& publisher, std::uint32_t sequence) {
     if (last_.size() > kMostPublishers) last_.clear();  // names come from outside
-    const auto [last, is_new] = last_.try_emplace({topic, publisher}, sequence);
+    const auto [last, is_new] = last_.try_emplace({topic, publisher.substr(0, kLongestName)}, sequence);
     // Backwards: started again, or a bag with numbers of its own.
     if (!is_new && sequence > last->second) missing_ += sequence - last->second - 1;
     last->second = sequence;
@@ -23,8 +25,21 @@ class SequenceGaps {
 
   std::int64_t missing() const { return missing_; }
 
+  /// "/a, /b": some of those heard on the topic.
+  std::string publishers(int topic) const {
+    std::string text;
+    int named = 0;
+    for (auto at = last_.lower_bound({topic, ""}); at != last_.end() && at->first.first == topic && named < 4; ++at) {
+      text += (named++ > 0 ? ", " : "") + at->first.second;
+    }
+    const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+    std::replace_if(text.begin(), text.end(), is_control, '?');
+    return text;
+  }
+
  private:
   static constexpr std::size_t kMostPublishers = 1000;
+  static constexpr std::size_t kLongestName = 100;
   std::map<std::pair<int, std::string>, std::uint32_t> last_;
   std::int64_t missing_ = 0;
 };

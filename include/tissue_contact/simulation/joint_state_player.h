@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tissue_contact/simulation/simulator.h"
+#include "tissue_contact/simulation/topic_clock.h"
 
 namespace tissue_contact {
 
@@ -26,13 +27,14 @@ struct JointStateSample {
 enum class Verdict {
   kAccepted,        ///< its joints were taken
   kDuplicateStamp,  ///< same stamp as the topic's last one: ignored
-  kBadStamp,        ///< zero or negative stamp: ignored
+  kBadStamp,        ///< zero or negative stamp, or one that ROS time does not reach: ignored
   kNotFinite,       ///< a position of a known joint is NaN or infinite: ignored
   kBadLength,       ///< as many positions as names are needed: ignored
   kNoKnownJoint,    ///< none of the names means a joint of an instrument on this topic: ignored
   kLate,            ///< its stamp lies before its topic's last, or in time already simulated: ignored
+  kTwoClocks,       ///< far off the stamps that the topic follows, and these go on: ignored
 };
-constexpr int kVerdictCount = 7;
+constexpr int kVerdictCount = 8;
 
 /// A few words for people ("duplicate stamp"), never null.
 const char* verdictText(Verdict verdict);
@@ -44,6 +46,7 @@ struct PlayedSample {
   std::int64_t stamp_ns = 0;     ///< of the refused sample; of a moment: where the simulator is now
   std::string detail;            ///< names the joint and value for a refused sample; empty if accepted
   bool was_reset = false;        ///< time went backwards (bag loop): the scene was reset before this moment
+  bool was_resumed = false;      ///< time went on where it was before a stamp far off, without a reset
   bool was_gap = false;          ///< the interval was longer than max_gap_s and was simulated as that long
   bool interrupted = false;      ///< AdvanceLimits ended it before the samples' stamp: it owes no wrench
   int accepted = 0;              ///< samples of this moment, those of topics that only update included
@@ -68,10 +71,12 @@ struct PlayedSample {
 /// bound is max_lag_s, and topics that only update are not waited for.
 ///
 /// Time. A stamp before its topic's last by at most max_gap_s is late: refused, nothing else changes. Farther back is a
-/// loop: the first moment of it resets the scene. So does any stamp that goes back after restart(). A topic first heard
-/// joins the newest loop; so does one that fits it within max_gap_s after another topic has begun it. A stamp far in the
-/// future is believed, so that what follows it is a loop. A looped recording shorter than max_gap_s needs restart();
-/// without it passes are refused as late until their stamps have gone through max_gap_s, and the next pass is a loop.
+/// loop, once the topic's next two go on from there (TopicClock has the rules); till then it waits. The first moment of a
+/// loop resets the scene. So does any stamp that goes back after restart(). A topic first heard joins the newest
+/// loop; so does one that fits it within max_gap_s after another topic has begun it. Stamps of a second clock on a
+/// topic are refused while the first goes on. One far in the future is believed; if the topic goes on where it was, so does
+/// the simulation, without a reset. A looped recording shorter than max_gap_s needs restart(); without it passes are
+/// refused as late until their stamps have gone through max_gap_s, and the next pass is a loop.
 ///
 /// Counts. pushed = accepted + merged + refused (count() of the other verdicts) + waiting(), at any time. Accepted are
 /// the samples of moments that were played, and those of update-only topics up to them. Merged are those that were
@@ -117,8 +122,8 @@ class JointStatePlayer {
   /// those first; nothing if there is neither. Call until it returns nothing.
   std::optional<PlayedSample> playNext();
 
-  /// No more samples will come (end of a bag): nothing waits any longer.
-  void finish() { finished_ = true; }
+  /// No more samples will come (end of a bag): no moment waits any longer. What would have to be confirmed is refused.
+  void finish();
 
   /// Samples so far by verdict, merged, waiting; resets and gaps.
   std::int64_t count(Verdict verdict) const { return counts_[static_cast<std::size_t>(verdict)]; }
@@ -146,14 +151,15 @@ class JointStatePlayer {
     bool triggers = true;
   };
   struct Topic {
+    explicit Topic(std::int64_t max_gap_ns) : clock(max_gap_ns) {}
+
+    TopicClock clock;
     std::deque<Queued> queue;
-    std::optional<Moment> last;   ///< of the last sample queued, to see time go backwards
-    std::optional<Moment> taken;  ///< of the last sample whose joints were taken
+    std::vector<JointStateSample> held;  ///< by the clock: a loop perhaps
+    std::optional<Moment> last;          ///< of the last sample queued, to see time go backwards
+    std::optional<Moment> taken;         ///< of the last sample whose joints were taken
     std::vector<Listener> listeners;
-    bool triggers = false;                          ///< any listener
-    std::optional<std::int64_t> restart_before_ns;  ///< restart() counts until a stamp beyond this
-    std::optional<std::int64_t> late_ns;            ///< stamp of the sample before, if that was late
-    std::int64_t late_progress_ns = 0;              ///< by how much late samples in a row have gone forward
+    bool triggers = false;  ///< any listener
   };
   /// The newest loop any topic has reached.
   struct NewestLoop {
@@ -162,10 +168,21 @@ class JointStatePlayer {
     std::int64_t last_ns = 0;   ///< newest stamp in it
   };
 
+  /// A loop that goes on where another was.
+  struct Resumption {
+    int epoch = 0;
+    std::int64_t from_ns = 0;
+  };
+
   void refuse(Verdict verdict, int topic, std::int64_t stamp_ns, const std::string& detail);
+  void refuseHeld(int topic);
   Verdict judgeContent(const JointStateSample& sample, const Topic& topic, std::string& detail) const;
   Verdict judgeJoints(const JointStateSample& sample, const Topic& topic, std::string& detail) const;
-  Verdict judgeStamp(std::int64_t stamp_ns, Topic& topic, Moment& moment, std::string& detail) const;
+  bool joinsNewest(std::int64_t stamp_ns, const Topic& topic) const;
+  void place(int topic, JointStateSample sample);
+  void refuseByClock(ClockRuling ruling, int topic, std::int64_t stamp_ns, bool was_late);
+  void accept(int topic, int epoch, JointStateSample sample);
+  void acceptHeld(int topic, int epoch);
   void noteMoment(const Moment& moment);
   std::optional<Moment> nextMoment() const;
   std::optional<Moment> newestMoment() const;
@@ -178,7 +195,8 @@ class JointStatePlayer {
   void takeJoints(const JointStateSample& sample, const Topic& topic);
   void headForNext(const Moment& moment, const Topic& topic);
   void placeNewJoints();
-  void startLoop(int epoch);
+  void startLoop();
+  void resume();
   void forgetJoints();
   void advanceTo(std::int64_t stamp_ns, PlayedSample& played);
   void settle(PlayedSample& played);
@@ -192,8 +210,9 @@ class JointStatePlayer {
   std::vector<Topic> topic_states_;
   std::deque<PlayedSample> refused_;  ///< not yet reported
   std::optional<NewestLoop> newest_;
-  std::size_t waiting_ = 0;       ///< samples in all queues
-  std::vector<VectorX> targets_;  ///< joint positions at the moment played last, per instrument
+  std::optional<Resumption> resumption_;  ///< the newest
+  std::size_t waiting_ = 0;               ///< samples in all queues
+  std::vector<VectorX> targets_;          ///< joint positions at the moment played last, per instrument
   enum class Heard { kNever, kNow, kBefore };
   std::vector<std::vector<Heard>> heard_;  ///< per instrument and joint: since the last reset; kNow: to be placed
   std::vector<bool> owes_;                 ///< per instrument: has a triggering sample without a wrench

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <thread>
+#include <utility>
 
 #include "tissue_contact/ros/receipt_times.h"
 #include "tissue_contact/ros/sequence_gaps.h"
@@ -39,6 +41,25 @@ TEST(JointStateInbox, DropsTheOldestAndCountsIt) {
   EXPECT_EQ(inbox.counts().received, 10);
   EXPECT_EQ(inbox.counts().dropped, 7);
   for (int i = 8; i <= 10; ++i) EXPECT_EQ(inbox.take()->sample.stamp_ns, i);
+}
+
+TEST(JointStateInbox, IsBoundedInBytesAsWell) {
+  JointStateInbox inbox(1000, 100000);
+  for (int i = 1; i <= 10; ++i) {
+    ReceivedState state = stateAt(i);
+    state.sample.positions.resize(4000);
+    inbox.put(std::move(state));
+  }
+  EXPECT_EQ(inbox.counts().received, 10);
+  EXPECT_EQ(inbox.counts().waiting, 3U);  // of 32 kB each
+  EXPECT_EQ(inbox.counts().dropped, 7);
+  ReceivedState huge = stateAt(11);
+  huge.sample.names.assign(2, std::string(1000000, 'n'));
+  inbox.put(std::move(huge));
+  EXPECT_EQ(inbox.counts().waiting, 1U);
+  EXPECT_EQ(inbox.take()->sample.stamp_ns, 11);
+  for (int i = 12; i <= 20; ++i) inbox.put(stateAt(i));
+  EXPECT_EQ(inbox.counts().waiting, 9U);  // all room is back
 }
 
 TEST(JointStateInbox, ARestartMarksTheNextStateEvenIfThatIsDropped) {
@@ -119,6 +140,12 @@ TEST(SequenceGaps, CountWhatAPublisherNumberedAndNeverCame) {
   gaps.note(0, "/other", 100);  // numbers of its own
   gaps.note(1, "/robot", 50);
   EXPECT_EQ(gaps.missing(), 2);
+  EXPECT_EQ(gaps.publishers(0), "/other, /robot");
+  EXPECT_EQ(gaps.publishers(1), "/robot");
+  EXPECT_EQ(gaps.publishers(2), "");
+  gaps.note(2, "/\x1b[2J" + std::string(1000000, 'n'), 1);
+  EXPECT_EQ(gaps.publishers(2).substr(0, 6), "/?[2Jn");
+  EXPECT_EQ(gaps.publishers(2).size(), 100U);
   gaps.note(1, "/robot", 50);  // unnumbered
   gaps.note(1, "/robot", 60);
   EXPECT_EQ(gaps.missing(), 11);

@@ -102,6 +102,10 @@ TEST(JointStatePlayer, RefusesBadSamplesAndGoesOnAsIfTheyHadNotCome) {
       {"empty", {next, {}, {}}, Verdict::kNoKnownJoint, "joint"},
       {"stamp zero", sample(0, 0.0), Verdict::kBadStamp, "stamp"},
       {"negative stamp", sample(-5, 0.0), Verdict::kBadStamp, "stamp"},
+      {"all bits of a stamp set", sample(4294967295 * kSecond + 4294967295, 0.0), Verdict::kBadStamp, "out of range"},
+      {"one past the last stamp", sample(4294967296 * kSecond, 0.0), Verdict::kBadStamp, "out of range"},
+      {"largest number", sample(std::numeric_limits<std::int64_t>::max(), 0.0), Verdict::kBadStamp, "out of range"},
+      {"smallest number", sample(std::numeric_limits<std::int64_t>::min(), 0.0), Verdict::kBadStamp, "> 0"},
       {"duplicate stamp", sample(kSecond, 0.001), Verdict::kDuplicateStamp, "same stamp"},
   };
   for (const BadSample& b : bad) {
@@ -125,6 +129,23 @@ TEST(JointStatePlayer, RefusesBadSamplesAndGoesOnAsIfTheyHadNotCome) {
     EXPECT_EQ(player.count(Verdict::kAccepted), 2);
     EXPECT_EQ(player.resets(), 0);
   }
+}
+
+TEST(JointStatePlayer, NamesFromOutsideReachALogCutAndWithoutControlCharacters) {
+  const auto simulator = oneProbe();
+  JointStatePlayer player(*simulator);
+  const std::vector<std::string> names(1000, "\x1b[2J\n\r\x7f" + std::string(1000000, 'n'));
+  const PlayedSample refused = playOne(player, 0, {kSecond, names, std::vector<double>(names.size(), 0.0)});
+  EXPECT_EQ(refused.verdict, Verdict::kNoKnownJoint);
+  EXPECT_LT(refused.detail.size(), 2000U);
+  EXPECT_NE(refused.detail.find("?[2J???nnn"), std::string::npos) << refused.detail;
+  for (const char c : refused.detail) EXPECT_GE(c, ' ');
+}
+
+TEST(JointStatePlayer, TakesTheLastStampThatThereIs) {
+  const auto simulator = oneProbe();
+  JointStatePlayer player(*simulator);
+  EXPECT_EQ(playOne(player, 0, sample(4294967295 * kSecond + 999999999, 0.0)).verdict, Verdict::kAccepted);
 }
 
 TEST(JointStatePlayer, RefusesABadFirstSample) {
@@ -156,9 +177,12 @@ TEST(JointStatePlayer, TimeGoingBackResetsOnceAndRepeatsTheSameBits) {
     Trace trace;
     int resets = 0;
     for (const JointStateSample& s : press(kSecond, 0.006)) {
-      const PlayedSample played = playOne(player, 0, s);
-      resets += static_cast<int>(played.was_reset);
-      trace.add(played, *simulator);
+      player.push(0, s);
+      while (const auto played = player.playNext()) {
+        EXPECT_EQ(played->verdict, Verdict::kAccepted) << played->detail;
+        resets += static_cast<int>(played->was_reset);
+        trace.add(*played, *simulator);
+      }
     }
     EXPECT_EQ(resets, loop == 0 ? 0 : 1);
     EXPECT_TRUE(trace.pressed());
@@ -173,7 +197,8 @@ TEST(JointStatePlayer, ALoopForgetsWhichJointsWereHeard) {
   const auto simulator = oneProbe();
   JointStatePlayer player(*simulator);
   playOne(player, 0, {2 * kSecond, {"x", "z"}, {0.3, 0.01}});
-  EXPECT_TRUE(playOne(player, 0, {kSecond, {"z"}, {0.02}}).was_reset);
+  for (int i = 0; i < 3; ++i) player.push(0, {kSecond + i * kMillisecond, {"z"}, {0.02}});
+  EXPECT_TRUE(drain(player).front().was_reset);
   EXPECT_EQ(simulator->jointPositions(0), Vector3(0, 0, 0.02));
 }
 

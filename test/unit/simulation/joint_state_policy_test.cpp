@@ -136,11 +136,12 @@ TEST(JointStatePolicy, NewestStateLoops) {
   drain(player);
   player.push(0, sample(2 * kSecond + 10 * kMillisecond, 0.0));  // merged into a motion that the loop cuts off
   player.push(0, sample(kSecond, 0.001));
-  player.push(0, sample(kSecond + 10 * kMillisecond, 0.002));
+  player.push(0, sample(kSecond + 10 * kMillisecond, 0.0015));
+  player.push(0, sample(kSecond + 20 * kMillisecond, 0.002));
   const std::vector<PlayedSample> played = drain(player);
   ASSERT_EQ(played.size(), 1U);
   EXPECT_TRUE(played[0].was_reset);
-  EXPECT_EQ(played[0].merged, 2);
+  EXPECT_EQ(played[0].merged, 3);
   EXPECT_EQ(simulator->jointPositions(0).z(), 0.002);
 }
 

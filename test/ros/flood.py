@@ -1,0 +1,82 @@
+#!/usr/bin/python3
+"""Far more joint states than the node can step through or even hold: what became of each is counted, and the node ends
+within a second."""
+import io
+import re
+import signal
+import sys
+import time
+import unittest
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from sensor_msgs.msg import JointState
+
+import harness
+
+COUNT = 200000
+RATE_HZ = 25000.0
+COUNTS = re.compile(r"joint states: (\d+) received, (\d+) accepted, (\d+) merged, (\d+) dropped, (\d+) refused.*?, "
+                    r"(\d+) waiting")
+
+
+class Packed(JointState):
+    """Serialized beforehand, since Python takes longer for that than the flood may; its publisher leaves header.seq alone."""
+    _has_header = False
+
+    def __init__(self, raw=b""):
+        super().__init__()
+        self.raw = raw
+
+    def serialize(self, buff):
+        buff.write(self.raw)
+
+
+def pack(number):
+    message = JointState(name=["x", "y", "z"], position=[0.0, 0.0, -0.001])
+    message.header.seq = number
+    message.header.stamp = rospy.Time(harness.START_S) + rospy.Duration(0, 40000) * number
+    stream = io.BytesIO()
+    message.serialize(stream)
+    return Packed(stream.getvalue())
+
+
+class Flood(unittest.TestCase):
+    def test_what_was_sent_is_received_or_known_to_be_missing(self):
+        messages = [pack(i) for i in range(COUNT)]
+        with harness.node(harness.SCENE) as process:
+            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+            publisher = rospy.Publisher(harness.TOPIC, Packed, queue_size=COUNT, tcp_nodelay=True)
+            harness.wait_until(lambda: publisher.get_num_connections() > 0, "a subscriber")
+            start = time.monotonic()
+            for i, message in enumerate(messages):
+                if i % 100 == 0:
+                    time.sleep(max(0.0, start + i / RATE_HZ - time.monotonic()))
+                publisher.publish(message)
+            took = time.monotonic() - start
+
+            def complete(told):
+                values = {v.key: v.value for v in told[-1].status[0].values} if told else {}
+                return "joint states: received" in values and COUNT == (
+                    int(values["joint states: received"]) + int(values["joint states: missing by header.seq"]))
+            values = {v.key: v.value for v in diagnostics.wait(complete, "all of the flood")[-1].status[0].values}
+            start = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(harness.DEADLINE_S), 0)
+            self.assertLess(time.monotonic() - start, 1.0)
+            process.output.seek(0)
+            counts = COUNTS.search(process.output.read())
+        print("%d sent in %.1f s: %s; missing %s" % (COUNT, took, counts.group(0),
+                                                     values["joint states: missing by header.seq"]))
+        received, accepted, merged, dropped, refused, waiting = map(int, counts.groups())
+        self.assertEqual(values["joint states: missing by header.seq"], "0")  # the connection holds what the node has no time for
+        self.assertEqual(received, COUNT)
+        self.assertEqual(received, accepted + merged + dropped + refused + waiting)
+        self.assertGreater(accepted, 0)
+        self.assertGreater(dropped, 0)  # it was a flood
+
+
+if __name__ == "__main__":
+    rospy.init_node("flood")
+    rostest.rosrun("tissue_contact", "flood", Flood, sys.argv)
