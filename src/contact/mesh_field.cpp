@@ -15,8 +15,7 @@
 namespace tissue_contact {
 namespace {
 
-constexpr double kSampleCount = 1.0e6;  // 4 MB; the jaws of an 8 mm instrument get a spacing of 0.1 mm
-constexpr int kDeviationPoints = 20000;
+constexpr double kSamplesPerDeviationPoint = 50.0;
 
 /// Triangles that have an area. @throws std::invalid_argument when there is none or an index is out of range.
 TriangleMesh usablePart(const TriangleMesh& mesh) {
@@ -84,7 +83,7 @@ void requireInside(const DistanceGrid& grid, const std::string& name) {
 }
 
 /// At points spread evenly over the triangles (additive recurrence of the plastic number, folded into each triangle).
-void measureDeviation(const TriangleMesh& outer, MeshField& field) {
+void measureDeviation(const TriangleMesh& outer, double points, MeshField& field) {
   const auto corner = [&](const Triangle& t, int k) -> Vector3 { return outer.vertices.col(t[k]); };
   const auto areaOf = [&](const Triangle& t) {
     return 0.5 * (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).norm();
@@ -97,7 +96,7 @@ void measureDeviation(const TriangleMesh& outer, MeshField& field) {
   double v = 0.5;
   for (const Triangle& t : outer.triangles) {
     const double area = areaOf(t);
-    const int count = static_cast<int>(std::ceil(kDeviationPoints * area / total));
+    const int count = static_cast<int>(std::ceil(points * area / total));
     for (int i = 0; i < count; ++i) {
       u = std::fmod(u + 0.7548776662466927, 1.0);
       v = std::fmod(v + 0.5698402909980532, 1.0);
@@ -140,8 +139,9 @@ class Progress {
   double last_ = 0.0;
 };
 
-MeshField build(const TriangleMesh& mesh, const std::string& name, const MeshPreparation& preparation) {
-  const GridPlan plan = planGrid(mesh, kSampleCount);
+MeshField build(const TriangleMesh& mesh, const std::string& name, const MeshPreparation& preparation,
+                double sample_count) {
+  const GridPlan plan = planGrid(mesh, sample_count);
   const SurfaceTree all(mesh);
   const TriangleMesh outer = outerSurface(mesh, all, GridPlan::kBlock * plan.spacing);
   MeshField field;
@@ -152,7 +152,7 @@ MeshField build(const TriangleMesh& mesh, const std::string& name, const MeshPre
   Progress progress(name, preparation);
   field.grid = sampleDistance(all, outer_tree, plan, [&](double share) { progress.at(share); });
   requireInside(field.grid, name);
-  measureDeviation(outer, field);
+  measureDeviation(outer, sample_count / kSamplesPerDeviationPoint, field);
   return field;
 }
 
@@ -179,9 +179,9 @@ void report(const std::string& name, std::size_t triangles, const MeshField& fie
 }  // namespace
 
 std::shared_ptr<const MeshField> prepareMeshField(const TriangleMesh& original, const std::string& name,
-                                                  MeshPreparation& preparation) {
+                                                  MeshPreparation& preparation, double sample_count) {
   const TriangleMesh mesh = usablePart(original);
-  const std::string key = fieldKey(mesh, kSampleCount);
+  const std::string key = fieldKey(mesh, sample_count);
   auto field = std::make_shared<MeshField>();
   if (readField(preparation.cache_directory, key, *field)) {
     field->tips = tipsOf(mesh, field->grid);
@@ -189,7 +189,7 @@ std::shared_ptr<const MeshField> prepareMeshField(const TriangleMesh& original, 
     return field;
   }
   const double start = preparation.clock ? preparation.clock() : 0.0;
-  *field = build(mesh, name, preparation);
+  *field = build(mesh, name, preparation, sample_count);
   field->tips = tipsOf(mesh, field->grid);
   std::array<char, 64> took{"built"};
   if (preparation.clock) std::snprintf(took.data(), took.size(), "built in %.1f s", preparation.clock() - start);

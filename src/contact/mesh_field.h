@@ -31,8 +31,9 @@ struct MeshField {
 
 /// @param name of the mesh, for what is said. @param preparation its cache is given up when it cannot be written to, which
 ///   is said once.
+/// @param sample_count of the grid, about. The default takes 4 MB; the jaws of an 8 mm instrument get a spacing of 0.1 mm.
 /// @throws std::invalid_argument when the mesh has no usable triangle, an index out of range, or no inside.
 std::shared_ptr<const MeshField> prepareMeshField(const TriangleMesh& mesh, const std::string& name,
-                                                  MeshPreparation& preparation);
+                                                  MeshPreparation& preparation, double sample_count = 1e6);
 
 }  // namespace tissue_contact

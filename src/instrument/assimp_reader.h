@@ -22,4 +22,7 @@ struct TriangleSoup {
 /// @param file a regular file. @throws std::invalid_argument naming it.
 TriangleSoup readTriangleSoup(const std::string& file);
 
+/// The same in this process, at the mercy of assimp: for fuzzing, to which a process per file is too slow.
+TriangleSoup readTriangleSoupUnprotected(const std::string& file);
+
 }  // namespace tissue_contact

@@ -1,0 +1,265 @@
+/// @file
+/// Sequences of joint states, as two drivers or a bag may deliver them, through the player into a small simulator. Every
+/// answer must be finite and bounded, every sample counted, and a second run of the same sequence equal to the last bit.
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "fuzz/fuzz_support.h"
+#include "tissue_contact/scene/load_scene.h"
+#include "tissue_contact/simulation/joint_state_player.h"
+#include "validation/text_scene.h"
+
+using namespace tissue_contact;
+
+namespace {
+
+constexpr int kMostRecords = 64;
+/// Nodes of a block of 20 mm on a fixed base. Far more than tools that jump or pass through pull them; far less than what
+/// diverges.
+constexpr double kFarthestNode = 1.0;  // m
+
+constexpr const char* kScene = R"(
+tissues:
+  - name: block
+    block: {size_m: [0.02, 0.02, 0.01], cells: [2, 2, 1]}
+    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}
+    damping: {stiffness_s: 0.003}
+    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]
+instruments:
+  - name: left
+    robot_description: probe
+    base_pose: {position_m: [0, 0, 0.014]}
+    joint_state_topics: [/left, {topic: /left_z, triggers: false}]
+    tip_link: tip
+    contact_links: [tip]
+  - {name: right, robot_description: probe, base_pose: {position_m: [0.006, 0, 0.014]}, joint_state_topics: [/right],
+     tip_link: tip, contact_links: [tip]}
+friction:
+  - {instrument: left, tissue: block, static: 0.6, kinetic: 0.4}
+step: {max_step_s: 0.005, max_gap_s: 0.02}
+)";
+
+/// One record of an input: small changes of its bytes are small changes of the sequence.
+struct Record {
+  std::uint8_t action = 0;
+  std::uint8_t topic = 0;
+  std::uint8_t unit = 0;  ///< of the stamp's step; of the positions
+  std::uint8_t content = 0;
+  std::int16_t step = 0;
+  std::int16_t x = 0, y = 0, z = 0;
+
+  explicit Record(fuzz::Bytes& bytes)
+      : action(bytes.take<std::uint8_t>()),
+        topic(bytes.take<std::uint8_t>()),
+        unit(bytes.take<std::uint8_t>()),
+        content(bytes.take<std::uint8_t>()),
+        step(bytes.take<std::int16_t>()),
+        x(bytes.take<std::int16_t>()),
+        y(bytes.take<std::int16_t>()),
+        z(bytes.take<std::int16_t>()) {}
+};
+
+std::int64_t strangeStamp(unsigned which) {
+  constexpr std::int64_t kNewest = std::numeric_limits<std::int64_t>::max();
+  // The last: seconds and nanoseconds of 0xFFFFFFFF each, the largest that a message can hold.
+  constexpr std::int64_t kStamps[] = {0,       -1,          1,       std::numeric_limits<std::int64_t>::min(),
+                                      kNewest, kNewest - 1, 1 << 30, 4294967295LL * 1000000000LL + 4294967295LL};
+  return kStamps[which % 8];
+}
+
+double strangePosition(unsigned which) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double kPositions[] = {std::numeric_limits<double>::quiet_NaN(),
+                                   kInfinity,
+                                   -kInfinity,
+                                   std::numeric_limits<double>::max(),
+                                   1e154,
+                                   -1e9,
+                                   5e-324,
+                                   3.0};
+  return kPositions[which % 8];
+}
+
+/// Bits of all that came out, in order (64-bit FNV-1a).
+class Digest {
+ public:
+  template <typename Number>
+  void add(Number number) {
+    unsigned char bytes[sizeof number];
+    std::memcpy(bytes, &number, sizeof number);
+    for (const unsigned char byte : bytes) value_ = (value_ ^ byte) * 1099511628211ULL;
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 14695981039346656037ULL;
+};
+
+/// Plays an input once.
+class Run {
+ public:
+  explicit Run(Simulator& simulator) : simulator_(simulator), player_(simulator) {
+    limits_.most_steps = kMostSteps;
+    player_.setLimits(limits_);
+  }
+
+  std::uint64_t play(fuzz::Bytes bytes) {
+    for (int k = 0; k < kMostRecords && bytes.left() > 0; ++k) act(Record(bytes));
+    player_.finish();
+    playAll();
+    fuzz::require(player_.waiting() == 0, "nothing waits after the end");
+    addCounts();
+    return digest_.value();
+  }
+
+ private:
+  static constexpr int kMostSteps = 8;
+
+  void act(const Record& record) {
+    switch (record.action % 16) {
+      case 0:
+        player_.restart();
+        break;
+      case 1:
+        player_.setPolicy(record.topic % 2 == 0 ? StatePolicy::kEveryState : StatePolicy::kNewestState);
+        break;
+      case 2:
+        setLimits(record);
+        break;
+      default:
+        push(record);
+    }
+    if (record.action < 240) playAll();  // else several wait, as after a stall
+    checkCounts();
+  }
+
+  void setLimits(const Record& record) {
+    limits_.most_steps = 1 + record.topic % kMostSteps;
+    limits_.longest_step_s = record.unit % 2 == 0 ? 0.0 : 0.001 * (1 + record.content % 20);
+    limits_.interrupted = nullptr;
+    if (record.step > 0) {
+      limits_.interrupted = [left = record.step % 16]() mutable { return left-- <= 0; };
+    }
+    player_.setLimits(limits_);
+  }
+
+  void push(const Record& record) {
+    constexpr std::int64_t kUnits[] = {1, 1000, 100000, 1000000};  // ns
+    std::int64_t& stamp_ns = stamps_ns_[record.topic % 3];
+    stamp_ns += record.step * kUnits[record.unit % 4];
+    if (record.unit / 4 % 4 == 3) stamp_ns = *std::max_element(std::begin(stamps_ns_), std::end(stamps_ns_));
+    const double scale = record.unit >= 192 ? 1e-3 : 1e-6;  // m: 33 m or 33 mm at most
+    JointStateSample sample{stamp_ns, {"x", "y", "z"}, {scale * record.x, scale * record.y, scale * record.z}};
+    spoil(record, sample);
+    player_.push(record.topic % 3, std::move(sample));
+    ++pushed_;
+  }
+
+  /// Most contents are as they should be.
+  static void spoil(const Record& record, JointStateSample& sample) {
+    const unsigned which = record.content / 16;
+    switch (record.content % 16) {
+      case 1:
+        sample.stamp_ns = strangeStamp(which);
+        break;
+      case 2:
+        sample.positions[which % 3] = strangePosition(which / 2);
+        break;
+      case 3:
+        sample.names.resize(which);
+        break;
+      case 4:
+        sample.names.assign(which % 4, "unknown");
+        sample.positions.resize(which % 4);
+        break;
+      case 5:
+        sample.names[which % 3] = sample.names[which / 3 % 3];
+        break;
+      case 6:
+        sample.names.erase(sample.names.begin());
+        sample.positions.erase(sample.positions.begin());
+        break;
+      default:
+        break;
+    }
+  }
+
+  void playAll() {
+    while (const std::optional<PlayedSample> played = player_.playNext()) {
+      checkCounts();
+      checkPlayed(*played);
+      checkState();
+    }
+  }
+
+  void checkCounts() const {
+    std::int64_t counted = player_.merged() + player_.waiting();
+    for (int verdict = 0; verdict < kVerdictCount; ++verdict) counted += player_.count(static_cast<Verdict>(verdict));
+    fuzz::require(counted == pushed_, "pushed = accepted + merged + refused + waiting");
+  }
+
+  void checkPlayed(const PlayedSample& played) {
+    digest_.add(static_cast<int>(played.verdict));
+    digest_.add(played.stamp_ns);
+    if (played.verdict != Verdict::kAccepted) {
+      fuzz::require(!played.detail.empty() && played.topic >= 0, "a refusal names its topic and why");
+      return;
+    }
+    fuzz::require(played.stamp_ns > 0, "moments have stamps");
+    fuzz::require(played.was_reset || played.stamp_ns >= last_moment_ns_, "time goes back by a reset only");
+    last_moment_ns_ = played.stamp_ns;
+    fuzz::require(!played.interrupted || played.instruments.empty(), "what was interrupted owes no wrench");
+    for (const int instrument : played.instruments) digest_.add(instrument);
+  }
+
+  void checkState() {
+    for (int t = 0; t < static_cast<int>(simulator_.tissues().size()); ++t) {
+      const NodalVectors& x = simulator_.positions(t);
+      const NodalVectors& v = simulator_.velocities(t);
+      fuzz::require(x.allFinite() && v.allFinite(), "finite nodes");
+      fuzz::require(x.cwiseAbs().maxCoeff() < kFarthestNode, "nodes that stay near");
+      for (Eigen::Index i = 0; i < x.size(); ++i) digest_.add(x.data()[i]);
+      for (Eigen::Index i = 0; i < v.size(); ++i) digest_.add(v.data()[i]);
+    }
+    for (int i = 0; i < static_cast<int>(simulator_.instruments().size()); ++i) {
+      const Wrench wrench = simulator_.wrench(i);
+      fuzz::require(wrench.force.allFinite() && wrench.torque.allFinite(), "finite wrenches");
+      for (int k = 0; k < 3; ++k) digest_.add(wrench.force[k]);
+      for (int k = 0; k < 3; ++k) digest_.add(wrench.torque[k]);
+    }
+  }
+
+  void addCounts() {
+    for (int verdict = 0; verdict < kVerdictCount; ++verdict) digest_.add(player_.count(static_cast<Verdict>(verdict)));
+    digest_.add(player_.merged());
+    digest_.add(player_.resets());
+    digest_.add(player_.gaps());
+  }
+
+  Simulator& simulator_;
+  JointStatePlayer player_;
+  AdvanceLimits limits_;
+  Digest digest_;
+  std::int64_t stamps_ns_[3] = {10000000000, 10000000000, 10000000000};
+  std::int64_t pushed_ = 0;
+  std::int64_t last_moment_ns_ = 0;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const Scene scene = parseScene(kScene, "scene of the fuzz target", {});
+  static const SceneEnvironment environment = [] {
+    SceneEnvironment made;
+    made.urdf_text = [](const std::string&) { return probeUrdf(0.004); };
+    return made;
+  }();
+  Simulator simulator(scene, environment);
+  const std::uint64_t first = Run(simulator).play({data, size});
+  simulator.reset();
+  const std::uint64_t second = Run(simulator).play({data, size});
+  fuzz::require(first == second, "the same sequence gives the same bits after a reset");
+  return 0;
+}
