@@ -207,7 +207,7 @@ class FilesTest(unittest.TestCase):
     def test_two_replays_into_one_file(self):
         done = self.replay(csv=self.path("expected.csv"))
         self.assertEqual(done.returncode, 0, done)
-        for _ in range(5):
+        for _ in range(3):
             command = [program("tissue_contact_replay"), "--scene", self.scene, "--bag", self.bag, "--csv", self.csv]
             both = [subprocess.Popen(command, stderr=subprocess.DEVNULL) for _ in range(2)]
             self.assertEqual([one.wait(DEADLINE_S) for one in both], [0, 0])
@@ -256,6 +256,20 @@ class FilesTest(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done)
         self.assertTrue(self.read("out.json").startswith(b"{"))
         self.assertEqual(stat.S_IMODE(os.stat(self.path("out.json")).st_mode), 0o600)
+
+    def test_tables_of_the_benchmark(self):
+        """Refused before the run, not after it."""
+        self.write("victim")
+        os.symlink("victim", self.path("press-drag.csv"))
+        quick = [program("tissue_contact_benchmark"), "--quick", "--only", "press-drag", "--out"]
+        for out, words in [(self.directory, ["press-drag.csv", "symbolic link to 'victim'"]),
+                           (self.path("victim"), ["victim", "Not a directory"])]:
+            done = run(quick + [out])
+            self.assertEqual(done.returncode, 1, done)
+            for word in words:
+                self.assertIn(word, done.stderr)
+        self.assertEqual(self.read("victim"), BEFORE)
+        self.assertEqual(sorted(os.listdir(self.directory)), ["press-drag.csv", "victim"])
 
     def test_text_that_cannot_be_written(self):
         """What goes to stdout is a result as well."""
