@@ -233,7 +233,7 @@ class FilesTest(unittest.TestCase):
                 self.assertEqual(os.listdir(self.directory), ["out.csv"])
 
     def test_json_of_validation(self):
-        validate = [program("tissue_contact_validate"), "--case", "incline", "--json"]
+        validate = [program("tissue_contact_validate"), "--case", "one-contact", "--json"]
         os.mkfifo(self.path("fifo"))
         self.write("victim")
         os.symlink("victim", self.path("link"))
@@ -273,7 +273,7 @@ class FilesTest(unittest.TestCase):
 
     def test_text_that_cannot_be_written(self):
         """What goes to stdout is a result as well."""
-        for command in [[program("tissue_contact_validate"), "--case", "incline"],
+        for command in [[program("tissue_contact_validate"), "--case", "one-contact"],
                         [program("tissue_contact_validate"), "--list"],
                         [program("tissue_contact_replay"), "--help"], [program("tissue_contact_benchmark"), "--help"]]:
             with self.subTest(command=command), open("/dev/full", "w", encoding="ascii") as full:
