@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "contact_test_utilities.h"
+#include "support/temporary_directory.h"
 
 namespace tissue_contact {
 namespace {
@@ -21,14 +21,9 @@ namespace fs = std::filesystem;
 class FieldCache : public testing::Test {
  protected:
   void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "field_cache_test_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    parent_ = pattern;
-    directory_ = parent_ / "cache";
     preparation_.cache_directory = directory_;
     preparation_.say = [this](const std::string& line) { said_.push_back(line); };
   }
-  void TearDown() override { fs::remove_all(parent_); }
 
   bool fromCache() {
     said_.clear();
@@ -42,8 +37,8 @@ class FieldCache : public testing::Test {
     return files.at(0);
   }
 
-  fs::path parent_;
-  fs::path directory_;
+  TemporaryDirectory temporary_;
+  fs::path directory_ = temporary_.path() / "cache";
   MeshPreparation preparation_;
   std::vector<std::string> said_;
   TriangleMesh mesh_ = contact_test::boxMesh({0.01, 0.002, 0.002}, 2);

@@ -7,12 +7,13 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
+
+#include "support/temporary_directory.h"
 
 namespace tissue_contact {
 namespace {
@@ -21,18 +22,8 @@ namespace fs = std::filesystem;
 
 class ReadFile : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "read_file_test_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    directory_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(directory_); }
-
-  std::string path(const std::string& name) const { return (directory_ / name).string(); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-    return path(name);
-  }
+  std::string path(const std::string& name) const { return temporary_.path(name); }
+  std::string write(const std::string& name, const std::string& text) const { return temporary_.write(name, text); }
   static std::string refusal(const std::string& file) {
     try {
       readFile(file, "test file", 100);
@@ -42,7 +33,8 @@ class ReadFile : public testing::Test {
     return "";
   }
 
-  fs::path directory_;
+  TemporaryDirectory temporary_;
+  fs::path directory_ = temporary_.path();
 };
 
 TEST_F(ReadFile, GivesAllBytes) {

@@ -11,13 +11,12 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "core/part_file.h"
+#include "support/temporary_directory.h"
 
 namespace tissue_contact {
 namespace {
@@ -26,20 +25,9 @@ namespace fs = std::filesystem;
 
 class WholeFileTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "whole_file_test_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    directory_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(directory_); }
-
-  std::string path(const std::string& name) const { return (directory_ / name).string(); }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
-  std::string read(const std::string& name) const {
-    std::ostringstream text;
-    text << std::ifstream(path(name)).rdbuf();
-    return text.str();
-  }
+  std::string path(const std::string& name) const { return temporary_.path(name); }
+  void write(const std::string& name, const std::string& text) const { temporary_.write(name, text); }
+  std::string read(const std::string& name) const { return temporary_.read(name); }
   std::vector<std::string> names() const {
     std::vector<std::string> names;
     for (const fs::directory_entry& entry : fs::directory_iterator(directory_)) {
@@ -54,7 +42,8 @@ class WholeFileTest : public testing::Test {
     return status.st_mode & 07777u;
   }
 
-  fs::path directory_;
+  TemporaryDirectory temporary_;
+  fs::path directory_ = temporary_.path();
 };
 
 template <typename Function>

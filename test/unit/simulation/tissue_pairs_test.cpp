@@ -1,10 +1,10 @@
 /// Tissue against tissue through the whole simulator, and the contact problem of a step written to a file.
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <fstream>
+#include <sstream>
 #include <string>
 
+#include "support/temporary_directory.h"
 #include "tissue_contact/solver/delassus.h"
 #include "validation/text_scene.h"
 
@@ -74,13 +74,10 @@ TEST(ContactProblemFile, HoldsTheProblemOfTheLastStep) {
   Simulator simulator = makeStack(0.5, 0.2);
   simulator.advance(0.3, {});
   ASSERT_FALSE(simulator.contacts().empty());
-  const std::string file = ::testing::TempDir() + "tissue_contact_problem.txt";
-  {
-    std::ofstream stream(file);
-    writeContactProblem(stream, makeDelassusProblem(simulator.lastProblem()), simulator.lastSolution().states);
-  }
-  const DelassusProblem problem = readContactProblem(file);
-  std::remove(file.c_str());
+  std::ostringstream text;
+  writeContactProblem(text, makeDelassusProblem(simulator.lastProblem()), simulator.lastSolution().states);
+  const TemporaryDirectory directory;
+  const DelassusProblem problem = readContactProblem(directory.write("problem.txt", text.str()));
   ASSERT_EQ(problem.contacts(), static_cast<int>(simulator.contacts().size()));
   VectorX r(3 * problem.contacts());
   for (int c = 0; c < problem.contacts(); ++c) r.segment<3>(3 * c) = simulator.lastSolution().impulses[c];

@@ -3,11 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <random>
 #include <sstream>
 
+#include "support/temporary_directory.h"
 #include "tissue_contact/friction/friction_law.h"
 #include "tissue_contact/solver/delassus.h"
 
@@ -16,18 +15,7 @@ namespace {
 
 class ContactProblemFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    file_ = (std::filesystem::temp_directory_path() /
-             (std::string("tissue_contact_") + info->name() + std::to_string(std::random_device{}()) + ".txt"))
-                .string();
-  }
-  void TearDown() override { std::filesystem::remove(file_); }
-
-  DelassusProblem read(const std::string& text) {
-    std::ofstream(file_, std::ios::binary) << text;
-    return readContactProblem(file_);
-  }
+  DelassusProblem read(const std::string& text) { return readContactProblem(directory_.write("problem.txt", text)); }
 
   /// The message reading `text` fails with; empty if it does not.
   std::string failure(const std::string& text) {
@@ -39,7 +27,8 @@ class ContactProblemFile : public ::testing::Test {
     return "";
   }
 
-  std::string file_;
+  TemporaryDirectory directory_;
+  std::string file_ = directory_.path("problem.txt");
 };
 
 const char* const kOneContact = "FC3D 1\nn 1\nW dense\n1 0 0  0 2 0  0 0 3\nq -1 2 3\nmu 0.5\n";
@@ -154,7 +143,7 @@ TEST_F(ContactProblemFile, RefusesWhatIsWrongAndSaysWhere) {
 
 TEST_F(ContactProblemFile, RefusesWhatIsNoFile) {
   EXPECT_THROW(readContactProblem(file_ + ".absent"), std::invalid_argument);
-  EXPECT_THROW(readContactProblem(std::filesystem::temp_directory_path().string()), std::invalid_argument);
+  EXPECT_THROW(readContactProblem(directory_.path().string()), std::invalid_argument);
   EXPECT_THROW(readContactProblem("/dev/zero"), std::invalid_argument);
 }
 

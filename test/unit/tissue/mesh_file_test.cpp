@@ -42,14 +42,14 @@ TEST(MeshFile, PointersOfLfsAndAnnexAreCalledThat) {
 }
 
 TEST(MeshFile, DoesNotWaitForAPipe) {
-  const std::string pipe = testing::TempDir() + "tissue_contact_pipe_" + std::to_string(getpid());
+  const TemporaryDirectory directory;
+  const std::string pipe = directory.path("pipe");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   expectPathRefused(pipe, "not a regular file");
-  std::filesystem::remove(pipe);
 }
 
 TEST(MeshFile, RefusesAFileTooLargeWithoutReadingIt) {
-  const TemporaryFile file("$MeshFormat\n");
+  const FileOfBytes file("$MeshFormat\n");
   std::filesystem::resize_file(file.path(), std::uintmax_t{1} << 40U);  // sparse: takes no room
   expectPathRefused(file.path(), "at most 1073741824");
 }
@@ -93,7 +93,7 @@ TEST(MeshFile, RefusesABadScale) {
 }
 
 TEST(MeshFile, RemovesUnreferencedNodesOnRequestOnly) {
-  const TemporaryFile file(kUnreferenced);
+  const FileOfBytes file(kUnreferenced);
   const TetMesh all = loadTetMesh(meshFile(file.path()));
   EXPECT_EQ(all.positions.cols(), 6);
   EXPECT_EQ(all.tetrahedra, (std::vector<Tetrahedron>{{1, 2, 4, 5}}));

@@ -126,7 +126,7 @@ class Damage {
 
 TEST(MeshFuzz, DamagedFilesAreReadOrRefused) {
   const std::vector<std::string> files = wholeFiles();
-  const TemporaryFile file("");
+  const FileOfBytes file("");
   [[maybe_unused]] const long peak_before = peakMegabytes();
   int read = 0;
   int refused = 0;

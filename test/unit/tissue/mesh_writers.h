@@ -4,7 +4,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdint>
 #include <cstdio>
@@ -16,6 +15,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "support/temporary_directory.h"
 #include "tissue_contact/tissue/tet_mesh.h"
 
 namespace tissue_contact {
@@ -30,16 +30,10 @@ inline std::string readBytes(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-/// A file that lives as long as this object.
-class TemporaryFile {
+/// A mesh file that lives as long as this object.
+class FileOfBytes {
  public:
-  explicit TemporaryFile(const std::string& bytes)
-      : path_(testing::TempDir() + "tissue_contact_mesh_" + std::to_string(getpid()) + ".tmp") {
-    write(bytes);
-  }
-  ~TemporaryFile() { std::remove(path_.c_str()); }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  explicit FileOfBytes(const std::string& bytes) { write(bytes); }
 
   void write(const std::string& bytes) const {
     // A new file each time: overwriting an old one makes some file systems wait for the disk.
@@ -51,7 +45,8 @@ class TemporaryFile {
   const std::string& path() const { return path_; }
 
  private:
-  std::string path_;
+  TemporaryDirectory directory_;
+  std::string path_ = directory_.path("mesh");
 };
 
 inline MeshDescription meshFile(const std::string& path, bool remove_unreferenced_nodes = false) {
@@ -61,7 +56,7 @@ inline MeshDescription meshFile(const std::string& path, bool remove_unreference
   return description;
 }
 
-inline TetMesh loadBytes(const std::string& bytes) { return loadTetMesh(meshFile(TemporaryFile(bytes).path())); }
+inline TetMesh loadBytes(const std::string& bytes) { return loadTetMesh(meshFile(FileOfBytes(bytes).path())); }
 
 /// The file must be refused, in words that hold all of these.
 inline void expectRefused(const std::string& bytes, std::initializer_list<const char*> words) {

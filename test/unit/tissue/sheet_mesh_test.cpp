@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <initializer_list>
 #include <limits>
 #include <map>
 #include <stdexcept>
+
+#include "support/temporary_directory.h"
 
 namespace tissue_contact {
 namespace {
@@ -117,13 +117,10 @@ TEST(CheckSheetMesh, NamesWhatIsWrong) {
 
 class ShellFile : public ::testing::Test {
  protected:
-  ~ShellFile() override { std::filesystem::remove(path); }
-  void write(const std::string& text) const { std::ofstream(path) << text; }
+  void write(const std::string& text) const { directory_.write("shell.obj", text); }
 
-  std::string path = (std::filesystem::temp_directory_path() /
-                      ("tissue_contact_shell_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) +
-                       "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".obj"))
-                         .string();
+  TemporaryDirectory directory_;
+  std::string path = directory_.path("shell.obj");
 };
 
 TEST_F(ShellFile, IsReadWithItsScale) {
