@@ -66,7 +66,7 @@ class Builder {
     }
   }
 
-  ContactLink makeContactLink(const std::string& entry, const ContactLinkDescription& contact) const {
+  ContactLink makeContactLink(const std::string& entry, const ContactLinkDescription& contact) {
     ContactLink result;
     result.name = contact.link;
     result.link = findLink(entry, "contact link", contact.link);
@@ -84,6 +84,7 @@ class Builder {
     for (std::size_t i = 0; i < shapes->size(); ++i) {
       try {
         result.shapes.push_back(makeCollisionShape((*shapes)[i]));
+        count(result.shapes.back());
       } catch (const std::invalid_argument& error) {
         const bool of_scene = shapes == &contact.shapes;
         refuse(of_scene ? elementOf(entry + ".shapes", i) : entry, "contact link '" + contact.link + "', " + origin +
@@ -94,7 +95,7 @@ class Builder {
     return result;
   }
 
-  std::vector<ContactLink> makeContactLinks() const {
+  std::vector<ContactLink> makeContactLinks() {
     std::vector<ContactLink> links;
     std::set<std::string> seen;
     for (const ContactLinkDescription& contact : description_.contact_links) {
@@ -134,6 +135,19 @@ class Builder {
   }
 
  private:
+  /// Bounds what one instrument holds while its meshes are read; the scene's bounds come after it.
+  void count(const CollisionShape& shape) {
+    constexpr std::size_t kMostShapes = 1000;
+    constexpr std::size_t kMostTriangles = 2'000'000;
+    if (shape.mesh) triangles_ += shape.mesh->triangles.size();
+    if (++shapes_ > kMostShapes || triangles_ > kMostTriangles) {
+      throw std::invalid_argument("the shapes up to here are " + std::to_string(shapes_) + " with " +
+                                  std::to_string(triangles_) + " triangles; an instrument may have at most " +
+                                  std::to_string(kMostShapes) + " with " + std::to_string(kMostTriangles) +
+                                  "; name fewer contact links, or simpler shapes in the scene");
+    }
+  }
+
   int findMappedJoint(const std::string& recorded, const std::string& name) const {
     return findJoint("joint_names." + recorded, "the joint map sends '" + recorded + "' to", name);
   }
@@ -145,13 +159,15 @@ class Builder {
 
   const InstrumentDescription& description_;
   const RobotModel& model_;
+  std::size_t shapes_ = 0;
+  std::size_t triangles_ = 0;
 };
 
 }  // namespace
 
 Instrument::Instrument(const InstrumentDescription& description, RobotModel model, const Pose& X_WB)
     : name_(description.name), model_(std::move(model)), X_WB_(X_WB) {
-  const Builder builder(description, model_);
+  Builder builder(description, model_);
   if (!X_WB.matrix().allFinite()) builder.refuse("base_pose", "its base pose is not finite");
   builder.checkTopics();
   tip_link_ = builder.findLink("tip_link", "tip link", description.tip_link);

@@ -42,8 +42,13 @@ StepDescription parseStep(const YamlCursor& cursor) {
     cursor.fail("max_gap_s is shorter than max_step_s; it must be at least as long");
   }
   constexpr double kMostStepsPerGap = 1e5;  // a late joint state must not keep the node busy for minutes
-  if (step.max_gap_s > kMostStepsPerGap * step.max_step_s) {
-    cursor.fail("max_gap_s is more than 100000 times max_step_s; shorten max_gap_s or lengthen max_step_s");
+  // 0.1 is a little more than 1e5 times 1e-6 in binary: both are read to half a unit in the last place, the product is
+  // rounded once more. Nobody types ratios that differ by less than this.
+  constexpr double kRoundOff = 1e-9;
+  if (step.max_gap_s > (1.0 + kRoundOff) * kMostStepsPerGap * step.max_step_s) {
+    const YamlCursor* gap = map.find("max_gap_s");
+    (gap == nullptr ? cursor : *gap)
+        .fail("is more than 100000 times max_step_s; shorten max_gap_s or lengthen max_step_s");
   }
   return step;
 }
@@ -64,12 +69,12 @@ PublishDescription parsePublish(const YamlCursor& cursor) {
 
 void parseBodies(const YamlMap& map, const PathContext& paths, Scene& scene) {
   NameLines lines;
-  for (const YamlCursor& element : map.get("tissues").list(1)) {
+  for (const YamlCursor& element : map.get("tissues").list(1, kMostBodies)) {
     scene.tissues.push_back(parseTissue(element, paths));
     addName(scene.tissues.back().name, element, lines);
   }
   if (const YamlCursor* instruments = map.find("instruments")) {
-    for (const YamlCursor& element : instruments->list(0)) {
+    for (const YamlCursor& element : instruments->list(0, kMostBodies)) {
       scene.instruments.push_back(parseInstrument(element, paths));
       addName(scene.instruments.back().name, element, lines);
     }

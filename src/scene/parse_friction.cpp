@@ -210,7 +210,7 @@ FrictionDescription parseFriction(const YamlCursor& cursor, const Scene& scene) 
 std::vector<TissuePair> parseTissuePairs(const YamlCursor& cursor, const Scene& scene) {
   std::vector<TissuePair> pairs;
   std::set<std::pair<std::string, std::string>> seen;
-  for (const YamlCursor& element : cursor.list(0)) {
+  for (const YamlCursor& element : cursor.list(0, kMostPairs)) {
     const YamlMap map = element.map(MapKind::kTissuePair);
     pairs.push_back({parseTissueName(map.get("tissue"), scene).name, parseTissueName(map.get("other"), scene).name});
     const TissuePair& pair = pairs.back();
@@ -225,7 +225,7 @@ std::vector<TissuePair> parseTissuePairs(const YamlCursor& cursor, const Scene& 
 std::vector<FrictionDescription> parseFrictionPairs(const YamlCursor& cursor, const Scene& scene) {
   std::vector<FrictionDescription> pairs;
   std::set<std::tuple<std::string, std::string, std::string, std::string>> seen;
-  for (const YamlCursor& element : cursor.list(0)) {
+  for (const YamlCursor& element : cursor.list(0, kMostPairs)) {
     pairs.push_back(parseFriction(element, scene));
     const FrictionDescription& pair = pairs.back();
     const auto sides = unordered(pair.instrument + pair.other_tissue, pair.tissue);  // one of the two first is empty

@@ -51,7 +51,7 @@ std::vector<JointStateTopic> parseTopics(const YamlCursor& cursor) {
   std::vector<JointStateTopic> topics;
   std::vector<bool> is_given;
   std::set<std::string> seen;
-  for (const YamlCursor& element : cursor.list(0)) {
+  for (const YamlCursor& element : cursor.list(0, kMostTopics)) {
     topics.emplace_back();
     is_given.push_back(false);
     if (element.isScalar()) {
@@ -95,7 +95,7 @@ std::map<std::string, std::string> parseJointNames(const YamlCursor& cursor) {
 std::vector<ContactLinkDescription> parseContactLinks(const YamlCursor& cursor, const PathContext& paths) {
   std::vector<ContactLinkDescription> links;
   std::set<std::string> seen;
-  for (const YamlCursor& element : cursor.list(1)) {
+  for (const YamlCursor& element : cursor.list(1, kMostContactLinks)) {
     links.push_back(parseContactLink(element, paths));
     if (!seen.insert(links.back().link).second) {
       element.fail("link " + inQuotes(links.back().link) + " is named twice; list all its shapes in one place");

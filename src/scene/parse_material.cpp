@@ -5,8 +5,6 @@
 namespace tissue_contact {
 namespace {
 
-constexpr std::size_t kMaxRegions = 1000;
-
 constexpr Range kYoungRange{1.0, 1e12, "Pa", "give pascals: 5 kPa is 5000, 1 MPa is 1e6"};
 constexpr Range kPoissonRange{-1.0, 0.5, "", "0.5 itself (incompressible) cannot be simulated, 0.49 can", true, true};
 constexpr Range kDensityRange{1.0, 1e5, "kg/m^3", "give kilograms per cubic metre: water is 1000, not 1"};
@@ -36,7 +34,7 @@ TissueRegion parseTissueRegion(const YamlCursor& cursor, const TissueDescription
   const YamlMap map = cursor.map(MapKind::kTissueRegion);
   TissueRegion region;
   region.name = parseName(map.get("name"));
-  for (const YamlCursor& part : map.get("where").list(1, kMaxRegions)) region.where.push_back(parseRegion(part));
+  for (const YamlCursor& part : map.get("where").list(1, kMostPlaces)) region.where.push_back(parseRegion(part));
   MaterialDescription& material = region.material;
   material = tissue.material;
   if (const YamlCursor* value = map.find("material")) {
@@ -89,8 +87,15 @@ DampingDescription parseDamping(const YamlCursor& cursor) {
 std::vector<TissueRegion> parseTissueRegions(const YamlCursor& cursor, const TissueDescription& tissue) {
   std::vector<TissueRegion> regions;
   std::set<std::string> seen;
-  for (const YamlCursor& element : cursor.list(0, kMaxRegions)) {
+  std::size_t places = 0;
+  for (const YamlCursor& element : cursor.list(0, kMostPlaces)) {
     regions.push_back(parseTissueRegion(element, tissue));
+    places += regions.back().where.size();
+    if (places > kMostPlaces) {
+      element.fail("with this region those of the tissue have " + std::to_string(places) +
+                   " places in their \"where\"; at most " + std::to_string(kMostPlaces) +
+                   " are allowed; use fewer, larger ones");
+    }
     if (!seen.insert(regions.back().name).second) {
       element.fail("the name " + inQuotes(regions.back().name) +
                    " is already used; regions of a tissue need different names, and one may have several places in "

@@ -46,7 +46,7 @@ ContactLinkDescription parseContactLink(const YamlCursor& cursor, const PathCont
   ContactLinkDescription link;
   link.link = map.get("link").text();
   if (const YamlCursor* value = map.find("shapes")) {
-    for (const YamlCursor& shape : value->list(1)) link.shapes.push_back(parseShape(shape, paths));
+    for (const YamlCursor& shape : value->list(1, kMostContactLinks)) link.shapes.push_back(parseShape(shape, paths));
   }
   return link;
 }

@@ -117,7 +117,7 @@ TissueDescription parseTissue(const YamlCursor& cursor, const PathContext& paths
   if (const YamlCursor* value = map.find("fibre_direction")) tissue.fibre_direction = parseDirection(*value);
   if (const YamlCursor* value = map.find("regions")) tissue.regions = parseTissueRegions(*value, tissue);
   if (const YamlCursor* value = map.find("fixed")) {
-    for (const YamlCursor& region : value->list(0)) tissue.fixed.push_back(parseRegion(region));
+    for (const YamlCursor& region : value->list(0, kMostPlaces)) tissue.fixed.push_back(parseRegion(region));
   }
   return tissue;
 }

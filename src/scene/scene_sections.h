@@ -22,6 +22,14 @@ constexpr Range kPositionRange{-1000.0, 1000.0, "m"};
 /// Edge or radius of a shape or region.
 constexpr Range kShapeSizeRange{1e-6, 100.0, "m", "give metres"};
 
+/// Lengths of lists, all far beyond what a scene needs: pairs of tissues and instruments, and all friction entries for each
+/// of them, are held as tables.
+constexpr std::size_t kMostBodies = 100;         ///< tissues; instruments
+constexpr std::size_t kMostTopics = 100;         ///< of an instrument
+constexpr std::size_t kMostContactLinks = 1000;  ///< of an instrument; shapes of a link
+constexpr std::size_t kMostPairs = 10'000;       ///< tissue pairs; friction entries
+constexpr std::size_t kMostPlaces = 1000;  ///< of all regions of a tissue; of its `fixed`: each looks at all elements
+
 /// A name that may become part of a ROS topic: [A-Za-z][A-Za-z0-9_]*, at most 64 characters.
 std::string parseName(const YamlCursor& cursor);
 /// A name of a ROS topic or parameter: parts as in parseName() joined by '/', which may also begin with '/' or '~'.

@@ -3,11 +3,15 @@
 #include <stdexcept>
 #include <utility>
 
+#include "simulation/scene_budget.h"
 #include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/instrument/parse_urdf.h"
 
 namespace tissue_contact {
 namespace {
+
+/// Factors of so many bytes take some seconds to compute.
+constexpr std::size_t kSlowFactor = std::size_t{100} << 20U;
 
 Pose placeInWorld(const PoseDescription& pose, const std::string& owner, const SceneEnvironment& environment) {
   if (pose.tf_frame.empty()) return pose.X;
@@ -34,6 +38,7 @@ RobotModel readUrdf(const InstrumentDescription& instrument, const SceneEnvironm
 
 std::vector<Instrument> buildInstruments(const Scene& scene, const SceneEnvironment& environment) {
   std::vector<Instrument> instruments;
+  SceneBudget budget(scene);
   for (const InstrumentDescription& description : scene.instruments) {
     atEntry(elementOf("instruments", instruments.size()), [&] {
       const Pose X_WB = atEntry("base_pose", [&] {
@@ -42,19 +47,33 @@ std::vector<Instrument> buildInstruments(const Scene& scene, const SceneEnvironm
       RobotModel model = atEntry(description.urdf_file.empty() ? "robot_description" : "urdf",
                                  [&] { return readUrdf(description, environment); });
       instruments.emplace_back(description, std::move(model), X_WB);
+      budget.add(instruments.back());
     });
   }
   return instruments;
 }
 
 std::vector<Tissue> buildTissues(const Scene& scene, const SceneEnvironment& environment) {
+  SceneBudget(scene).addGenerated();  // before the first of them is built
+  SceneBudget budget(scene);
+  BuildProgress progress(environment.meshes.say);
   std::vector<Tissue> tissues;
   for (const TissueDescription& description : scene.tissues) {
     atEntry(elementOf("tissues", tissues.size()), [&] {
       const Pose X_WT = atEntry(
           "pose", [&] { return placeInWorld(description.pose, "tissue '" + description.name + "'", environment); });
-      tissues.emplace_back(description, X_WT);
+      const std::string ordinal = std::to_string(tissues.size() + 1) + " of " + std::to_string(scene.tissues.size());
+      tissues.emplace_back(description, X_WT, [&](std::size_t nodes, std::size_t elements) {
+        budget.add(description, nodes, elements);
+        progress.beginTissue(description, ordinal, nodes, elements);
+      });
     });
+  }
+  progress.stage("tissues are built; preparing their surfaces and first stiffness");
+  if (budget.factorBytes() > kSlowFactor && environment.meshes.say) {
+    environment.meshes.say("the first step factorises the stiffness of the tissues, about " +
+                           std::to_string(budget.factorBytes() >> 20U) +
+                           " MB; that may take minutes (solver.relaxation: gauss_seidel does without)");
   }
   return tissues;
 }

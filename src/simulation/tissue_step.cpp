@@ -8,6 +8,7 @@ namespace tissue_contact {
 /// Fresh states, all nodes awake, and a solver without anything left from the old ones.
 void Simulator::Implementation::makeElasticStates() {
   for (std::size_t t = 0; t < tissues.size(); ++t) {
+    elastic_states[t].reset();  // or else a large tissue would hold two for a moment
     elastic_states[t] = tissues[t].elasticity().makeState();
     elastic_states[t]->adapt_rotations = scene.advisor.adapt_rotations;
     const Elasticity::State& state = *elastic_states[t];

@@ -20,8 +20,9 @@
 namespace tissue_contact {
 namespace {
 
-// 1 GiB is some 10 million nodes as text: far beyond what can be simulated, and small enough to hold in memory.
-constexpr std::uintmax_t kMaximumFileBytes = std::uintmax_t{1} << 30U;
+// Two million tetrahedra, the most a scene may have, take 100 MB as text. What is read from so many bytes is at most four
+// times as large.
+constexpr std::uintmax_t kMaximumFileBytes = std::uintmax_t{256} << 20U;
 
 MeshFileContents readContents(const std::string& file) {
   std::string bytes = readFile(file, "mesh file", kMaximumFileBytes);

@@ -14,14 +14,21 @@
 namespace tissue_contact {
 namespace {
 
-void setVolume(TetMesh mesh, const std::string& source, PlacedMesh& placed) {
+void tellSize(const NodalVectors& positions, std::size_t elements, const MeshSizeCheck& on_size) {
+  if (on_size) on_size(static_cast<std::size_t>(positions.cols()), elements);
+}
+
+void setVolume(TetMesh mesh, const std::string& source, const MeshSizeCheck& on_size, PlacedMesh& placed) {
+  tellSize(mesh.positions, mesh.tetrahedra.size(), on_size);
   checkTetMesh(mesh, source);
   placed.surface = boundaryTriangles(mesh.tetrahedra);
   placed.rest = std::move(mesh.positions);
   placed.tetrahedra = std::move(mesh.tetrahedra);
 }
 
-void setSheet(SheetMesh mesh, double thickness, const std::string& source, PlacedMesh& placed) {
+void setSheet(SheetMesh mesh, double thickness, const std::string& source, const MeshSizeCheck& on_size,
+              PlacedMesh& placed) {
+  tellSize(mesh.positions, mesh.triangles.size(), on_size);
   if (!(thickness > 0.0) || !std::isfinite(thickness)) {
     throw EntryError("thickness_m",
                      source + ": thickness_m is " + std::to_string(thickness) + " m; it must be finite and > 0");
@@ -32,20 +39,21 @@ void setSheet(SheetMesh mesh, double thickness, const std::string& source, Place
   placed.thickness = thickness;
 }
 
-void setGeometry(const TissueDescription& description, const std::string& source, PlacedMesh& placed) {
+void setGeometry(const TissueDescription& description, const std::string& source, const MeshSizeCheck& on_size,
+                 PlacedMesh& placed) {
   const auto inFile = [&](const std::string& file) { return source + ", mesh file '" + file + "'"; };
   if (const auto* block = std::get_if<BlockDescription>(&description.geometry)) {
-    atEntry("block", [&] { setVolume(makeBlockMesh(*block), source, placed); });
+    atEntry("block", [&] { setVolume(makeBlockMesh(*block), source, on_size, placed); });
     placed.patch_of = patchesByCells(placed.tetrahedra.size(), kTetrahedraPerCell);
   } else if (const auto* mesh = std::get_if<MeshDescription>(&description.geometry)) {
-    atEntry("mesh.file", [&] { setVolume(loadTetMesh(*mesh), inFile(mesh->file), placed); });
+    atEntry("mesh.file", [&] { setVolume(loadTetMesh(*mesh), inFile(mesh->file), on_size, placed); });
     placed.patch_of = patchesByFaces(placed.rest, placed.tetrahedra);
   } else if (const auto* sheet = std::get_if<SheetDescription>(&description.geometry)) {
-    atEntry("sheet", [&] { setSheet(makeSheetMesh(*sheet), sheet->thickness_m, source, placed); });
+    atEntry("sheet", [&] { setSheet(makeSheetMesh(*sheet), sheet->thickness_m, source, on_size, placed); });
   } else {
     const auto& shell = std::get<ShellDescription>(description.geometry);
     SheetMesh read = atEntry("shell.file", [&] { return loadShellMesh(shell); });
-    atEntry("shell", [&] { setSheet(std::move(read), shell.thickness_m, inFile(shell.file), placed); });
+    atEntry("shell", [&] { setSheet(std::move(read), shell.thickness_m, inFile(shell.file), on_size, placed); });
   }
 }
 
@@ -133,10 +141,10 @@ void setFibres(const TissueDescription& description, const std::string& source, 
 
 std::string tissueLabel(const TissueDescription& description) { return "tissue '" + description.name + "'"; }
 
-PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT) {
+PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size) {
   const std::string source = tissueLabel(description);
   PlacedMesh placed;
-  setGeometry(description, source, placed);
+  setGeometry(description, source, on_size, placed);
   placed.fixed = fixedNodes(placed.rest, description.fixed, source);
   setRegions(description, source, placed);
   placed.patch_of = cutAtRegions(placed.patch_of, placed.element_regions);

@@ -8,6 +8,7 @@
 
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/scene/scene.h"
+#include "tissue_contact/tissue/tissue.h"
 
 namespace tissue_contact {
 
@@ -27,7 +28,7 @@ struct PlacedMesh {
 };
 
 /// @throws std::invalid_argument naming the tissue: see Tissue.
-PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT);
+PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size);
 
 /// How messages begin: "tissue '<name>'".
 std::string tissueLabel(const TissueDescription& description);

@@ -100,8 +100,8 @@ VectorX lumpedMasses(const PlacedMesh& placed, const ElementMaterials& materials
 
 }  // namespace
 
-Tissue::Tissue(const TissueDescription& description, const Pose& X_WT)
-    : Tissue(description, placeMesh(description, X_WT)) {}
+Tissue::Tissue(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size)
+    : Tissue(description, placeMesh(description, X_WT, on_size)) {}
 
 Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
     : name_(description.name), damping_(description.damping), thickness_(placed.thickness) {

@@ -3,6 +3,7 @@
 /// elasticity.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +14,9 @@
 
 namespace tissue_contact {
 
+/// Told the size of a mesh; may throw to refuse it.
+using MeshSizeCheck = std::function<void(std::size_t nodes, std::size_t elements)>;
+
 struct PlacedMesh;
 
 /// Const after construction.
@@ -22,7 +26,8 @@ class Tissue {
   /// @throws std::invalid_argument naming the tissue (and region) for: a bad mesh, a model that does not suit the
   /// geometry or differs between regions, a material, damping or fibre direction out of range, a fixed region that
   /// holds no node, a material region that holds no element.
-  Tissue(const TissueDescription& description, const Pose& X_WT);
+  /// @param on_size called once the mesh is known and before anything is built from it; may throw to refuse it.
+  Tissue(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size = nullptr);
 
   const std::string& name() const { return name_; }
   int nodeCount() const { return static_cast<int>(rest_.cols()); }

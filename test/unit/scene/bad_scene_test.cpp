@@ -114,7 +114,7 @@ const BadScene kRanges[] = {
     {"kinetic: 0.4", "kinetic: -0.1", "61: friction[0].kinetic", ">= 0 and <= 10"},
     {"max_step_s: 0.002", "max_step_s: 2", "63: step.max_step_s", "give seconds"},
     {"max_step_s: 0.002", "max_step_s: 0.6", "63: step", "max_gap_s is shorter than max_step_s"},
-    {"max_step_s: 0.002", "max_step_s: 0.000001", "63: step", "max_gap_s is more than 100000 times max_step_s"},
+    {"max_step_s: 0.002", "max_step_s: 0.000001", "63: step.max_gap_s", "is more than 100000 times max_step_s"},
     {"max_gap_s: 0.5", "max_lag_s: 0", "63: step.max_lag_s", ">= 1e-06 and <= 60 s"},
     {"max_gap_s: 0.5", "max_lag_s: 200", "63: step.max_lag_s", "give seconds: 20 ms is 0.02"},
     {"max_gap_s: 0.5", "max_lag_s: .nan", "63: step.max_lag_s", "is \".nan\""},

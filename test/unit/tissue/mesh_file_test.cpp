@@ -51,7 +51,7 @@ TEST(MeshFile, DoesNotWaitForAPipe) {
 TEST(MeshFile, RefusesAFileTooLargeWithoutReadingIt) {
   const FileOfBytes file("$MeshFormat\n");
   std::filesystem::resize_file(file.path(), std::uintmax_t{1} << 40U);  // sparse: takes no room
-  expectPathRefused(file.path(), "at most 1073741824");
+  expectPathRefused(file.path(), "at most 268435456");
 }
 
 TEST(MeshFile, RefusesWhatIsNoMesh) {
