@@ -85,22 +85,24 @@ void BagMerge::readChunk(std::uint32_t number) {
   }
 }
 
-/// No farther than the last message that its index promises. Returns the bytes that were read.
+/// To the end, where the checksums of compressed data stand, before any message is handed out. Returns the bytes read.
 std::uint64_t BagMerge::readMessages(const BagReader::Chunk& chunk, std::map<std::uint32_t, Found>& wanted) {
-  std::uint64_t expected = 0;
-  for (const auto& [connection, found] : wanted) expected += found.part->count;
   BagRecords records(openBytes(bag_.input_, chunk.position, chunk.stored, chunk.compression), 0, chunk.size);
-  for (std::uint32_t place = 0; expected > 0 && !records.done(); ++place) {
+  for (std::uint32_t place = 0; !records.done(); ++place) {
     const Op op = records.next();
     if (op == Op::kConnection) continue;
     if (op != Op::kMessage) throw BagError("it holds a record that is no message");
-    const auto found = wanted.find(records.fields().number<std::uint32_t>("conn"));
-    if (found == wanted.end()) continue;
+    const auto number = records.fields().number<std::uint32_t>("conn");
+    if (bag_.messageCount(number) == 0) continue;
     const ros::Time time = bagTime(records.fields().number<std::uint64_t>("time"));
     if (time.isZero()) continue;
+    const auto found = wanted.find(number);
+    if (found == wanted.end()) {
+      throw BagError("its index lacks " + bag_.connections_.at(number).topic, BagError::Remedy::kReindex);
+    }
     keep(found->second, time, place, records.data(bag_.limits_.message_bytes));
-    --expected;
   }
+  records.finish();
   return records.position();
 }
 

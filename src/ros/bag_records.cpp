@@ -128,4 +128,9 @@ void BagRecords::skipData() {
   }
 }
 
+void BagRecords::finish() {
+  skipData();
+  if (buffer_begin_ != buffer_end_ || fill()) fail("there are bytes behind it that do not belong here");
+}
+
 }  // namespace tissue_contact

@@ -89,6 +89,8 @@ class BagRecords {
     return value;
   }
   void skipData();
+  /// Behind the last record. @throws BagError when the source goes on.
+  void finish();
 
  private:
   void read(char* to, std::size_t size);

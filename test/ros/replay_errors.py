@@ -2,6 +2,7 @@
 """Offline replay: what it refuses, what it says, and that it never leaves half a result behind."""
 import os
 import shutil
+import struct
 import sys
 import tempfile
 import unittest
@@ -10,6 +11,7 @@ import rosbag
 import rospy
 import rostest
 from geometry_msgs.msg import TransformStamped
+from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
@@ -48,6 +50,7 @@ class ReplayErrors(unittest.TestCase):
         with open(self.csv, encoding="utf-8") as stream:
             self.assertEqual(stream.read(), "what was there before")
         self.assertEqual([name for name in os.listdir(self.directory) if ".part" in name], [])
+        return errors
 
     def test_good_run_replaces_the_result(self):
         self.write("out.csv", "what was there before")
@@ -59,17 +62,53 @@ class ReplayErrors(unittest.TestCase):
 
     def test_missing_files(self):
         self.assert_refused(self.path("none.yaml"), self.bag, "none.yaml")
-        self.assert_refused(harness.SCENE, self.path("none.bag"), "none.bag")
+        errors = self.assert_refused(harness.SCENE, self.path("none.bag"), "none.bag", "no such file")
+        self.assertNotIn("reindex", errors)
         self.assert_refused(harness.SCENE, self.bag, "no_such_folder", csv=self.path("no_such_folder/out.csv"))
 
     def test_no_bag_and_half_a_bag(self):
         self.assert_refused(harness.SCENE, self.write("text.bag", "not a bag"), "text.bag")
         self.assert_refused(harness.SCENE, self.write("empty.bag", ""), "empty.bag")
         with open(self.bag, "rb") as stream:
-            half = stream.read()[:3000]
-        with open(self.path("half.bag"), "wb") as stream:
-            stream.write(half)
-        self.assert_refused(harness.SCENE, self.path("half.bag"), "half.bag", "reindex")
+            whole = stream.read()
+        for size, advice in [(3000, "copy it again"), (len(whole) // 2, "reindex"), (len(whole) - 1, "reindex")]:
+            with open(self.path("half.bag"), "wb") as stream:
+                stream.write(whole[:size])
+            self.assert_refused(harness.SCENE, self.path("half.bag"), "half.bag", advice)
+
+    def test_pipes_and_devices_are_not_waited_for(self):
+        os.mkfifo(self.path("pipe.bag"))
+        self.assert_refused(harness.SCENE, self.path("pipe.bag"), "pipe.bag", "not a regular file")
+        self.assert_refused(harness.SCENE, "/dev/zero", "/dev/zero", "not a regular file")
+
+    def spoilt(self, message, offset, value):
+        """A bag of 20 joint states, one of which has other bytes at an offset of its data."""
+        plain = self.path("plain.bag")
+        with rosbag.Bag(plain, "w", compression=rosbag.Compression.NONE) as out:
+            for stamp, positions in self.samples:
+                state = JointState(name=["x", "y", "z"], position=positions)
+                state.header.stamp = stamp
+                out.write(harness.TOPIC, state, stamp)
+        with open(plain, "rb") as stream:
+            whole = bytearray(stream.read())
+        stamp = self.samples[message][0]
+        # Behind sequence number, seconds and nanoseconds.
+        data = whole.index(struct.pack("<III", 0, stamp.secs, stamp.nsecs))
+        whole[data + offset:data + offset + len(value)] = value
+        with open(self.path("spoilt.bag"), "wb") as stream:
+            stream.write(whole)
+        return self.path("spoilt.bag")
+
+    def test_length_without_bytes(self):
+        bag = self.spoilt(10, 16, struct.pack("<I", 2**28))
+        self.assert_refused(harness.SCENE, bag, "spoilt.bag", harness.TOPIC, str(2**28))
+
+    def test_impossible_stamp_is_counted(self):
+        bag = self.spoilt(10, 4, b"\xff" * 8)
+        code, errors = harness.replay(harness.SCENE, bag, self.csv)
+        self.assertEqual(code, 0, errors)
+        self.assertIn("19 joint states accepted, 1 bad stamp", errors)
+        self.assertEqual(len(harness.read_csv(self.csv)), 19)
 
     def test_bag_without_the_topic_names_those_it_has(self):
         bag = self.path("other.bag")

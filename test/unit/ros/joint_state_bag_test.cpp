@@ -173,14 +173,13 @@ TEST_F(JointStateBagTest, LengthsInAMessageAreCheckedBeforeMemoryIsTaken) {
   const std::size_t positions = names + 4 + 4 + 3 + 4 + 5;
   ASSERT_EQ(numberAt<std::uint32_t>(bytes, names), 2u);
   ASSERT_EQ(numberAt<std::uint32_t>(bytes, positions), 2u);
-  const std::size_t before = peakMemory();
+  const MemoryLimit limit(kSmall);
   for (const std::size_t place : {names - 4, names, names + 4, positions, positions + 20, positions + 24}) {
     for (const std::uint32_t length : {1U << 28U, 0xffffffffU}) {
       expectRefused(patched(bytes, place, bytesOf(length)),
                     {kTopic, "1000.05", std::to_string(length), "copy it again"});
     }
   }
-  EXPECT_LT(peakMemory() - before, std::size_t{16} << 20U);  // of bags of 20 kB; the test's own copies are in it
 }
 
 TEST_F(JointStateBagTest, LengthsInRecords) {
@@ -188,7 +187,7 @@ TEST_F(JointStateBagTest, LengthsInRecords) {
   const RecordPlace chunk = recordOf(bytes, kChunkOp);
   const RecordPlace message = messageOf(bytes, 50);
   const RecordPlace last = messageOf(bytes, 99);
-  const std::size_t before = peakMemory();
+  const MemoryLimit limit(kSmall);
   for (const std::uint32_t length : {0x00ffffffU, 0x7fffffffU, 0xffffffffU}) {
     const std::string number = bytesOf(length);
     expectRefused(patched(bytes, message.position, number), {"chunk at byte", std::to_string(length), "copy it again"});
@@ -199,11 +198,10 @@ TEST_F(JointStateBagTest, LengthsInRecords) {
     expectRefused(patched(bytes, chunk.data - 4, number), {std::to_string(length)});
     expectRefused(patched(bytes, chunk.field.at("size"), number), {"chunk at byte", std::to_string(length)});
   }
-  expectRefused(patched(bytes, last.data - 4, bytesOf(last.size - 4)), {kTopic, "cut off"});
+  expectRefused(patched(bytes, last.data - 4, bytesOf(last.size - 4)), {"cut off"});
   expectRefused(patched(bytes, last.data - 4, bytesOf(last.size + 1)), {"chunk at byte"});
   expectRefused(patched(bytes, message.field.at("op"), "\x03"), {"chunk at byte", "no message"});
   expectRefused(patched(bytes, message.field.at("time"), bytesOf(~std::uint64_t{0})), {"4294967295 ns"});
-  EXPECT_LT(peakMemory() - before, std::size_t{16} << 20U);
 }
 
 /// An offset beyond its chunk was a segmentation fault.
@@ -294,7 +292,7 @@ TEST_P(CompressedBag, CutAtEveryPercent) {
   const std::vector<Row> rows = rowsOf(directory_.file("sound.bag"));
   ASSERT_EQ(rows.size(), 400u);
   const std::size_t first_chunk = recordOf(bytes, kChunkOp).position;
-  const std::size_t before = peakMemory();
+  const MemoryLimit limit(kSmall);
   for (std::size_t percent = 1; percent < 100; ++percent) {
     SCOPED_TRACE(percent);
     const std::string cut = bytes.substr(0, bytes.size() * percent / 100);
@@ -305,7 +303,6 @@ TEST_P(CompressedBag, CutAtEveryPercent) {
     }
   }
   EXPECT_EQ(rowsOf(write("whole.bag", bytes)), rows);
-  EXPECT_LT(peakMemory() - before, std::size_t{16} << 20U);
 }
 
 /// Where the index lies, byte by byte.
@@ -326,14 +323,12 @@ TEST_P(CompressedBag, CutInTheIndex) {
 TEST_P(CompressedBag, EveryByteSpoilt) {
   const std::string bytes = sound(60, GetParam(), 4000);
   const std::string file = write("spoilt.bag", bytes);
-  std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
-  const auto put = [&](std::size_t at, char byte) { stream.seekp(static_cast<std::streamoff>(at)).put(byte).flush(); };
-  const std::size_t before = peakMemory();
+  const MemoryLimit limit(kSmall);
   int refused = 0;
   for (std::size_t at = 0; at < bytes.size(); ++at) {
     if (bytes[at] == ' ') continue;  // padding of the header
     for (const char mask : {'\x01', '\x40'}) {
-      put(at, static_cast<char>(bytes[at] ^ mask));
+      spoil(file, at, static_cast<char>(bytes[at] ^ mask));
       try {
         ASSERT_EQ(rowsOf(file).size(), 60u) << "byte " << at;
       } catch (const std::runtime_error& error) {
@@ -341,11 +336,10 @@ TEST_P(CompressedBag, EveryByteSpoilt) {
         ++refused;
       }
     }
-    put(at, bytes[at]);
+    spoil(file, at, bytes[at]);
   }
   EXPECT_EQ(rowsOf(file).size(), 60u);
   EXPECT_GT(refused, 1000);  // lengths, kinds, names; what is left are values
-  EXPECT_LT(peakMemory() - before, std::size_t{16} << 20U);
 }
 
 }  // namespace

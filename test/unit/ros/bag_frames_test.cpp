@@ -1,0 +1,90 @@
+/// @file
+/// Poses from the /tf of a bag, which is trusted as little as its joint states.
+
+#include "ros/bag_frames.h"
+
+#include <gtest/gtest.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <limits>
+
+#include "unit/ros/bag_fixture.h"
+
+namespace tissue_contact {
+namespace {
+
+tf2_msgs::TFMessage transform(const std::string& parent, const std::string& child, double z_m, unsigned stamp_s) {
+  tf2_msgs::TFMessage message;
+  message.transforms.resize(1);
+  message.transforms[0].header.stamp = ros::Time(stamp_s);
+  message.transforms[0].header.frame_id = parent;
+  message.transforms[0].child_frame_id = child;
+  message.transforms[0].transform.translation.z = z_m;
+  message.transforms[0].transform.rotation.w = 1.0;
+  return message;
+}
+
+class BagFramesTest : public testing::Test {
+ protected:
+  BagFramesTest() {
+    rosbag::Bag bag(file_, rosbag::bagmode::Write);
+    bag.write("/tf", ros::Time(1000), transform("base", "tool", 0.25, 1000));
+    bag.write("/tf", ros::Time(1001), transform("base", "tool", 0.5, 1001));  // comes too late
+    bag.write("/tf_static", ros::Time(1002), transform("world", "base", 1.0, 1000));
+  }
+
+  std::string errorOf(const std::string& bytes) const {
+    writeBytes(file_, bytes);
+    try {
+      frameInBag("tool", "world", file_);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  TemporaryDirectory directory_;
+  std::string file_ = directory_.file("frames.bag");
+};
+
+TEST_F(BagFramesTest, EarliestPoseIsTaken) { EXPECT_EQ(frameInBag("tool", "world", file_).translation().z(), 1.25); }
+
+TEST_F(BagFramesTest, UnknownFrameAndMissingBag) {
+  try {
+    frameInBag("stage", "world", file_);
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("stage"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find(file_), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(frameInBag("tool", "world", directory_.file("none.bag")), std::runtime_error);
+}
+
+TEST_F(BagFramesTest, LengthsAreCheckedBeforeMemoryIsTaken) {
+  const std::string bytes = readBytes(file_);
+  const RecordPlace message = messageOf(bytes, 0);
+  ASSERT_EQ(numberAt<std::uint32_t>(bytes, message.data), 1u);
+  const MemoryLimit limit(kSmall);
+  for (const std::size_t place : {message.data, message.data + 16}) {  // of the array, of the frame's name
+    for (const std::uint32_t length : {1U << 28U, 0xffffffffU}) {
+      const std::string error = errorOf(patched(bytes, place, bytesOf(length)));
+      EXPECT_EQ(error.find("bag '" + file_ + "': message on /tf"), 0u) << error;
+      EXPECT_NE(error.find(std::to_string(length)), std::string::npos) << error;
+    }
+  }
+}
+
+/// What tf2 or the arithmetic of ros::Time does not take is left out: the later message is used instead.
+TEST_F(BagFramesTest, ImpossibleTransformsAreLeftOut) {
+  const std::string bytes = readBytes(file_);
+  const RecordPlace message = messageOf(bytes, 0);
+  const std::size_t z = message.data + message.size - 5 * sizeof(double);
+  ASSERT_EQ(numberAt<double>(bytes, z), 0.25);
+  writeBytes(file_, patched(bytes, z, bytesOf(std::numeric_limits<double>::quiet_NaN())));
+  EXPECT_EQ(frameInBag("tool", "world", file_).translation().z(), 1.5);
+  writeBytes(file_, patched(bytes, message.data + 8, bytesOf(~std::uint64_t{0})));
+  EXPECT_NO_THROW(frameInBag("tool", "world", file_));
+}
+
+}  // namespace
+}  // namespace tissue_contact

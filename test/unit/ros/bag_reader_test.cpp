@@ -1,0 +1,143 @@
+/// @file
+/// What a bag may ask for: each limit, and that memory follows neither what is claimed nor what is decompressed.
+
+#include "ros/bag_reader.h"
+
+#include <gtest/gtest.h>
+#include <std_msgs/String.h>
+
+#include "unit/ros/bag_fixture.h"
+
+namespace tissue_contact {
+namespace {
+
+using rosbag::compression::BZ2;
+using rosbag::compression::LZ4;
+
+class BagReaderTest : public testing::Test {
+ protected:
+  std::size_t read(const BagLimits& limits) const {
+    std::size_t count = 0;
+    BagReader bag(file_, limits);
+    bag.select([](const BagConnection& connection) { return connection.topic == kTopic; });
+    bag.forEach([&](const BagMessage&) { return ++count > 0; });
+    return count;
+  }
+
+  /// The bytes of all messages.
+  std::string readAll() const {
+    std::string messages;
+    BagReader bag(file_);
+    bag.select([](const BagConnection&) { return true; });
+    bag.forEach([&](const BagMessage& message) {
+      messages += message.data;
+      return true;
+    });
+    return messages;
+  }
+
+  void expectRefused(const BagLimits& limits, const std::string& words) const {
+    try {
+      read(limits);
+      ADD_FAILURE() << "not refused: " << words;
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(std::string(error.what()).find("bag '" + file_ + "': "), 0u) << error.what();
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  }
+
+  /// A joint state behind `bytes` of another topic that compress to almost nothing.
+  void writeBomb(std::size_t bytes, rosbag::CompressionType compression) const {
+    rosbag::Bag bag(file_, rosbag::bagmode::Write);
+    bag.setCompression(compression);
+    std_msgs::String zeros;
+    zeros.data.assign(bytes, '\0');
+    bag.setChunkThreshold(static_cast<std::uint32_t>(bytes) + 1024);  // one chunk holds both
+    bag.write("/other", ros::Time(1000), zeros);
+    bag.write(kTopic, ros::Time(1000), jointState(0));
+  }
+
+  TemporaryDirectory directory_;
+  std::string file_ = directory_.file("test.bag");
+};
+
+TEST_F(BagReaderTest, EachLimitIsKept) {
+  writeJointStates(file_, 200, BZ2, 2000);
+  ASSERT_EQ(read(BagLimits()), 200u);
+  BagLimits limits;
+  limits.connections = 0;
+  expectRefused(limits, "more than 0 connections");
+  limits = BagLimits();
+  limits.chunks = 3;
+  expectRefused(limits, "more than 3 chunks");
+  limits = BagLimits();
+  limits.parts = 3;
+  expectRefused(limits, "more than 3 chunks for the connections that are read");
+  limits = BagLimits();
+  limits.message_bytes = 50;
+  expectRefused(limits, "at most 50 are read");
+  limits = BagLimits();
+  limits.waiting_bytes = 1000;
+  expectRefused(limits, "more than 1000 bytes of messages");
+  limits = BagLimits();
+  limits.free_bytes = 10000;
+  limits.expansion = 0;
+  expectRefused(limits, "which is more than is read");
+}
+
+TEST_F(BagReaderTest, ClaimedSizeOfACompressedChunkTakesNoMemory) {
+  for (const auto compression : {BZ2, LZ4}) {
+    writeJointStates(file_, 200, compression);
+    const std::string bytes = readBytes(file_);
+    const std::size_t size = recordOf(bytes, kChunkOp).field.at("size");
+    const MemoryLimit limit(kSmall);
+    writeBytes(file_, patched(bytes, size, bytesOf(0xffffffffU)));
+    expectRefused(BagLimits(), "cut off");
+    writeBytes(file_, patched(bytes, size, bytesOf(100U)));
+    expectRefused(BagLimits(), "beyond its chunk");
+  }
+}
+
+TEST_F(BagReaderTest, DecompressedBytesTakeNoMemory) {
+  constexpr std::size_t kBytes = 64U << 20U;
+  for (const auto compression : {BZ2, LZ4}) {
+    writeBomb(kBytes, compression);
+    ASSERT_LT(std::filesystem::file_size(file_), kBytes / 100);
+    const MemoryLimit limit(kSmall);
+    EXPECT_EQ(read(BagLimits()), 1u);
+    BagLimits limits;
+    limits.free_bytes = 1U << 20U;
+    limits.expansion = 10;
+    expectRefused(limits, "bytes, decompressed");
+  }
+}
+
+/// A damaged bit may well spoil no more than a position, which only the checksum at the end of the data tells. (Some bits
+/// have no say: tables that are not used, one of two places to copy the same bytes from.)
+TEST_F(BagReaderTest, CompressedDataThatAreDamaged) {
+  for (const auto compression : {BZ2, LZ4}) {
+    writeJointStates(file_, 40, compression);
+    const std::string bytes = readBytes(file_);
+    const std::string messages = readAll();
+    const RecordPlace chunk = recordOf(bytes, kChunkOp);
+    writeBytes(file_, patched(bytes, chunk.field.at("compression"), "xyz"));
+    expectRefused(BagLimits(), "compressed by 'xyz'");
+    writeBytes(file_, bytes);
+    std::size_t refused = 0;
+    for (std::size_t at = chunk.data; at < chunk.data + chunk.size; ++at) {
+      spoil(file_, at, static_cast<char>(bytes[at] ^ 0x10));
+      try {
+        ASSERT_EQ(readAll(), messages) << at;
+      } catch (const std::runtime_error& error) {
+        ASSERT_NE(std::string(error.what()).find("the file is damaged: copy it again"), std::string::npos)
+            << error.what();
+        ++refused;
+      }
+      spoil(file_, at, bytes[at]);
+    }
+    EXPECT_GT(refused, chunk.size * 9 / 10);
+  }
+}
+
+}  // namespace
+}  // namespace tissue_contact
