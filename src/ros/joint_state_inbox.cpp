@@ -2,6 +2,7 @@
 /// Room `ros`: see joint_state_inbox.h.
 #include "tissue_contact/ros/joint_state_inbox.h"
 
+#include <chrono>
 #include <string>
 #include <utility>
 
@@ -53,6 +54,14 @@ void JointStateInbox::wait() {
   std::unique_lock<std::mutex> lock(mutex_);
   arrived_.wait(lock, [this] { return woken_ || !waiting_.empty(); });
   woken_ = false;
+}
+
+bool JointStateInbox::wait(double most_s) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  const bool came =
+      arrived_.wait_for(lock, std::chrono::duration<double>(most_s), [this] { return woken_ || !waiting_.empty(); });
+  woken_ = false;
+  return came;
 }
 
 void JointStateInbox::wake() {

@@ -23,4 +23,20 @@ PolicyChoice choosePolicy(StatePolicy wanted, bool simulated_time, double age_s)
   return {StatePolicy::kEveryState, text.str()};
 }
 
+std::optional<PolicyChoice> PolicyChooser::note(double age_s, double received_s) {
+  PolicyChoice choice = choosePolicy(wanted_, simulated_time_, age_s);
+  if (chosen_ == choice.policy) {
+    decides_ = false;
+    contrary_ = 0;
+    return std::nullopt;
+  }
+  if (contrary_++ == 0) contrary_since_s_ = received_s;
+  const bool lasts = contrary_ >= kLeastStates && received_s - contrary_since_s_ >= kLeastTime;
+  if (!decides_ && !lasts) return std::nullopt;
+  decides_ = false;
+  contrary_ = 0;
+  chosen_ = choice.policy;
+  return choice;
+}
+
 }  // namespace tissue_contact

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 
+#include "tissue_contact/simulation/joint_state_player.h"
+
 namespace tissue_contact {
 namespace {
 
 constexpr double kShareOfSteps = 0.5;     ///< of the bound, for the steps of an interval by their usual cost
+constexpr double kShareBySteps = 0.75;    ///< of the bound, for waiting and those steps together
 constexpr double kShareOfDeadline = 0.9;  ///< of the bound, for a step that costs more; the rest is to publish it
 /// Of the newest step in the running mean. Contact makes steps dearer at once, and that must be known before the bound is
 /// missed; that they are cheap again may be learnt slowly.
@@ -16,15 +19,20 @@ constexpr double kWeightOfCheaper = 1.0 / 16.0;
 
 }  // namespace
 
+LivePacing::LivePacing(double max_lag_s) : max_lag_s_(max_lag_s), for_steps_s_(kShareOfSteps * max_lag_s) {}
+
+double LivePacing::waitUntil(double received_s) const { return received_s + JointStatePlayer::kWaitShare * max_lag_s_; }
+
 int LivePacing::mostSteps() const {
   if (!cost_s_ || !(*cost_s_ > 0.0)) return 0;
   constexpr double kMost = 1e6;  // more than fit into any bound, and fit into an int
-  return std::max(1, static_cast<int>(std::min(kShareOfSteps * max_lag_s_ / *cost_s_, kMost)));
+  return std::max(1, static_cast<int>(std::min(for_steps_s_ / *cost_s_, kMost)));
 }
 
 void LivePacing::begin(double now_s, double received_s, int steps) {
   step_began_s_ = now_s;
   received_s_ = received_s;
+  for_steps_s_ = std::clamp(received_s + kShareBySteps * max_lag_s_ - now_s, 0.0, kShareOfSteps * max_lag_s_);
   const int most = mostSteps();
   steps_left_ = std::max(0, (most > 0 ? std::min(steps, most) : steps) - 1);
 }

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "tissue_contact/ros/environment.h"
-#include "tissue_contact/ros/joint_state_policy.h"
 
 namespace tissue_contact {
 
@@ -22,7 +22,7 @@ Stepper::Stepper(Simulator& simulator, JointStatePlayer& player, JointStateInbox
       inbox_(inbox),
       outputs_(outputs),
       health_(health),
-      simulated_time_(simulated_time),
+      chooser_(simulator.scene().step.joint_states, simulated_time),
       pacing_(simulator.scene().step.max_lag_s),
       receipts_(player.topics().size()) {
   simulator_.setStepObserver([this] { noteStep(); });
@@ -47,7 +47,7 @@ void Stepper::stop() {
 void Stepper::run() {
   try {
     while (!stop_) {
-      inbox_.wait();
+      awaitStates();
       outputs_.showToNewcomer();
       takeReceived();
       health_.noteWork(std::nullopt);  // what the player holds counts as waiting, also when it is to play no more
@@ -68,6 +68,15 @@ AdvanceLimits Stepper::limits(int most_steps) const {
   return limits;
 }
 
+/// For more of them, but under the newest state for no longer than one that waits for another topic's may.
+void Stepper::awaitStates() {
+  const std::optional<std::int64_t> earliest = newest_state_ ? player_.earliestStamp() : std::nullopt;
+  if (!earliest) return inbox_.wait();
+  const std::optional<Receipt> receipt = receipts_.find(*earliest);
+  const double left_s = pacing_.waitUntil(receipt ? receipt->received_s : newest_received_s_) - steadySeconds();
+  if (left_s <= 0.0 || !inbox_.wait(left_s)) player_.stopWaiting();
+}
+
 /// Under every state one after the other, so that what waits is bounded by the inbox; else all there is.
 void Stepper::takeReceived() {
   for (std::size_t left = newest_state_ ? inbox_.counts().waiting : 1; left > 0; --left) {
@@ -75,9 +84,9 @@ void Stepper::takeReceived() {
     if (!state) return;
     if (state->after_restart) player_.restart();
     newest_received_s_ = state->received_s;
-    newest_age_s_ = state->age_s;
-    newest_stamp_ns_ = state->sample.stamp_ns;
-    if (player_.triggers(state->topic)) receipts_.note(state->topic, newest_stamp_ns_, newest_received_s_);
+    if (player_.triggers(state->topic)) {
+      receipts_.note(state->topic, {state->sample.stamp_ns, state->received_s, state->age_s});
+    }
     player_.push(state->topic, std::move(state->sample));
   }
 }
@@ -86,56 +95,65 @@ void Stepper::takeReceived() {
 bool Stepper::playNext() {
   const long steps_before = simulator_.stepCount();
   const double start_s = pace();
-  health_.noteWork(newest_received_s_);
   const std::optional<PlayedSample> played = player_.playNext();
   if (played) {
     const auto steps = static_cast<int>(simulator_.stepCount() - (played->was_reset ? 0 : steps_before));
     const double step_time_s = steps > 0 ? (steadySeconds() - start_s) / steps : 0.0;
-    if (health_.note(*played, steps, pacing_.stepCost())) publish(*played, steps, step_time_s);
-    if (played->verdict == Verdict::kAccepted && !policy_chosen_) choosePolicy();
+    const bool is_moment = played->verdict == Verdict::kAccepted && !played->interrupted;
+    const std::optional<Receipt> receipt = is_moment ? receipts_.take(played->stamp_ns) : std::nullopt;
+    if (health_.note(*played, steps, pacing_.stepCost())) publish(*played, receipt, steps, step_time_s);
+    if (receipt) choosePolicy(*played, *receipt);
   }
   health_.noteWork(std::nullopt);
   return played.has_value();
 }
 
-void Stepper::publish(const PlayedSample& played, int steps, double step_time_s) {
+void Stepper::publish(const PlayedSample& played, const std::optional<Receipt>& receipt, int steps,
+                      double step_time_s) {
   played_stamp_ns_ = played.stamp_ns;
   if (played.interrupted) return;
   outputs_.publishWrenches(played);
-  const std::optional<double> received_s = receipts_.take(played.stamp_ns);
   if (!played.instruments.empty()) {
     health_.noteWrenches(played.instruments.size(),
-                         received_s ? std::optional(steadySeconds() - *received_s) : std::nullopt);
+                         receipt ? std::optional(steadySeconds() - receipt->received_s) : std::nullopt);
   }
   outputs_.publishState(played, steps, step_time_s);
   health_.noteSnapshotsDropped(outputs_.snapshotsDropped());
 }
 
-void Stepper::choosePolicy() {
-  const StepDescription& step = simulator_.scene().step;
-  const PolicyChoice choice = tissue_contact::choosePolicy(step.joint_states, simulated_time_, newest_age_s_);
-  policy_chosen_ = true;
-  newest_state_ = choice.policy == StatePolicy::kNewestState;
-  player_.setPolicy(choice.policy);
+void Stepper::choosePolicy(const PlayedSample& played, const Receipt& receipt) {
+  if (played.was_reset) chooser_.startAgain();
+  const std::optional<PolicyChoice> choice = chooser_.note(receipt.age_s, receipt.received_s);
+  if (!choice) return;
+  newest_state_ = choice->policy == StatePolicy::kNewestState;
+  player_.setPolicy(choice->policy);
+  if (!newest_state_) {
+    player_.setLimits(limits(0));
+    simulator_.setSolverDeadline(std::numeric_limits<double>::infinity());
+  }
   health_.notePolicy(newest_state_);
   if (newest_state_) {
     ROS_INFO_STREAM("newest_state: steps to the newest joint state and merges older ones, lagging by at most "
-                    << step.max_lag_s << " s (step.max_lag_s), because " << choice.reason
+                    << simulator_.scene().step.max_lag_s << " s (step.max_lag_s), because " << choice->reason
                     << "; step.joint_states: every_state in the scene overrides it");
   } else {
     ROS_INFO_STREAM("every_state: steps to every joint state, however long it takes, because "
-                    << choice.reason << "; step.joint_states: newest_state in the scene overrides it");
+                    << choice->reason << "; step.joint_states: newest_state in the scene overrides it");
   }
 }
 
 /// Sets what the interval that may begin now may cost. @return the time.
 double Stepper::pace() {
   const double now_s = steadySeconds();
-  const double motion_s = 1e-9 * static_cast<double>(newest_stamp_ns_ - played_stamp_ns_);
+  const std::optional<std::int64_t> next_ns = player_.nextStamp();
+  const std::optional<Receipt> receipt = next_ns ? receipts_.find(*next_ns) : std::nullopt;
+  const double received_s = receipt ? receipt->received_s : newest_received_s_;
+  const double motion_s = 1e-9 * static_cast<double>(next_ns.value_or(played_stamp_ns_) - played_stamp_ns_);
   constexpr double kMost = 1e6;  // fits an int; a gap is cut to less
   const double steps =
       std::ceil(std::clamp(motion_s / longestStep(newest_state_, simulator_.scene().step.max_step_s), 1.0, kMost));
-  pacing_.begin(now_s, newest_received_s_, static_cast<int>(steps));
+  pacing_.begin(now_s, received_s, static_cast<int>(steps));
+  health_.noteWork(received_s);
   if (newest_state_) {
     player_.setLimits(limits(pacing_.mostSteps()));
     simulator_.setSolverDeadline(pacing_.deadline(now_s));

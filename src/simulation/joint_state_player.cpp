@@ -24,7 +24,7 @@ std::int64_t toNanoseconds(double seconds) {
 JointStatePlayer::JointStatePlayer(Simulator& simulator)
     : simulator_(simulator),
       max_gap_ns_(toNanoseconds(simulator.scene().step.max_gap_s)),
-      max_lag_ns_(std::min(max_gap_ns_, toNanoseconds(simulator.scene().step.max_lag_s))),
+      live_wait_ns_(std::min(max_gap_ns_, toNanoseconds(kWaitShare * simulator.scene().step.max_lag_s))),
       owes_(simulator.instruments().size(), false) {
   const std::vector<InstrumentDescription>& instruments = simulator.scene().instruments;
   for (std::size_t i = 0; i < instruments.size(); ++i) {
@@ -177,8 +177,8 @@ std::optional<JointStatePlayer::Moment> JointStatePlayer::newestMoment() const {
 /// Whether a topic could still deliver something for `moment` or earlier, and is worth waiting for.
 bool JointStatePlayer::mustWait(const Moment& moment) const {
   const bool is_live = policy_ == StatePolicy::kNewestState;
-  const std::int64_t bound_ns = is_live ? max_lag_ns_ : max_gap_ns_;
-  if (finished_ || waiting_ > kMaxWaiting) return false;
+  const std::int64_t bound_ns = is_live ? live_wait_ns_ : max_gap_ns_;
+  if (finished_ || waiting_ > kMaxWaiting || (released_ && !(*released_ < moment))) return false;
   return std::any_of(topic_states_.begin(), topic_states_.end(), [&](const Topic& topic) {
     if (topic.last && !(*topic.last < moment)) return false;
     if (is_live && !topic.triggers) return false;
@@ -195,6 +195,30 @@ std::int64_t JointStatePlayer::ageOf(const std::optional<Moment>& moment) const 
 
 bool JointStatePlayer::isPast(const Moment& moment) const {
   return moment.epoch < epoch_ || (moment.epoch == epoch_ && time_ns_ && moment.stamp_ns <= *time_ns_);
+}
+
+std::optional<std::int64_t> JointStatePlayer::nextStamp() const {
+  const std::optional<Moment> moment = policy_ == StatePolicy::kNewestState ? newestMoment() : nextMoment();
+  return moment ? std::optional(moment->stamp_ns) : std::nullopt;
+}
+
+std::optional<std::int64_t> JointStatePlayer::earliestStamp() const {
+  std::optional<Moment> earliest;
+  for (const Topic& topic : topic_states_) {
+    if (!topic.triggers) continue;
+    const auto found = std::find_if(topic.queue.begin(), topic.queue.end(),
+                                    [this](const Queued& queued) { return !isPast(queued.moment); });
+    if (found != topic.queue.end() && (!earliest || found->moment < *earliest)) earliest = found->moment;
+  }
+  return earliest ? std::optional(earliest->stamp_ns) : std::nullopt;
+}
+
+void JointStatePlayer::stopWaiting() {
+  for (const Topic& topic : topic_states_) {
+    if (!topic.triggers || topic.queue.empty()) continue;
+    const Moment& newest = topic.queue.back().moment;
+    if (!released_ || *released_ < newest) released_ = newest;
+  }
 }
 
 std::optional<PlayedSample> JointStatePlayer::playNext() {

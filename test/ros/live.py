@@ -24,7 +24,7 @@ from visualization_msgs.msg import MarkerArray
 import harness
 from tissue_contact.msg import Status, TissueMesh
 
-OK, WARN = 0, 1
+OK, WARN, ERROR = 0, 1, 2
 COUNTS = re.compile(r"joint states: (\d+) received, (\d+) accepted, (\d+) merged, (\d+) dropped, (\d+) refused.*?, "
                     r"(\d+) waiting; (\d+) wrenches published, (\d+) resets, largest lag ([\d.e+-]+) s")
 
@@ -77,6 +77,43 @@ class Arrivals:
     def longest_silence(self, start, end):
         times = [start] + [t for t in self.times if start <= t <= end] + [end]
         return max(b - a for a, b in zip(times, times[1:]))
+
+
+class RunDelay:
+    """How long the busiest thread of a process was ready to run while others ran, as the kernel counts it."""
+    PERIOD_S = 0.02
+
+    def __init__(self, pid):
+        self._tasks = "/proc/%d/task" % pid
+        self._samples = []  # (time, {thread: (s run, s waited to run)})
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run)
+        self._thread.start()
+
+    def _run(self):
+        while not self._stop.wait(self.PERIOD_S):
+            threads = {}
+            try:
+                for thread in os.listdir(self._tasks):
+                    with open(os.path.join(self._tasks, thread, "schedstat"), encoding="ascii") as stream:
+                        ran, waited = stream.read().split()[:2]
+                    threads[thread] = (1e-9 * int(ran), 1e-9 * int(waited))
+            except OSError:
+                continue  # a thread that ends
+            self._samples.append((time.monotonic(), threads))
+
+    def stop(self):
+        self._stop.set()
+        self._thread.join()
+        last = self._samples[-1][1]
+        busiest = max(last, key=lambda thread: last[thread][0])
+        self._samples = [(at, threads[busiest][1]) for at, threads in self._samples if busiest in threads]
+
+    def between(self, start, end):
+        """s that it waited to run, from the sample before `start` to the one after `end`."""
+        before = [waited for at, waited in self._samples if at <= start]
+        after = [waited for at, waited in self._samples if at >= end]
+        return (after[0] if after else self._samples[-1][1]) - (before[-1] if before else self._samples[0][1])
 
 
 def values_of(diagnostics):
@@ -137,7 +174,7 @@ class Live(unittest.TestCase):
             return values.get("joint states: received") == str(sent) and values["joint states: waiting"] == "0"
         values = values_of(diagnostics.wait(complete, "%d joint states received and played" % sent)[-1])
         parts = ["accepted", "merged", "dropped", "duplicate stamp", "bad stamp", "position not finite",
-                 "names and positions differ in number", "no known joint", "too late"]
+                 "names and positions differ in number", "no known joint", "too late", "two clocks"]
         self.assertEqual(sum(int(values["joint states: " + part]) for part in parts), sent, values)
         self.assertEqual(values["joint states: dropped"], "0")
         self.assertEqual(values["joint states: missing by header.seq"], "0")
@@ -154,6 +191,8 @@ class Live(unittest.TestCase):
             bulky = [Arrivals("/tissue_contact/block/mesh", TissueMesh), Arrivals("/tissue_contact/markers", MarkerArray)]
             told = Arrivals("/diagnostics", DiagnosticArray)
             answers = Arrivals("/tissue_contact/probe/wrench", WrenchStamped)
+            lag_arrivals = Arrivals("/tissue_contact/status", Status)
+            delay = RunDelay(process.pid)
             start = time.monotonic()
             driver = Driver(rate_hz, path)
             try:
@@ -162,12 +201,16 @@ class Live(unittest.TestCase):
                 harness.wait_until(lambda: time.monotonic() > first + seconds, "the end of the drive", 2 * seconds)
             finally:
                 sent = driver.stop()
+                delay.stop()
             end = time.monotonic()
             seen["sent"] = sent
             seen["values"] = self.assert_counts_add_up(diagnostics, sent)
             seen["diagnostics"] = list(diagnostics.messages)
             seen["lags"] = [s.lag for s in statuses.messages]
             seen["statuses"] = list(statuses.messages)
+            # A status comes within a few milliseconds of its wrench; the lag began before that by as much as it is.
+            seen["own lags"] = [lag - delay.between(at - lag - 0.01, at)
+                                for at, lag in zip(lag_arrivals.times, seen["lags"]) if at < end]
             seen["wrenches"] = list(wrenches.messages)
             seen["silence"] = answers.longest_silence(first, end)
             seen["diagnostics silence"] = told.longest_silence(start, end)
@@ -180,6 +223,8 @@ class Live(unittest.TestCase):
             finally:
                 driver.stop()
             seen["log"] = [m.msg for m in log.messages if m.name == "/tissue_contact"]
+        print("without the time the node waited for a processor: lag p50 %.4f p95 %.4f p99 %.4f max %.4f s" % tuple(
+            quantile(seen["own lags"], share) for share in [0.5, 0.95, 0.99, 1.0]))
         print("sent %d, wrenches %d, lag p50 %.4f p95 %.4f max %.4f s, real-time factor %s, lengthened %s, %s" %
               (sent, len(seen["wrenches"]), quantile(seen["lags"], 0.5), quantile(seen["lags"], 0.95), max(seen["lags"]),
                seen["values"]["real_time_factor"], seen["values"]["intervals with lengthened steps"], seen["end"]))
@@ -201,8 +246,10 @@ class Live(unittest.TestCase):
         scene = self.scene(MAX_STEP_S=0.5 * cost, MAX_LAG_S=bound)  # a step lasts twice as long as the time it advances
         seen = self.drive(scene, 500.0, press_at, 8.0)
         self.assert_newest_state_was_chosen(seen)
-        # Half the bound is what the node aims at; single wrenches may be late on a machine with other work.
+        # Half the bound is what the node aims at. What the scheduler adds is not the node's: the test itself keeps a
+        # processor busy, and so may others.
         self.assertLess(quantile(seen["lags"], 0.5), bound)
+        self.assertLess(quantile(seen["own lags"], 0.95), bound)
         self.assertLess(quantile(seen["lags"][-100:], 0.5), bound)  # and it does not grow
         self.assertLess(seen["silence"], 1.0)
         self.assert_diagnostics_came_all_the_time(seen)
@@ -216,6 +263,24 @@ class Live(unittest.TestCase):
         for words in ["ms", "steps per second", "mesh", "max_step_s", "time_budget_s"]:
             self.assertIn(words, said[0])
         self.assertGreater(max(w.wrench.force.z for w in seen["wrenches"]), 0.02)  # it did press
+
+    def test_what_falls_far_behind_is_an_error(self):
+        """Every state at 500 Hz, of which each costs four steps of a mesh far too fine for that."""
+        scene = self.scene(**{"MAX_LAG_S}": "0.02, joint_states: every_state}", "MAX_STEP_S": 0.0005,
+                              "[14, 10, 5]": "[36, 28, 14]"})
+        with harness.node(scene) as process:
+            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+            driver = Driver(500.0, press_at)
+            try:
+                def far_behind(messages):
+                    return any(m.status[0].level == ERROR and "late by" in m.status[0].message for m in messages)
+                told = diagnostics.wait(far_behind, "an error")
+            finally:
+                driver.stop()
+            late = [(float(values_of(m)["lag_s"]), m.status[0].level) for m in told if "late by" in m.status[0].message]
+            self.assertEqual([level for lag, level in late], [ERROR if lag > 5.0 else WARN for lag, _ in late], late)
+            self.assertEqual({level for _, level in late}, {WARN, ERROR})
+            self.assert_ends_within_a_second(process, signal.SIGINT)
 
     def test_the_demo_at_430_hz_on_a_busy_machine(self):
         busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(os.cpu_count())]

@@ -48,6 +48,8 @@ class JointStateInbox {
 
   /// Returns once something waits or wake() was called since the last wait.
   void wait();
+  /// The same, but no longer than that. @return whether it was one of those two.
+  bool wait(double most_s);
   void wake();
 
   Counts counts() const;

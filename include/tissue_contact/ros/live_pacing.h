@@ -10,15 +10,19 @@ namespace tissue_contact {
 /// Keeps the lag of a wrench behind the receipt of its joint state within a bound when steps cost more than there is
 /// time for: first fewer and longer steps, then less time for the solver. Neither happens while the machine keeps up.
 ///
-/// Half of the bound is for the steps, by what steps cost of late; the rest is for a state that waits for the step
-/// before it, for steps that cost more than usual, and for the machine's own delays. Times are seconds on one clock
+/// A quarter of the bound a state may wait for another topic's. Half of the bound, and no more than ends at three quarters
+/// after the receipt, is for the steps, by what steps cost of late; the rest is for a state that waits for the step before
+/// it, for steps that cost more than usual, and for the machine's own delays. Times are seconds on one clock
 /// that never goes back. Not thread-safe.
 class LivePacing {
  public:
   /// @param max_lag_s > 0.
-  explicit LivePacing(double max_lag_s) : max_lag_s_(max_lag_s) {}
+  explicit LivePacing(double max_lag_s);
 
-  /// Steps that an interval may be cut into; 0 (no limit) until a step was seen.
+  /// Until when a state received then may wait for another topic's.
+  double waitUntil(double received_s) const;
+
+  /// Steps that the interval that has begun may be cut into; 0 (no limit) until a step was seen.
   int mostSteps() const;
 
   /// An interval begins, to a state received at `received_s`, in `steps` steps or so.
@@ -39,6 +43,7 @@ class LivePacing {
   std::optional<double> cost_s_;
   double step_began_s_ = 0.0;
   double received_s_ = 0.0;
+  double for_steps_s_;  ///< of the interval
   int steps_left_ = 0;  ///< after the one that runs
 };
 

@@ -4,10 +4,12 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <thread>
 
 #include "tissue_contact/ros/health.h"
 #include "tissue_contact/ros/joint_state_inbox.h"
+#include "tissue_contact/ros/joint_state_policy.h"
 #include "tissue_contact/ros/live_pacing.h"
 #include "tissue_contact/ros/outputs.h"
 #include "tissue_contact/ros/receipt_times.h"
@@ -39,8 +41,9 @@ class Stepper {
   AdvanceLimits limits(int most_steps) const;
   void takeReceived();
   bool playNext();
-  void publish(const PlayedSample& played, int steps, double step_time_s);
-  void choosePolicy();
+  void publish(const PlayedSample& played, const std::optional<Receipt>& receipt, int steps, double step_time_s);
+  void choosePolicy(const PlayedSample& played, const Receipt& receipt);
+  void awaitStates();
   double pace();
   void noteStep();
 
@@ -49,17 +52,13 @@ class Stepper {
   JointStateInbox& inbox_;
   Outputs& outputs_;
   Health& health_;
-  const bool simulated_time_;
 
   // The thread's alone.
+  PolicyChooser chooser_;
   LivePacing pacing_;
   ReceiptTimes receipts_;
-  bool policy_chosen_ = false;
   bool newest_state_ = false;
-  // Of the last state handed to the player.
-  double newest_received_s_ = 0.0;
-  double newest_age_s_ = 0.0;
-  std::int64_t newest_stamp_ns_ = 0;
+  double newest_received_s_ = 0.0;  ///< of the last state handed to the player
   std::int64_t played_stamp_ns_ = 0;
 
   std::atomic<bool> stop_{false};

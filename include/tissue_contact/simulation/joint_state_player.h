@@ -68,7 +68,7 @@ struct PlayedSample {
 /// Waiting. A moment waits until every other topic has delivered its stamp or a later one, so that what arrives first
 /// does not matter. A topic is waited for only while its newest stamp is less than max_gap_s behind the newest of all (if
 /// it was never heard: that behind the first of all): beyond that it is missing or stuck. Under kNewestState the
-/// bound is max_lag_s, and topics that only update are not waited for.
+/// bound is a quarter of max_lag_s (kWaitShare) or stopWaiting(), and topics that only update are not waited for.
 ///
 /// Time. A stamp before its topic's last by at most max_gap_s is late: refused, nothing else changes. Farther back is a
 /// loop, once the topic's next two go on from there (TopicClock has the rules); till then it waits. The first moment of a
@@ -92,6 +92,8 @@ struct PlayedSample {
 /// thread-safe.
 class JointStatePlayer {
  public:
+  /// Of max_lag_s, under kNewestState; the rest is for the steps.
+  static constexpr double kWaitShare = 0.25;
   /// Samples that may wait for another topic: 20 s of one 500 Hz topic. Beyond it nothing waits.
   static constexpr std::size_t kMaxWaiting = 10000;
 
@@ -121,6 +123,13 @@ class JointStatePlayer {
   /// Plays the next moment whose turn it is (kEveryState) or the newest (kNewestState), or reports a refused sample,
   /// those first; nothing if there is neither. Call until it returns nothing.
   std::optional<PlayedSample> playNext();
+
+  /// The stamp that playNext() would play to; nothing if no moment's turn has come.
+  std::optional<std::int64_t> nextStamp() const;
+  /// The stamp of the earliest sample that triggers and lies ahead, whether or not it has to wait for a topic.
+  std::optional<std::int64_t> earliestStamp() const;
+  /// Moments that are here now wait for no topic any longer, since wall time presses.
+  void stopWaiting();
 
   /// No more samples will come (end of a bag): no moment waits any longer. What would have to be confirmed is refused.
   void finish();
@@ -203,13 +212,14 @@ class JointStatePlayer {
 
   Simulator& simulator_;
   std::int64_t max_gap_ns_;
-  std::int64_t max_lag_ns_;
+  std::int64_t live_wait_ns_;  ///< message time that a topic is waited for under kNewestState
   StatePolicy policy_ = StatePolicy::kEveryState;
   AdvanceLimits limits_;
   std::vector<std::string> topics_;
   std::vector<Topic> topic_states_;
   std::deque<PlayedSample> refused_;  ///< not yet reported
   std::optional<NewestLoop> newest_;
+  std::optional<Moment> released_;        ///< nothing up to it waits for a topic
   std::optional<Resumption> resumption_;  ///< the newest
   std::size_t waiting_ = 0;               ///< samples in all queues
   std::vector<VectorX> targets_;          ///< joint positions at the moment played last, per instrument

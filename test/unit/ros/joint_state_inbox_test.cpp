@@ -86,6 +86,15 @@ TEST(JointStateInbox, WaitEndsWithAStateOrAWake) {
   EXPECT_FALSE(inbox.take());
 }
 
+TEST(JointStateInbox, WaitsNoLongerThanItIsTold) {
+  JointStateInbox inbox(2);
+  EXPECT_FALSE(inbox.wait(0.001));
+  inbox.wake();
+  EXPECT_TRUE(inbox.wait(60.0));
+  inbox.put(stateAt(1));
+  EXPECT_TRUE(inbox.wait(60.0));
+}
+
 TEST(JointStateInbox, LosesNothingBetweenThreads) {
   constexpr int kCount = 20000;
   JointStateInbox inbox(kCount);
@@ -100,32 +109,34 @@ TEST(JointStateInbox, LosesNothingBetweenThreads) {
   EXPECT_EQ(inbox.counts().received, kCount);
 }
 
-TEST(ReceiptTimes, GiveTheLastReceiptOfAMoment) {
+TEST(ReceiptTimes, GiveTheFirstReceiptOfAMoment) {
   ReceiptTimes receipts(2);
-  receipts.note(0, 10, 1.0);
-  receipts.note(1, 10, 1.5);
-  receipts.note(0, 20, 2.0);
-  receipts.note(0, 30, 3.0);
-  EXPECT_EQ(receipts.take(10), 1.5);
-  EXPECT_EQ(receipts.take(30), 3.0);  // 20 was merged
+  receipts.note(0, {10, 1.0, 0.1});
+  receipts.note(1, {10, 1.5, 0.6});
+  receipts.note(0, {20, 2.0});
+  receipts.note(0, {30, 3.0});
+  EXPECT_EQ(receipts.find(10)->received_s, 1.0);
+  EXPECT_EQ(receipts.take(10)->age_s, 0.1);
+  EXPECT_FALSE(receipts.find(10));
+  EXPECT_EQ(receipts.take(30)->received_s, 3.0);  // 20 was merged
   EXPECT_FALSE(receipts.take(20));
   EXPECT_FALSE(receipts.take(40));
 }
 
 TEST(ReceiptTimes, FollowTimeBackwards) {
   ReceiptTimes receipts(1);
-  for (int i = 1; i <= 5; ++i) receipts.note(0, 10 * i, i);
-  receipts.note(0, 10, 6.0);  // the next loop
-  receipts.note(0, 20, 7.0);
-  for (int i = 1; i <= 5; ++i) EXPECT_EQ(receipts.take(10 * i), i);
-  EXPECT_EQ(receipts.take(10), 6.0);
-  EXPECT_EQ(receipts.take(20), 7.0);
+  for (int i = 1; i <= 5; ++i) receipts.note(0, {10 * i, 1.0 * i});
+  receipts.note(0, {10, 6.0});  // the next loop
+  receipts.note(0, {20, 7.0});
+  for (int i = 1; i <= 5; ++i) EXPECT_EQ(receipts.take(10 * i)->received_s, i);
+  EXPECT_EQ(receipts.take(10)->received_s, 6.0);
+  EXPECT_EQ(receipts.take(20)->received_s, 7.0);
 }
 
 TEST(ReceiptTimes, HoldNoMoreThanThePlayer) {
   ReceiptTimes receipts(1);
   for (std::size_t i = 1; i <= 2 * JointStatePlayer::kMaxWaiting; ++i)
-    receipts.note(0, static_cast<std::int64_t>(i), 0.0);
+    receipts.note(0, {static_cast<std::int64_t>(i), 0.0});
   EXPECT_FALSE(receipts.take(static_cast<std::int64_t>(JointStatePlayer::kMaxWaiting)));
   EXPECT_TRUE(receipts.take(static_cast<std::int64_t>(JointStatePlayer::kMaxWaiting) + 1));
 }

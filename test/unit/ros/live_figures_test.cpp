@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "tissue_contact/ros/joint_state_policy.h"
 #include "tissue_contact/ros/real_time_factor.h"
 
@@ -28,6 +30,55 @@ TEST(JointStatePolicy, AutoFollowsTheClock) {
   EXPECT_EQ(choose(false, -0.5), StatePolicy::kNewestState);
   EXPECT_EQ(choose(false, 1.5e9), StatePolicy::kEveryState);
   EXPECT_EQ(choose(false, -1.5), StatePolicy::kEveryState);
+}
+
+/// The policies chosen, in turn, by states of these ages received every 10 ms.
+std::vector<StatePolicy> chosen(PolicyChooser& chooser, double& now_s, const std::vector<double>& ages_s) {
+  std::vector<StatePolicy> policies;
+  for (const double age_s : ages_s) {
+    if (const auto choice = chooser.note(age_s, now_s += 0.01)) policies.push_back(choice->policy);
+  }
+  return policies;
+}
+
+std::vector<double> times(int count, double age_s) {
+  return std::vector<double>(static_cast<std::size_t>(count), age_s);
+}
+
+TEST(PolicyChooser, AnOldFirstStateOfADriverDoesNotDecideForEver) {
+  PolicyChooser chooser(StatePolicy::kAuto, false);
+  double now_s = 5.0;
+  EXPECT_EQ(chosen(chooser, now_s, {3600.0}), std::vector<StatePolicy>{StatePolicy::kEveryState});
+  EXPECT_TRUE(chosen(chooser, now_s, times(90, 0.001)).empty());
+  EXPECT_EQ(chosen(chooser, now_s, times(1000, 0.001)), std::vector<StatePolicy>{StatePolicy::kNewestState});
+}
+
+TEST(PolicyChooser, ABacklogAndSingleStatesAreNoEvidence) {
+  PolicyChooser chooser(StatePolicy::kAuto, false);
+  double now_s = 5.0;
+  EXPECT_EQ(chosen(chooser, now_s, {0.001}), std::vector<StatePolicy>{StatePolicy::kNewestState});
+  for (int i = 0; i < 5000; ++i) EXPECT_FALSE(chooser.note(10.0 - 0.0018 * i, now_s += 1e-5));  // stopped for 10 s
+  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(chooser.note(i % 2 == 0 ? 3600.0 : 0.001, now_s += 0.01));
+  EXPECT_EQ(chosen(chooser, now_s, times(1000, 3600.0)), std::vector<StatePolicy>{StatePolicy::kEveryState});
+}
+
+TEST(PolicyChooser, AnotherSourceDecidesAtOnceWhenTimeStartsAgain) {
+  PolicyChooser chooser(StatePolicy::kAuto, false);
+  double now_s = 5.0;
+  chosen(chooser, now_s, times(10, 0.001));
+  chooser.startAgain();
+  EXPECT_EQ(chosen(chooser, now_s, times(500, 3600.0)), std::vector<StatePolicy>{StatePolicy::kEveryState});
+  chooser.startAgain();
+  EXPECT_TRUE(chosen(chooser, now_s, times(500, 3600.0)).empty());  // the same once more: nothing to tell
+}
+
+TEST(PolicyChooser, NothingMovesTheSceneOrSimulatedTime) {
+  for (const bool simulated_time : {false, true}) {
+    PolicyChooser chooser(simulated_time ? StatePolicy::kAuto : StatePolicy::kEveryState, simulated_time);
+    double now_s = 5.0;
+    EXPECT_EQ(chosen(chooser, now_s, times(500, 0.001)), std::vector<StatePolicy>{StatePolicy::kEveryState});
+    EXPECT_TRUE(chosen(chooser, now_s, times(500, 3600.0)).empty());
+  }
 }
 
 TEST(JointStatePolicy, SaysWhy) {

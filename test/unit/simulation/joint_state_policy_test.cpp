@@ -81,22 +81,41 @@ TEST(JointStatePolicy, AMomentSaysHowManyWereMerged) {
   EXPECT_EQ(player.count(Verdict::kAccepted), 2);
 }
 
-TEST(JointStatePolicy, NewestStateWaitsForATopicNoLongerThanMaxLag) {
+TEST(JointStatePolicy, NewestStateWaitsForATopicNoLongerThanAQuarterOfMaxLag) {
   const auto simulator = twoProbes();
   JointStatePlayer player(*simulator);
   player.setPolicy(StatePolicy::kNewestState);
   player.push(1, sample(kSecond, 0.0));
   player.push(0, sample(kSecond, 0.0));
   EXPECT_EQ(drain(player).size(), 1U);
-  player.push(0, sample(kSecond + 10 * kMillisecond, 0.0));
-  player.push(0, sample(kSecond + 19 * kMillisecond, 0.0));
+  player.push(0, sample(kSecond + 2 * kMillisecond, 0.0));
+  player.push(0, sample(kSecond + 4 * kMillisecond, 0.0));
   EXPECT_TRUE(drain(player).empty());
-  player.push(0, sample(kSecond + 20 * kMillisecond, 0.0));  // max_lag_s
+  EXPECT_FALSE(player.nextStamp());
+  EXPECT_EQ(player.earliestStamp(), kSecond + 2 * kMillisecond);
+  player.push(0, sample(kSecond + 5 * kMillisecond, 0.0));  // max_lag_s is 20 ms
+  EXPECT_EQ(player.nextStamp(), kSecond + 5 * kMillisecond);
   const std::vector<PlayedSample> played = drain(player);
   ASSERT_EQ(played.size(), 1U);
-  EXPECT_EQ(played[0].stamp_ns, kSecond + 20 * kMillisecond);
+  EXPECT_EQ(played[0].stamp_ns, kSecond + 5 * kMillisecond);
   EXPECT_EQ(played[0].merged, 2);
   EXPECT_EQ(played[0].instruments, std::vector<int>{0});
+}
+
+TEST(JointStatePolicy, WhoeverHasAClockMayEndTheWait) {
+  const auto simulator = twoProbes();
+  JointStatePlayer player(*simulator);
+  player.setPolicy(StatePolicy::kNewestState);
+  for (const int topic : {0, 1}) player.push(topic, sample(kSecond, 0.0));
+  EXPECT_EQ(drain(player).size(), 1U);
+  EXPECT_FALSE(player.earliestStamp());
+  player.push(0, sample(kSecond + kMillisecond, 0.0));
+  EXPECT_TRUE(drain(player).empty());
+  player.stopWaiting();
+  EXPECT_EQ(player.nextStamp(), kSecond + kMillisecond);
+  EXPECT_EQ(drain(player).size(), 1U);
+  player.push(0, sample(kSecond + 2 * kMillisecond, 0.0));
+  EXPECT_TRUE(drain(player).empty());  // that held for those that were here
 }
 
 TEST(JointStatePolicy, AnInstrumentThatIsAlwaysBehindStillMovesAndHasItsWrench) {
