@@ -29,15 +29,17 @@ class Queue {
   void push(const Piece& piece) {
     if (count_ == static_cast<int>(pieces_.size())) return;
     pieces_[count_++] = piece;
-    std::push_heap(pieces_.begin(), pieces_.begin() + count_, higher);
+    std::push_heap(pieces_.begin(), pieces_.begin() + count_, Higher());
   }
   Piece pop() {
-    std::pop_heap(pieces_.begin(), pieces_.begin() + count_, higher);
+    std::pop_heap(pieces_.begin(), pieces_.begin() + count_, Higher());
     return pieces_[--count_];
   }
 
  private:
-  static bool higher(const Piece& a, const Piece& b) { return a.bound > b.bound; }
+  struct Higher {
+    bool operator()(const Piece& a, const Piece& b) const { return a.bound > b.bound; }
+  };
   std::array<Piece, 4UL * kMostPieces> pieces_;
   int count_ = 0;
 };
@@ -56,13 +58,14 @@ class Lowest {
     return value;
   }
 
-  /// Cutting planes from the lowest point on. Steps stay within `reach` (m), which shrinks when they do not help.
-  void descend(double reach) {
+  /// Cutting planes from the lowest point on. Steps stay within `reach` (m), which shrinks when they do not help. Gives up
+  /// where the planes lead nowhere below `margin`.
+  void descend(double reach, double margin) {
     for (int i = 0; i < count_; ++i) addPlane(i, grid_.at(triangle_.pointAt(points_[i])));
     for (int cut = 0; cut < kMostCuts; ++cut) {
       dropIdlePlanes(reach);
-      const PlaneMinimum next = minimiseMaximum(planes_, tolerance_, value_);
-      if (!(next.value < value_ - tolerance_)) return;
+      const PlaneMinimum next = minimiseMaximum(planes_, tolerance_, std::min(value_, margin + tolerance_));
+      if (!(next.value < value_ - tolerance_ && next.value <= margin)) return;
       const double way = (triangle_.pointAt(next.weights) - point_).norm();
       const double share = way > reach ? reach / way : 1.0;
       const double before = value_;
@@ -181,7 +184,7 @@ bool lowestOnTriangle(const DistanceGrid& grid, const TrianglePoints& triangle, 
     looked += 3;
   }
   if (queue.empty() && !near && lowest.value() > margin) return false;
-  lowest.descend(reach);
+  lowest.descend(reach, margin);
   lowest.write(result);
   return result.distance <= margin;
 }
