@@ -29,55 +29,53 @@ class Queue {
   void push(const Piece& piece) {
     if (count_ == static_cast<int>(pieces_.size())) return;
     pieces_[count_++] = piece;
-    std::push_heap(pieces_.begin(), pieces_.begin() + count_, higher);
+    std::push_heap(pieces_.begin(), pieces_.begin() + count_, Higher());
   }
   Piece pop() {
-    std::pop_heap(pieces_.begin(), pieces_.begin() + count_, higher);
+    std::pop_heap(pieces_.begin(), pieces_.begin() + count_, Higher());
     return pieces_[--count_];
   }
 
  private:
-  static bool higher(const Piece& a, const Piece& b) { return a.bound > b.bound; }
+  struct Higher {
+    bool operator()(const Piece& a, const Piece& b) const { return a.bound > b.bound; }
+  };
   std::array<Piece, 4UL * kMostPieces> pieces_;
   int count_ = 0;
 };
 
-/// The planes met so far and the lowest point.
+/// The last points met and the lowest of all; planes through them.
 class Lowest {
  public:
   Lowest(const DistanceGrid& grid, const TrianglePoints& triangle)
       : grid_(grid), triangle_(triangle), tolerance_(kTolerance * grid.spacing) {}
 
-  /// Distance at a point of the triangle; remembers its plane.
+  /// Distance at a point of the triangle. Most points are forgotten before a plane is laid through them.
   double look(const Vector3& weights) {
     const Vector3 p = triangle_.pointAt(weights);
-    const GridSample here = grid_.at(p);
-    Vector3 corner_values;
-    for (int i = 0; i < 3; ++i) corner_values[i] = here.distance + here.gradient.dot(triangle_.corners[i] - p);
-    if (planes_.full()) drop(highestOrigin());
-    planes_.add(corner_values);
-    gradients_[planes_.count() - 1] = here.gradient;
-    origins_[planes_.count() - 1] = here.distance;
-    if (here.distance < value_) {
-      value_ = here.distance;
-      weights_ = weights;
-      point_ = p;
-    }
-    return here.distance;
+    const double value = grid_.valueAt(p);
+    meet(weights, p, value);
+    return value;
   }
 
-  /// Cutting planes from the lowest point on. Steps stay within `reach` (m), which shrinks when they do not help.
-  void descend(double reach) {
+  /// Cutting planes from the lowest point on. Steps stay within `reach` (m), which shrinks when they do not help. Gives up
+  /// where the planes lead nowhere below `margin`.
+  void descend(double reach, double margin) {
+    for (int i = 0; i < count_; ++i) addPlane(i, grid_.at(triangle_.pointAt(points_[i])));
     for (int cut = 0; cut < kMostCuts; ++cut) {
       dropIdlePlanes(reach);
-      const PlaneMinimum next = minimiseMaximum(planes_, tolerance_);
-      if (!(next.value < value_ - tolerance_)) return;
+      const PlaneMinimum next = minimiseMaximum(planes_, tolerance_, std::min(value_, margin + tolerance_));
+      if (!(next.value < value_ - tolerance_ && next.value <= margin)) return;
       const double way = (triangle_.pointAt(next.weights) - point_).norm();
       const double share = way > reach ? reach / way : 1.0;
       const double before = value_;
       const double expected = share * (before - next.value);
-      const double here = look(weights_ + share * (next.weights - weights_));
-      const double gained = before - here;
+      const Vector3 weights = weights_ + share * (next.weights - weights_);
+      const Vector3 p = triangle_.pointAt(weights);
+      const GridSample here = grid_.at(p);
+      meet(weights, p, here.distance);
+      addPlane(count_ - 1, here);
+      const double gained = before - here.distance;
       if (gained < 0.25 * expected) reach = 0.5 * std::min(way, reach);
       if (gained > 0.75 * expected) reach *= 2.0;
     }
@@ -96,16 +94,36 @@ class Lowest {
   double value() const { return value_; }
 
  private:
-  void drop(int plane) {
-    for (int k = plane; k + 1 < planes_.count(); ++k) {
-      gradients_[k] = gradients_[k + 1];
-      origins_[k] = origins_[k + 1];
-    }
-    planes_.remove(plane);
+  void meet(const Vector3& weights, const Vector3& p, double value) {
+    if (count_ == PlaneSet::kCapacity) drop(highest());
+    points_[count_] = weights;
+    values_[count_++] = value;
+    if (!(value < value_)) return;
+    value_ = value;
+    weights_ = weights;
+    point_ = p;
   }
 
-  int highestOrigin() const {
-    return static_cast<int>(std::max_element(origins_.begin(), origins_.begin() + planes_.count()) - origins_.begin());
+  void addPlane(int i, const GridSample& here) {
+    const Vector3 p = triangle_.pointAt(points_[i]);
+    Vector3 corner_values;
+    for (int k = 0; k < 3; ++k) corner_values[k] = here.distance + here.gradient.dot(triangle_.corners[k] - p);
+    planes_.add(corner_values);
+    gradients_[i] = here.gradient;
+  }
+
+  void drop(int i) {
+    for (int k = i; k + 1 < count_; ++k) {
+      points_[k] = points_[k + 1];
+      values_[k] = values_[k + 1];
+      gradients_[k] = gradients_[k + 1];
+    }
+    --count_;
+    if (i < planes_.count()) planes_.remove(i);
+  }
+
+  int highest() const {
+    return static_cast<int>(std::max_element(values_.begin(), values_.begin() + count_) - values_.begin());
   }
 
   /// Where the field is not convex a plane may lie above it; and with slopes of 1 one that lies 2 reach below the lowest
@@ -120,9 +138,11 @@ class Lowest {
   const DistanceGrid& grid_;
   const TrianglePoints& triangle_;
   double tolerance_;
-  PlaneSet planes_;
+  int count_ = 0;                                    ///< of points, none yet dropped to make room
+  std::array<Vector3, PlaneSet::kCapacity> points_;  ///< barycentric
+  std::array<double, PlaneSet::kCapacity> values_{};
+  PlaneSet planes_;  ///< through the same points, once descend() has begun
   std::array<Vector3, PlaneSet::kCapacity> gradients_;
-  std::array<double, PlaneSet::kCapacity> origins_{};
   double value_ = std::numeric_limits<double>::infinity();
   Vector3 weights_ = Vector3::UnitX();
   Vector3 point_ = Vector3::Zero();
@@ -164,7 +184,7 @@ bool lowestOnTriangle(const DistanceGrid& grid, const TrianglePoints& triangle, 
     looked += 3;
   }
   if (queue.empty() && !near && lowest.value() > margin) return false;
-  lowest.descend(reach);
+  lowest.descend(reach, margin);
   lowest.write(result);
   return result.distance <= margin;
 }

@@ -16,17 +16,20 @@ namespace tissue_contact {
 /// weights falling linearly to 0 at the tolerance. By convexity its value is within the tolerance of the minimum.
 class SoftMinimum {
  public:
-  explicit SoftMinimum(double tolerance) : tolerance_(tolerance) {}
+  /// @param ceiling candidates of this value or more do not count.
+  explicit SoftMinimum(double tolerance, double ceiling = std::numeric_limits<double>::infinity())
+      : tolerance_(tolerance), lowest_(ceiling - tolerance) {}
 
   /// A candidate: barycentric weights (>= 0, sum 1) and the function's value there. NaN values are ignored. Candidates
   /// that coincide count once: how often a point is found may depend on round-off.
   void add(const Vector3& weights, double value);
 
   /// Whether a candidate of this value would count.
-  bool accepts(double value) const { return value < lowest_ + tolerance_; }
+  bool accepts(double value) const { return value < limit(); }
+  double limit() const { return lowest_ + tolerance_; }
 
-  double lowest() const { return lowest_; }
-  Vector3 weights() const;  ///< barycentric; corner 0 when nothing was added
+  double lowest() const { return lowest_; }  ///< one tolerance below the ceiling when nothing lower was added
+  Vector3 weights() const;                   ///< barycentric; corner 0 when nothing was added
 
  private:
   struct Candidate {
@@ -34,7 +37,7 @@ class SoftMinimum {
     double value;
   };
   double tolerance_;
-  double lowest_ = std::numeric_limits<double>::infinity();
+  double lowest_;
   int count_ = 0;
   std::array<Candidate, 64> candidates_;
 };
