@@ -18,7 +18,7 @@ inline DelassusProblem towerProblem(double mu, unsigned seed) {
   std::mt19937 random(seed);
   const auto normal = [&] {  // nearly: the sum of twelve uniform numbers
     double sum = -6.0;
-    for (int i = 0; i < 12; ++i) sum += random() / 4294967296.0;
+    for (int i = 0; i < 12; ++i) sum += static_cast<double>(random()) / 4294967296.0;
     return sum;
   };
   Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3 * kContacts, 6 * kBlocks);

@@ -35,6 +35,8 @@ Instrument makeInstrument(const std::string& name, const std::vector<ShapeDescri
 
 ShapeDescription sphere(double radius, const Vector3& p) { return {SphereGeometry{radius}, at(p)}; }
 
+ShapeDescription box(const Vector3& size, const Vector3& p) { return {BoxGeometry{size}, at(p)}; }
+
 struct TwoByTwo {
   std::vector<Instrument> instruments;
   std::vector<TissueSurface> surfaces;
@@ -54,8 +56,10 @@ TwoByTwo makeScene() {
   }
   for (const double y : {0.0103, 0.0309}) {
     const std::string name = y < 0.02 ? "left" : "right";
-    scene.instruments.push_back(makeInstrument(
-        name, {sphere(0.005, {0.0211, y, 0.0}), {BoxGeometry{{0.012, 0.008, 0.01}}, at({0.0803, y, 0.0})}}));
+    std::vector<ShapeDescription> shapes;  // one by one: GCC 12 warns falsely of freeing where a list of variants ends
+    shapes.push_back(sphere(0.005, {0.0211, y, 0.0}));
+    shapes.push_back(box({0.012, 0.008, 0.01}, {0.0803, y, 0.0}));
+    scene.instruments.push_back(makeInstrument(name, shapes));
     scene.X_WL.push_back({Pose::Identity(), at({0.0, 0.0, 0.0245})});
   }
   return scene;

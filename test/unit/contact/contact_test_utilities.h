@@ -21,7 +21,9 @@ namespace tissue_contact::contact_test {
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
-  double number(double low, double high) { return low + (high - low) * (engine_() / 4294967295.0); }
+  double number(double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine_()) / 4294967295.0);
+  }
   Vector3 vector(double half) { return {number(-half, half), number(-half, half), number(-half, half)}; }
   Vector3 direction() {
     Vector3 v = vector(1.0);

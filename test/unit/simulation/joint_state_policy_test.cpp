@@ -213,7 +213,7 @@ TEST(JointStatePolicy, CountsAddUpToWhatWasPushed) {
       return all;
     };
     for (int i = 0; i < 600; ++i) {
-      const unsigned dice = random() % 40;
+      const auto dice = random() % 40;
       now += dice == 0 ? -200 * kMillisecond : 3 * kMillisecond;
       if (dice == 1) player.restart();
       JointStateSample s = sample(now - static_cast<std::int64_t>(random() % 8) * kMillisecond, 0.001);
