@@ -77,7 +77,10 @@ void Stepper::takeReceived() {
     newest_received_s_ = state->received_s;
     newest_age_s_ = state->age_s;
     newest_stamp_ns_ = state->sample.stamp_ns;
-    if (player_.triggers(state->topic)) receipts_.note(state->topic, newest_stamp_ns_, newest_received_s_);
+    if (player_.triggers(state->topic)) {
+      receipts_.note(state->topic, newest_stamp_ns_, newest_received_s_);
+      pacing_.noteReceived(newest_received_s_);
+    }
     player_.push(state->topic, std::move(state->sample));
   }
 }
@@ -138,7 +141,7 @@ double Stepper::pace() {
   pacing_.begin(now_s, newest_received_s_, static_cast<int>(steps));
   if (newest_state_) {
     player_.setLimits(limits(pacing_.mostSteps()));
-    simulator_.setSolverDeadline(pacing_.deadline(now_s));
+    simulator_.setSolverDeadline(pacing_.deadline(now_s), pacing_.promptDeadline(now_s));
   }
   return now_s;
 }
@@ -146,7 +149,7 @@ double Stepper::pace() {
 void Stepper::noteStep() {
   const double now_s = steadySeconds();
   pacing_.noteStep(now_s);
-  if (newest_state_) simulator_.setSolverDeadline(pacing_.deadline(now_s));
+  if (newest_state_) simulator_.setSolverDeadline(pacing_.deadline(now_s), pacing_.promptDeadline(now_s));
 }
 
 }  // namespace tissue_contact
