@@ -57,7 +57,9 @@ class Latencies {
           const Clock::time_point now = Clock::now();
           const std::lock_guard<std::mutex> lock(mutex_);
           const auto sent = sent_.find(wrench->header.stamp.toNSec());
-          if (sent != sent_.end()) ms_.push_back(std::chrono::duration<double, std::milli>(now - sent->second).count());
+          if (sent == sent_.end()) return;
+          ms_.push_back(std::chrono::duration<double, std::milli>(now - sent->second).count());
+          sent_.erase(sent);
         };
     subscriber_ = node.subscribe<geometry_msgs::WrenchStamped>(topic, kQueue, take, ros::VoidConstPtr(), kHints);
   }
@@ -67,6 +69,13 @@ class Latencies {
   void noteSent(const ros::Time& stamp) {
     const std::lock_guard<std::mutex> lock(mutex_);
     sent_.emplace(stamp.toNSec(), Clock::now());
+    ++sent_count_;
+  }
+
+  /// Older ones may have been merged into it.
+  bool answered(const ros::Time& stamp) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return sent_.count(stamp.toNSec()) == 0;
   }
 
   void print() {
@@ -75,14 +84,15 @@ class Latencies {
     const auto quantile = [&](double q) {
       return ms_.empty() ? std::nan("") : ms_[static_cast<std::size_t>(q * static_cast<double>(ms_.size() - 1))];
     };
-    std::printf("%-16s %7zu %8zu %9.3f %9.3f %9.3f\n", name_.c_str(), sent_.size(), ms_.size(), quantile(0.5),
+    std::printf("%-16s %7ld %8zu %9.3f %9.3f %9.3f\n", name_.c_str(), sent_count_, ms_.size(), quantile(0.5),
                 quantile(0.99), quantile(1.0));
   }
 
  private:
   std::string name_;
   std::mutex mutex_;
-  std::unordered_map<std::uint64_t, Clock::time_point> sent_;
+  std::unordered_map<std::uint64_t, Clock::time_point> sent_;  ///< and not answered
+  long sent_count_ = 0;
   std::vector<double> ms_;
   ros::Subscriber subscriber_;
 };
@@ -129,14 +139,20 @@ int measure(int argc, char** argv, double seconds, double rate_hz) {
   const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate_hz));
   const Clock::time_point start = Clock::now();
   const auto states = static_cast<long>(seconds * rate_hz);
+  ros::Time last;
   for (long i = 0; i < states && ros::ok(); ++i) {
     std::this_thread::sleep_until(start + i * period);
     const sensor_msgs::JointState joints = jointsAt(static_cast<double>(i) / rate_hz);
+    last = joints.header.stamp;
     ours.noteSent(joints.header.stamp);
     bare.noteSent(joints.header.stamp);
     publisher.publish(joints);
   }
-  std::this_thread::sleep_for(std::chrono::seconds(1));
+  constexpr std::chrono::seconds kPatience(30);
+  const Clock::time_point end = Clock::now() + kPatience;
+  while (Clock::now() < end && !(ours.answered(last) && bare.answered(last))) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
   std::printf("%-16s %7s %8s %9s %9s %9s   ms, publish -> wrench received\n", "", "sent", "answered", "p50", "p99",
               "max");
   ours.print();

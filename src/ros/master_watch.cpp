@@ -12,6 +12,7 @@
 #include <ros/xmlrpc_manager.h>
 #include <xmlrpcpp/XmlRpcException.h>
 
+#include <cstddef>
 #include <set>
 #include <vector>
 
@@ -40,6 +41,7 @@ XmlRpcValue toArray(const std::vector<std::string>& texts) {
 
 std::vector<std::string> toTexts(XmlRpcValue array) {
   std::vector<std::string> texts;
+  texts.reserve(static_cast<std::size_t>(array.size()));
   for (int i = 0; i < array.size(); ++i) texts.push_back(static_cast<std::string>(array[i]));
   return texts;
 }
@@ -54,6 +56,7 @@ class Registrar {
   std::vector<Topic> own(const std::string& method) {
     std::vector<Topic> topics;
     XmlRpcValue pairs = ask(own_uri_, method, toArray({node_}));
+    topics.reserve(static_cast<std::size_t>(pairs.size()));
     for (int i = 0; i < pairs.size(); ++i) {
       topics.push_back({static_cast<std::string>(pairs[i][0]), static_cast<std::string>(pairs[i][1])});
     }

@@ -86,6 +86,7 @@ void Stepper::takeReceived() {
     newest_received_s_ = state->received_s;
     if (player_.triggers(state->topic)) {
       receipts_.note(state->topic, {state->sample.stamp_ns, state->received_s, state->age_s});
+      pacing_.noteReceived(state->received_s);
     }
     player_.push(state->topic, std::move(state->sample));
   }
@@ -156,7 +157,7 @@ double Stepper::pace() {
   health_.noteWork(received_s);
   if (newest_state_) {
     player_.setLimits(limits(pacing_.mostSteps()));
-    simulator_.setSolverDeadline(pacing_.deadline(now_s));
+    simulator_.setSolverDeadline(pacing_.deadline(now_s), pacing_.promptDeadline(now_s));
   }
   return now_s;
 }
@@ -164,7 +165,7 @@ double Stepper::pace() {
 void Stepper::noteStep() {
   const double now_s = steadySeconds();
   pacing_.noteStep(now_s);
-  if (newest_state_) simulator_.setSolverDeadline(pacing_.deadline(now_s));
+  if (newest_state_) simulator_.setSolverDeadline(pacing_.deadline(now_s), pacing_.promptDeadline(now_s));
 }
 
 }  // namespace tissue_contact

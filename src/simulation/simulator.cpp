@@ -205,7 +205,9 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
   all.load_watch.look(all.solved, all.x, report.implausible_load);
 }
 
-void Simulator::setSolverDeadline(double clock_s) { implementation_->solver->setDeadline(clock_s); }
+void Simulator::setSolverDeadline(double clock_s, double prompt_s) {
+  implementation_->solver->setDeadline(clock_s, prompt_s);
+}
 
 Wrench Simulator::wrench(int instrument) const { return implementation_->wrenches.at(instrument); }
 const VectorX& Simulator::jointPositions(int instrument) const { return implementation_->motion.positions(instrument); }

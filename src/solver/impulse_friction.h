@@ -14,7 +14,7 @@ class ImpulseFriction : public ContactSolver {
   ImpulseFriction(const SolverDescription& description, SecondsClock clock);
 
   SolverReport solve(const ContactProblem& problem, ContactSolution& solution) override;
-  void setDeadline(double clock_s) override { normal_.setDeadline(clock_s); }
+  void setDeadline(double clock_s, double prompt_s) override { normal_.setDeadline(clock_s, prompt_s); }
   void reset() override { normal_.reset(); }
   Memory memory() const override { return normal_.memory(); }
 

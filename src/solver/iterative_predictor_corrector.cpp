@@ -14,6 +14,10 @@ std::unique_ptr<Relaxation> makeRelaxation(RelaxationKind kind) {
   return kind == RelaxationKind::kCholesky ? makeCholeskyRelaxation() : makeGaussSeidelRelaxation();
 }
 
+/// Before it is cut short by the prompt deadline. Where every step of press and drag (605 nodes, 1 ms) ends after ten, the
+/// force errs by 0.05 % (RMS against the converged one), and nine steps of ten are done by then.
+constexpr int kLeastBeforePrompt = 10;
+
 }  // namespace
 
 IterativePredictorCorrector::IterativePredictorCorrector(const SolverDescription& description, SecondsClock clock)
@@ -28,12 +32,13 @@ IterativePredictorCorrector::~IterativePredictorCorrector() = default;
 
 void IterativePredictorCorrector::reset() { relaxation_->reset(); }
 
-void IterativePredictorCorrector::setDeadline(double clock_s) {
-  if (std::isnan(clock_s)) throw std::invalid_argument("the solver's deadline is not a number");
-  if (!clock_ && std::isfinite(clock_s)) {
+void IterativePredictorCorrector::setDeadline(double clock_s, double prompt_s) {
+  if (std::isnan(clock_s) || std::isnan(prompt_s)) throw std::invalid_argument("the solver's deadline is not a number");
+  if (!clock_ && std::isfinite(std::min(clock_s, prompt_s))) {
     throw std::invalid_argument("the solver has a deadline, but there is no clock here; give the simulator a clock");
   }
   deadline_s_ = clock_s;
+  prompt_s_ = prompt_s;
 }
 
 bool IterativePredictorCorrector::converged(double momentum_change, double impulse_change,
@@ -45,7 +50,7 @@ bool IterativePredictorCorrector::converged(double momentum_change, double impul
 
 SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, ContactSolution& solution) {
   // With neither budget nor deadline the clock has no say.
-  const double until =
+  const double hard_s =
       description_.time_budget_s > 0.0 ? std::min(deadline_s_, clock_() + description_.time_budget_s) : deadline_s_;
   scratch_.resize(problem.bodies.size());
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
@@ -60,6 +65,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
     const double impulse_change = relaxation_->correctContacts(problem, description_.contact_passes,
                                                                description_.tolerance, *corrector_, solution);
     ++report.iterations;
+    const double until = report.iterations >= kLeastBeforePrompt ? std::min(hard_s, prompt_s_) : hard_s;
     stop = true;
     if (converged(momentum_change, impulse_change, solution)) {
       report.stop = StopReason::kTolerance;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -89,8 +90,9 @@ class Simulator {
 
   /// From now on solvers stop iterating once the environment's clock shows `clock_s` and report StopReason::kTimeBudget,
   /// after one iteration at least; infinity, as at the start: never. The answer depends on the machine then. Methods
-  /// without a time budget take no notice. @throws std::invalid_argument when there is no clock, or for NaN.
-  void setSolverDeadline(double clock_s);
+  /// without a time budget take no notice. @param prompt_s the same once ten iterations are done: an answer that is good
+  /// enough then rather than a better one late. @throws std::invalid_argument when there is no clock, or for NaN.
+  void setSolverDeadline(double clock_s, double prompt_s = std::numeric_limits<double>::infinity());
 
   /// What the tissues exert on the instrument: mean over the last implicit step, at the origin of the tip link and in
   /// its axes (N, N m). Zero before the first advance.

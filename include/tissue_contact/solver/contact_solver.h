@@ -36,8 +36,12 @@ class ContactSolver {
 
   /// Stop iterating once the clock of the time budget shows `clock_s` (infinity, as at the start: never), after one
   /// iteration at least. Methods without a time budget take no notice.
-  /// @throws std::invalid_argument when it is not infinite and there is no clock.
-  virtual void setDeadline(double clock_s) { static_cast<void>(clock_s); }
+  /// @param prompt_s the same, but not before ten iterations: good enough and in time rather than better and late.
+  /// @throws std::invalid_argument when either is not infinite and there is no clock.
+  virtual void setDeadline(double clock_s, double prompt_s) {
+    static_cast<void>(clock_s);
+    static_cast<void>(prompt_s);
+  }
 
   /// Forgets what it carries from step to step (factors, caches): the next answer depends on its arguments alone.
   virtual void reset() {}

@@ -42,7 +42,7 @@ class IterativePredictorCorrector : public ContactSolver {
 
   /// Allocates only when a problem is larger than before or a factor is renewed.
   SolverReport solve(const ContactProblem& problem, ContactSolution& solution) override;
-  void setDeadline(double clock_s) override;
+  void setDeadline(double clock_s, double prompt_s) override;
   void reset() override;
   Memory memory() const override;
 
@@ -55,6 +55,7 @@ class IterativePredictorCorrector : public ContactSolver {
   std::unique_ptr<ContactCorrector> corrector_;
   std::vector<NodalVectors> scratch_;
   double deadline_s_ = std::numeric_limits<double>::infinity();  ///< on clock_
+  double prompt_s_ = std::numeric_limits<double>::infinity();    ///< on clock_
   double load_scale_ = 0.0;                                      ///< loadScale(), N s
 };
 

@@ -187,5 +187,45 @@ TEST(LivePacing, TwoArmsThatWaitForEachOtherKeepTheBoundInSum) {
   }
 }
 
+/// A driver of 1 kHz until `now_s`, and steps of this cost.
+void drive(LivePacing& pacing, double& now_s, double step_cost_s, int states) {
+  for (int i = 0; i < states; ++i) {
+    now_s += 0.001;
+    pacing.noteReceived(now_s);
+    pacing.begin(now_s, now_s, 1);
+    pacing.noteStep(now_s + step_cost_s);
+  }
+}
+
+TEST(LivePacing, ADearStepEndsWhenTheNextStateIsDue) {
+  LivePacing pacing(kBound);
+  double now_s = 10.0;
+  EXPECT_TRUE(std::isinf(pacing.promptDeadline(now_s)));  // nothing is known
+  drive(pacing, now_s, 0.0005, 500);
+  pacing.begin(now_s, now_s, 1);
+  EXPECT_NEAR(pacing.promptDeadline(now_s), now_s + 0.0008, 1e-6);
+  EXPECT_LT(pacing.promptDeadline(now_s), pacing.deadline(now_s));
+  // One that waited for a step gets what steps cost in the mean, so that the wait shrinks.
+  EXPECT_NEAR(pacing.promptDeadline(now_s + 0.0006), now_s + 0.0011, 1e-6);
+  pacing.begin(now_s, now_s, 2);  // both are to be done by then: too much
+  EXPECT_TRUE(std::isinf(pacing.promptDeadline(now_s)));
+}
+
+TEST(LivePacing, ADriverThatPausesIsStillTakenForFast) {
+  LivePacing pacing(kBound);
+  double now_s = 10.0;
+  drive(pacing, now_s, 0.0005, 500);
+  now_s += 3600.0;
+  drive(pacing, now_s, 0.0005, 1);
+  EXPECT_LT(pacing.promptDeadline(now_s), now_s + 0.0012);
+}
+
+TEST(LivePacing, WhereStepsFillTheTimeOnlyTheBoundCounts) {
+  LivePacing pacing(kBound);
+  double now_s = 10.0;
+  drive(pacing, now_s, 0.0009, 500);
+  EXPECT_TRUE(std::isinf(pacing.promptDeadline(now_s)));
+}
+
 }  // namespace
 }  // namespace tissue_contact

@@ -67,6 +67,21 @@ TEST_F(SolverDeadline, StopsTheIterations) {
   }
 }
 
+TEST_F(SolverDeadline, ThePromptOneLeavesTenIterations) {
+  for (const char* method : {"method: predictor_corrector", "method: impulse"}) {
+    now_s_ = 0.0;
+    Simulator simulator = makeSimulator(method);
+    simulator.setSolverDeadline(kNever, 1.0);
+    press(simulator);
+    EXPECT_EQ(simulator.report().iterations, 10) << method;
+    EXPECT_EQ(simulator.report().stop, StopReason::kTimeBudget) << method;
+    now_s_ = 0.0;
+    simulator.setSolverDeadline(5.0, 1.0);  // the other does not wait for them
+    press(simulator);
+    EXPECT_EQ(simulator.report().iterations, 5) << method;
+  }
+}
+
 TEST_F(SolverDeadline, TheEarlierOfItAndTheTimeBudgetCounts) {
   Simulator simulator = makeSimulator("time_budget_s: 3");
   simulator.setSolverDeadline(1000.0);
@@ -102,9 +117,12 @@ TEST_F(SolverDeadline, MethodsWithoutABudgetTakeNoNotice) {
 TEST_F(SolverDeadline, WantsAClockAndANumber) {
   Simulator without_clock = makeSimulator("method: predictor_corrector", false);
   EXPECT_THROW(without_clock.setSolverDeadline(1.0), std::invalid_argument);
+  EXPECT_THROW(without_clock.setSolverDeadline(kNever, 1.0), std::invalid_argument);
   without_clock.setSolverDeadline(kNever);
   Simulator simulator = makeSimulator("method: predictor_corrector");
-  EXPECT_THROW(simulator.setSolverDeadline(std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(simulator.setSolverDeadline(kNan), std::invalid_argument);
+  EXPECT_THROW(simulator.setSolverDeadline(kNever, kNan), std::invalid_argument);
 }
 
 }  // namespace
