@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -17,11 +18,19 @@ namespace {
 
 /// W is held dense: 650 MB at this number. More contacts in one file are refused before anything is allocated.
 constexpr int kMaxContacts = 3000;
+/// What so many contacts take with 17 digits per number; the text is held in memory.
+constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{2} << 30U;
 
 std::string readAll(const std::string& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     throw std::invalid_argument("contact problem file '" + file + "' does not exist or is no regular file");
+  }
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  if (error) throw std::invalid_argument("contact problem file '" + file + "': " + error.message());
+  if (bytes > kMaxFileBytes) {
+    throw std::invalid_argument("contact problem file '" + file + "' has " + std::to_string(bytes) +
+                                " bytes; at most " + std::to_string(kMaxFileBytes) + " are read; leave out contacts");
   }
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
