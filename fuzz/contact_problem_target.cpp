@@ -10,8 +10,8 @@ using namespace tissue_contact;
 
 namespace {
 
-constexpr int kMostContactsSolved = 6;
-constexpr int kIterations = 50;
+constexpr int kMostContactsSolved = 3;
+constexpr int kIterations = 20;
 
 void checkRead(const DelassusProblem& problem) {
   const Eigen::Index size = 3 * problem.contacts();

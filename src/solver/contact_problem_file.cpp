@@ -16,9 +16,8 @@ namespace {
 
 /// W is held dense: 650 MB at this number. More contacts in one file are refused before anything is allocated.
 constexpr int kMaxContacts = 3000;
-
-/// W of kMaxContacts in full, 25 characters a number; a file of our own has fewer.
-constexpr std::uintmax_t kMaxFileBytes = 25ull * 9ull * kMaxContacts * kMaxContacts + (1u << 20);
+/// What so many contacts take with 17 digits per number; the text is held in memory.
+constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{2} << 30U;
 
 /// The words of a file one by one, with the place for messages.
 class Words {

@@ -147,6 +147,19 @@ TEST_F(ContactProblemFile, RefusesWhatIsNoFile) {
   EXPECT_THROW(readContactProblem("/dev/zero"), std::invalid_argument);
 }
 
+TEST_F(ContactProblemFile, RefusesAFileTooLargeBeforeItIsRead) {
+  std::ofstream(file_, std::ios::binary) << kOneContact;
+  std::filesystem::resize_file(file_, std::uintmax_t{3} << 30U);  // a hole: it takes no room on the disk
+  try {
+    readContactProblem(file_);
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("has 3221225472 bytes; at most 2147483648 are read"), std::string::npos)
+        << error.what();
+    EXPECT_NE(std::string(error.what()).find(file_), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(ContactProblemFile, GarbledFilesAreReadOrRefusedButNothingElse) {
   std::mt19937 random(2);
   const std::string good = "FC3D 1\nn 2\nW sparse 6 0 0 1 1 1 1 2 2 1 3 3 1 4 4 1 5 5 1\nq -1 0 0 1 0 0\nmu 0.3 0.4\n";
