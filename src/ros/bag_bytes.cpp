@@ -15,6 +15,8 @@
 #include <new>
 #include <utility>
 
+#include "tissue_contact/core/read_file.h"
+
 namespace tissue_contact {
 namespace {
 
@@ -124,14 +126,14 @@ class Lz4Bytes : public CompressedBytes {
 }  // namespace
 
 InputFile::InputFile(const std::string& name) {
-  const auto refuse = [&](const std::string& why) { return std::runtime_error("bag '" + name + "': " + why); };
+  requireRegularFile(name, "bag");
+  const auto refuse = [&](const std::string& why) { return std::runtime_error("bag '" + name + "' " + why); };
   descriptor_ = open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // O_NONBLOCK: opening a FIFO would wait
-  if (descriptor_ < 0) throw refuse(errno == ENOENT ? "no such file" : std::strerror(errno));
+  if (descriptor_ < 0) throw refuse(std::string("cannot be read: ") + std::strerror(errno));
   struct stat status {};
-  const bool regular = fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);
-  if (!regular) {
+  if (fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
     close(descriptor_);
-    throw refuse("not a regular file; give the file that rosbag has written, not a directory, pipe or device");
+    throw refuse("has been replaced by what is no regular file");
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
 }

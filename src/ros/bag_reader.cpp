@@ -49,7 +49,6 @@ void requireVersion(const InputFile& input) {
   std::string line(std::min<std::uint64_t>(kVersionLine.size(), input.size()), '\0');
   input.read(0, line.data(), line.size());
   if (line == kVersionLine) return;
-  if (line.empty()) throw BagError("the file is empty", BagError::Remedy::kAsSaid);
   if (std::string_view(line).substr(0, kAnyVersion.size()) == kAnyVersion) {
     throw BagError("format " + line.substr(kAnyVersion.size(), 3) +
                        "; only 2.0 is read, into which `rosbag filter old.bag new.bag True` turns it",

@@ -156,7 +156,8 @@ class Replay {
               << implausible_ << " with forces that no tissue bears, " << pinched_ << " with pinched contacts -> "
               << options_.csv_file << "\n"
               << kPrefix << length_s_ << " s of recording in " << wallTime() << " s\n";
-    if (!first_refusal_.empty()) std::cerr << kPrefix << "first refusal: " << first_refusal_ << "\n";
+    if (!first_refusal_.empty())
+      std::cerr << kPrefix << "first refusal in bag '" << options_.bag_file << "': " << first_refusal_ << "\n";
     if (!touched_) summarizeApproach();
   }
 

@@ -62,7 +62,7 @@ class ReplayErrors(unittest.TestCase):
 
     def test_missing_files(self):
         self.assert_refused(self.path("none.yaml"), self.bag, "none.yaml")
-        errors = self.assert_refused(harness.SCENE, self.path("none.bag"), "none.bag", "no such file")
+        errors = self.assert_refused(harness.SCENE, self.path("none.bag"), "none.bag", "does not exist")
         self.assertNotIn("reindex", errors)
         self.assert_refused(harness.SCENE, self.bag, "no_such_folder", csv=self.path("no_such_folder/out.csv"))
 

@@ -149,7 +149,7 @@ TEST_F(JointStateBagTest, FileThatIsNoBag) {
   const std::string none = directory_.file("none.bag");
   const std::optional<std::string> missing = errorOf(none);
   ASSERT_TRUE(missing);
-  EXPECT_EQ(*missing, "bag '" + none + "': no such file");
+  EXPECT_EQ(*missing, "bag '" + none + "' does not exist; correct the path");
   expectRefused("", {"empty"});
   expectRefused("not a bag, but a text", {"no ROS bag"});
   expectRefused("#ROSBAG V2.0\n", {"cut off"});
@@ -160,7 +160,7 @@ TEST_F(JointStateBagTest, FileThatIsNoBag) {
   for (const std::string& file : {pipe, directory_.file(""), std::string("/dev/zero")}) {
     const std::optional<std::string> error = errorOf(file);
     ASSERT_TRUE(error) << file;
-    EXPECT_NE(error->find("bag '" + file + "': not a regular file"), std::string::npos) << *error;
+    EXPECT_NE(error->find("bag '" + file + "' is not a regular file"), std::string::npos) << *error;
   }
 }
 
