@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "contact/triangle_soup.h"
+
 namespace tissue_contact {
 namespace {
 
@@ -42,13 +44,7 @@ class Marcher {
 
   std::size_t count() const { return points_.size() / 3; }
 
-  TriangleMesh mesh() const {
-    TriangleMesh result;
-    result.vertices.resize(3, static_cast<Eigen::Index>(points_.size()));
-    for (std::size_t i = 0; i < points_.size(); ++i) result.vertices.col(static_cast<Eigen::Index>(i)) = points_[i];
-    for (int i = 0; i + 2 < static_cast<int>(points_.size()); i += 3) result.triangles.push_back({i, i + 1, i + 2});
-    return result;
-  }
+  TriangleMesh mesh() const { return triangleSoup(points_); }
 
  private:
   static Vector3 between(const Corner& in, const Corner& out) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "contact/field_cache.h"
+#include "contact/field_jump.h"
 #include "contact/outer_surface.h"
 #include "contact/sample_distance.h"
 #include "contact/triangle_geometry.h"
@@ -156,6 +157,20 @@ MeshField build(const TriangleMesh& mesh, const std::string& name, const MeshPre
   return field;
 }
 
+/// Across an opening of the mesh, wherever one is wider than the samples tell apart.
+void reportJump(const std::string& name, const DistanceGrid& grid, const MeshPreparation& preparation) {
+  const FieldJump jump = widestJump(grid);
+  if (!preparation.say || !(jump.width_m > 0.0)) return;
+  std::array<char, 384> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      ": not closed: at (%.4g, %.4g, %.4g) m of its frame, scaled, is an opening about %.3g mm wide, the widest if "
+      "there are more; inside and outside meet there and the distance jumps, so tissue that gets there is pushed "
+      "suddenly and to a side of the opening; fill it in the mesh, or use a closed mesh or a box, cylinder or sphere",
+      jump.p_S.x(), jump.p_S.y(), jump.p_S.z(), 1e3 * jump.width_m);
+  preparation.say("mesh " + name + text.data());
+}
+
 void report(const std::string& name, std::size_t triangles, const MeshField& field, const std::string& origin,
             const MeshPreparation& preparation) {
   if (!preparation.say) return;
@@ -167,6 +182,7 @@ void report(const std::string& name, std::size_t triangles, const MeshField& fie
                 triangles, grid.size[0], grid.size[1], grid.size[2], 1e3 * grid.spacing, 1e3 * field.largest_deviation,
                 1e3 * field.rms_deviation, 1e3 * field.median_deviation);
   preparation.say("mesh " + name + text.data() + origin);
+  reportJump(name, grid, preparation);
   constexpr double kLargeTool = 2.0;  // m
   const double extent = (field.high - field.low).maxCoeff();
   if (extent > kLargeTool) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "contact/triangle_geometry.h"
+#include "contact/triangle_soup.h"
 
 namespace tissue_contact {
 namespace {
@@ -35,13 +36,7 @@ class OuterSurface {
     add({ab, bc, ca});
   }
 
-  TriangleMesh mesh() const {
-    TriangleMesh result;
-    result.vertices.resize(3, static_cast<Eigen::Index>(points_.size()));
-    for (std::size_t i = 0; i < points_.size(); ++i) result.vertices.col(static_cast<Eigen::Index>(i)) = points_[i];
-    for (int i = 0; i + 2 < static_cast<int>(points_.size()); i += 3) result.triangles.push_back({i, i + 1, i + 2});
-    return result;
-  }
+  TriangleMesh mesh() const { return triangleSoup(points_); }
 
  private:
   /// Of the middle and three points near the corners: how many do not have the inside on both sides.

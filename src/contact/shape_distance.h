@@ -94,7 +94,7 @@ class ShapeDistances {
   explicit ShapeDistances(MeshPreparation preparation) : preparation_(std::move(preparation)) {}
 
   /// The exact signed distance of a shape, of a mesh a sampled one. @throws std::invalid_argument naming a mesh that was
-  ///   not loaded, has no usable triangle or no inside.
+  ///   not loaded, has no usable triangle, a triangle that refers to a vertex it does not have, or no inside.
   std::unique_ptr<ShapeDistance> make(const CollisionShape& shape);
 
  private:
@@ -109,7 +109,7 @@ std::unique_ptr<ShapeDistance> makeSphereDistance(double radius);
 std::unique_ptr<ShapeDistance> makeBoxDistance(const Vector3& half_extents);
 std::unique_ptr<ShapeDistance> makeCylinderDistance(double radius, double half_length);
 
-/// @throws std::invalid_argument for a mesh without usable triangles or without an inside.
+/// @throws std::invalid_argument for a mesh without usable triangles, with an index out of range or without an inside.
 std::unique_ptr<ShapeDistance> makeMeshDistance(const TriangleMesh& mesh);
 
 }  // namespace tissue_contact

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "contact/field_distance.h"
+#include "contact/field_jump.h"
 #include "contact/lowest_on_triangle.h"
 #include "contact_test_utilities.h"
 
@@ -140,6 +142,78 @@ TEST(MeshField, HolesInnerFacesSecondShellsAndReversedPartsKeepTheSign) {
   }
 }
 
+/// What preparing a mesh says.
+std::vector<std::string> saidOf(const TriangleMesh& mesh, const std::string& name) {
+  std::vector<std::string> said;
+  MeshPreparation preparation;
+  preparation.say = [&](const std::string& line) { said.push_back(line); };
+  prepareMeshField(mesh, name, preparation);
+  return said;
+}
+
+/// Says of which opening; no text when there is none.
+std::string openingIn(const TriangleMesh& mesh, const std::string& name) {
+  for (const std::string& line : saidOf(mesh, name)) {
+    if (line.find("not closed") != std::string::npos) return line;
+  }
+  return "";
+}
+
+/// Without the triangles that lie wholly in a box.
+TriangleMesh withoutTrianglesIn(const Eigen::AlignedBox3d& box, TriangleMesh mesh) {
+  const auto is_in = [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](int v) { return box.contains(Vector3(mesh.vertices.col(v))); });
+  };
+  mesh.triangles.erase(std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), is_in), mesh.triangles.end());
+  return mesh;
+}
+
+TEST(MeshField, AWideOpeningIsReportedWithItsPlaceAndWidth) {
+  const Vector3 half(0.01, 0.006, 0.004);
+  const TriangleMesh closed = boxMesh(half, 20);  // cells of 1 x 0.6 x 0.4 mm
+  EXPECT_EQ(openingIn(closed, "closed.stl"), "");
+  // 4 x 2.4 mm in the upper face, between (2, -1.2) and (6, 1.2) mm.
+  const Eigen::AlignedBox3d around(Vector3(0.0019, -0.0013, 0.0039), Vector3(0.0061, 0.0013, 0.0041));
+  const TriangleMesh opened = withoutTrianglesIn(around, closed);
+  ASSERT_EQ(closed.triangles.size() - opened.triangles.size(), 32u);
+  const std::string line = openingIn(opened, "opened.stl");
+  EXPECT_NE(line.find("mesh opened.stl: not closed"), std::string::npos) << line;
+  EXPECT_NE(line.find("fill it in the mesh"), std::string::npos) << line;
+  const FieldJump jump = widestJump(fieldOf(opened)->grid);
+  // Twice the way to the nearest rim. The winding number falls below 0.4 at 0.3 mm outside the opening, and the sign is
+  // found for a block of four samples (0.65 mm) at once where no surface is near, so the rim is up to 1.5 mm away.
+  EXPECT_GE(jump.width_m, 0.0024);
+  EXPECT_LE(jump.width_m, 0.0030);
+  EXPECT_NEAR(jump.p_S.x(), 0.004, 0.001);  // 0.8 mm either way the long sides are the nearest
+  EXPECT_NEAR(jump.p_S.y(), 0.0, 0.0003);
+  EXPECT_GE(jump.p_S.z(), 0.004);
+  EXPECT_LE(jump.p_S.z(), 0.005);
+}
+
+// The winding number closes what the samples cannot tell apart.
+TEST(MeshField, AnOpeningNarrowerThanTwoSamplesIsNotReported) {
+  const TriangleMesh closed =
+      boxMesh({0.01, 0.006, 0.004}, 80);  // cells of 0.25 x 0.15 x 0.1 mm, samples 0.16 mm apart
+  TriangleMesh holed =
+      withoutTrianglesIn({Vector3(-0.00013, -0.00001, 0.0039), Vector3(0.00026, 0.00016, 0.0041)}, closed);
+  EXPECT_EQ(closed.triangles.size() - holed.triangles.size(), 2u);
+  EXPECT_EQ(openingIn(holed, "holed.stl"), "");
+}
+
+TEST(MeshField, AnOpenEndOfARealJawIsReportedAndTheWholeJawNot) {
+  const std::string file = std::string(TISSUE_CONTACT_SHARED_DATA) + "/dvrk_psm/meshes/tool_wrist_caudier_link_2.stl";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no robot in " << file;
+  const TriangleMesh jaw = loadTriangleMesh(file, Vector3::Ones());
+  EXPECT_EQ(openingIn(jaw, file), "");
+  const Vector3 low = jaw.vertices.rowwise().minCoeff();
+  Vector3 high = jaw.vertices.rowwise().maxCoeff();
+  int longest = 0;
+  (high - low).maxCoeff(&longest);
+  high[longest] = low[longest] + 0.1 * (high[longest] - low[longest]);
+  const Eigen::AlignedBox3d end(Vector3(low - Vector3::Constant(1e-6)), Vector3(high + Vector3::Constant(1e-6)));
+  EXPECT_NE(openingIn(withoutTrianglesIn(end, jaw), file), "");
+}
+
 TEST(MeshField, ThinPlateAndNeedleKeepTheirSurfaces) {
   const auto plate = fieldOf(boxMesh({0.01, 0.005, 0.00015}, 2));      // a scissors' blade, 0.3 mm
   const auto needle = fieldOf(boxMesh({0.015, 0.00025, 0.00025}, 2));  // 30 mm long, 0.5 mm thick
@@ -219,6 +293,7 @@ TEST(MeshField, ToolsOfRealRobotsLieWithinATenthOfAMillimetreOfTheirMeshes) {
     const auto field = fieldOf(loadTriangleMesh(data + "/" + file, Vector3::Ones()));
     EXPECT_LT(field->largest_deviation, 1e-4);  // m
     EXPECT_LT(field->rms_deviation, 1e-5);
+    EXPECT_EQ(widestJump(field->grid).width_m, 0.0);
     EXPECT_LT(field->grid.samples.size(), 2000000u);  // 8 MB
   }
 }
@@ -232,6 +307,7 @@ TEST(MeshField, EveryMeshOfTheDvrkBecomesAShape) {
     SCOPED_TRACE(entry.path().string());
     const auto field = fieldOf(loadTriangleMesh(entry.path().string(), Vector3::Ones()));
     EXPECT_LT(field->rms_deviation, 0.11 * field->grid.spacing);
+    EXPECT_EQ(widestJump(field->grid).width_m, 0.0);
     ++count;
   }
   EXPECT_EQ(count, 13);
