@@ -7,7 +7,6 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
-from roscpp.srv import GetLoggers, SetLoggerLevel
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -29,7 +28,6 @@ class Topics(unittest.TestCase):
         tf = harness.Listener("/tf", TFMessage)
         diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
         harness.JointSource().send_all(cls.samples)
-        cls.loggers = cls.call_services()  # while it steps and publishes
         cls.wrenches = listeners["probe/wrench"].wait_for_stamp(cls.last)
         for name, rate in RATES_HZ.items():
             listeners[name].wait(lambda all, count=2 * rate: len(all) >= count, "2 s of messages")
@@ -38,19 +36,6 @@ class Topics(unittest.TestCase):
         cls.transforms = tf.wait(lambda all: all and all[-1].transforms[0].header.stamp == cls.last, "the last transform")
         cls.diagnostics = diagnostics.wait(lambda all: all and "200" in str(all[-1]), "200 joint states")[-1]
         cls.listeners = listeners
-
-    @staticmethod
-    def call_services():
-        """Those of roscpp, which every node has: the names of its loggers."""
-        loggers = rospy.ServiceProxy(NODE + "get_loggers", GetLoggers)
-        level = rospy.ServiceProxy(NODE + "set_logger_level", SetLoggerLevel)
-        for _ in range(20):
-            names = [logger.name for logger in loggers().loggers]
-            level("ros.tissue_contact", "info")
-        return names
-
-    def test_services(self):
-        self.assertIn("ros.tissue_contact", self.loggers)
 
     def stamps(self, name):
         return [m.header.stamp for m in self.listeners[name].messages]
