@@ -160,7 +160,7 @@ class Live(unittest.TestCase):
         process.output.seek(0)
         output = process.output.read()
         self.assertEqual(code, 0, output)
-        self.assertLess(took, 1.0, output)
+        self.assertLess(took, harness.SLOWNESS, output)
         found = COUNTS.search(output)
         self.assertIsNotNone(found, output)
         received, accepted, merged, dropped, refused, waiting, wrenches, _resets = map(int, found.groups()[:8])
@@ -238,7 +238,7 @@ class Live(unittest.TestCase):
 
     def assert_diagnostics_came_all_the_time(self, seen):
         # At 1 Hz. Twice that is for a machine that has other work.
-        self.assertLess(seen["diagnostics silence"], 2.0)
+        self.assertLess(seen["diagnostics silence"], 2.0 * harness.SLOWNESS)
 
     def test_twice_the_work_the_machine_can_do(self):
         cost = self.step_cost()
@@ -251,7 +251,7 @@ class Live(unittest.TestCase):
         self.assertLess(quantile(seen["lags"], 0.5), bound)
         self.assertLess(quantile(seen["own lags"], 0.95), bound)
         self.assertLess(quantile(seen["lags"][-100:], 0.5), bound)  # and it does not grow
-        self.assertLess(seen["silence"], 1.0)
+        self.assertLess(seen["silence"], harness.SLOWNESS)
         self.assert_diagnostics_came_all_the_time(seen)
         self.assertGreater(int(seen["values"]["joint states: merged"]), 0)
         self.assertGreater(int(seen["values"]["intervals with lengthened steps"]), 0)
@@ -282,6 +282,7 @@ class Live(unittest.TestCase):
             self.assertEqual({level for _, level in late}, {WARN, ERROR})
             self.assert_ends_within_a_second(process, signal.SIGINT)
 
+    @unittest.skipIf(harness.SLOWNESS > 1.0, "a slow build on a busy machine takes a driver's states for a recording's")
     def test_the_demo_at_430_hz_on_a_busy_machine(self):
         busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(os.cpu_count())]
 
@@ -296,7 +297,7 @@ class Live(unittest.TestCase):
                 process.wait()
         self.assert_newest_state_was_chosen(seen)
         self.assert_diagnostics_came_all_the_time(seen)
-        self.assertLess(seen["silence"], 1.0)
+        self.assertLess(seen["silence"], harness.SLOWNESS)
         # Others decide when the node may run, so its own bound of 0.02 s cannot hold for every wrench. But it does not grow:
         # stepping through every state, this lags by seconds after the 8 s. And whatever is over the bound is told.
         self.assertLess(quantile(seen["lags"][-40:], 0.5), 0.5)
@@ -345,7 +346,7 @@ class Live(unittest.TestCase):
                     if len(messages) < 3:
                         return False
                     values = [values_of(m) for m in messages[-3:]]
-                    return (values[-1]["joint states: waiting"] != "0" and values[0]["steps"] == values[-1]["steps"] and
+                    return (values[-1]["joint states: waiting"] != "0" and values[0].get("steps") == values[-1]["steps"] and
                             float(values[-1]["lag_s"]) > 2.0 and messages[-1].status[0].level >= WARN)
                 diagnostics.wait(hangs, "a step that lasts")
                 self.assertEqual(self.assert_ends_within_a_second(process, number)["received"], 100)

@@ -246,6 +246,9 @@ TEST_F(LoadTriangleMesh, MalformedDaeThatCrashesAssimpIsRefused) {
 }
 
 TEST_F(LoadTriangleMesh, MalformedDaeThatMakesAssimpAllocateWithoutEndIsRefused) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer reports where memory ends, and throws no std::bad_alloc";
+#endif
   std::string text = dae("1", "Z_UP", "<node><instance_geometry url=\"#g\"/></node>");
   text.replace(text.find("<p>0 2 1"), 8, "<p>0 x 1");
   expectContains(refusalOf("endless.dae", text), {"cannot be read", "too much memory"});
