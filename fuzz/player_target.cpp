@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "fuzz/fuzz_support.h"
@@ -16,9 +17,12 @@ using namespace tissue_contact;
 namespace {
 
 constexpr int kMostRecords = 32;
-/// A tool that strikes at hundreds of metres per second throws nodes farther than it goes itself, until the tissue pulls them
-/// back. What diverges doubles every few steps.
-constexpr double kFartherThanTools = 100.0;
+/// Nodes go no farther than tools and tissue reach, or little. What diverges doubles every few steps.
+constexpr double kFartherThanTools = 10.0;
+/// Not promised yet (doc/reliability.md): tools faster than that throw tissue, and a step so short pushes what is left of a
+/// penetration out at its depth over the step.
+constexpr double kShortestInterval = 1e-3;  // s
+constexpr double kFastestTool = 2.0;        // m/s; real ones move at up to 0.5
 /// Twice Young's modulus (LoadWatch::kMostPressure) on the whole surface of the block, 20 x 20 x 10 mm: beyond it a load must
 /// be flagged.
 constexpr double kMostForce = 2.0 * 5000.0 * 1.6e-3;  // N
@@ -107,13 +111,19 @@ class Run {
   explicit Run(Simulator& simulator) : simulator_(simulator), player_(simulator) {
     limits_.most_steps = kMostSteps;
     player_.setLimits(limits_);
+    for (int i = 0; i < static_cast<int>(simulator.instruments().size()); ++i) {
+      joints_before_.push_back(simulator.jointPositions(i));
+    }
   }
 
   std::uint64_t play(fuzz::Bytes bytes) {
     for (int k = 0; k < kMostRecords && bytes.left() > 0; ++k) act(Record(bytes));
     player_.finish();
     playAll();
-    fuzz::require(player_.waiting() == 0, "nothing waits after the end");
+    // Under kNewestState what came late waits for a next moment to be merged into.
+    if (player_.policy() == StatePolicy::kEveryState) {
+      fuzz::require(player_.waiting() <= updates_, "after the end only joints wait whose topic triggers nothing");
+    }
     addCounts();
     return digest_.value();
   }
@@ -159,6 +169,7 @@ class Run {
     spoil(record, sample);
     player_.push(record.topic % 3, std::move(sample));
     ++pushed_;
+    if (!player_.triggers(record.topic % 3)) ++updates_;
   }
 
   /// Most contents are as they should be.
@@ -218,15 +229,27 @@ class Run {
     for (const int instrument : played.instruments) digest_.add(instrument);
   }
 
-  void checkState() {
+  void watchTools() {
+    constexpr double kMaxGap = 0.02;  // s, of the scene: what is longer is simulated as that long
+    // After a reset tools are placed.
+    const double passed_s = std::min(1e-9 * static_cast<double>(last_moment_ns_ - moment_before_ns_), kMaxGap);
     for (int i = 0; i < static_cast<int>(simulator_.instruments().size()); ++i) {
-      farthest_m_ = std::max(farthest_m_, simulator_.jointPositions(i).cwiseAbs().maxCoeff());
+      const VectorX& now = simulator_.jointPositions(i);
+      const VectorX before = std::exchange(joints_before_.at(static_cast<std::size_t>(i)), now);
+      farthest_m_ = std::max(farthest_m_, now.cwiseAbs().maxCoeff());
+      was_fast_ |= passed_s > 0.0 && passed_s < kShortestInterval;
+      was_fast_ |= passed_s > 0.0 && (now - before).norm() > kFastestTool * passed_s;
     }
+    moment_before_ns_ = last_moment_ns_;
+  }
+
+  void checkState() {
+    watchTools();
     for (int t = 0; t < static_cast<int>(simulator_.tissues().size()); ++t) {
       const NodalVectors& x = simulator_.positions(t);
       const NodalVectors& v = simulator_.velocities(t);
       fuzz::require(x.allFinite() && v.allFinite(), "finite nodes");
-      fuzz::require(x.cwiseAbs().maxCoeff() < kFartherThanTools * farthest_m_, "nodes that no tool threw so far");
+      fuzz::require(was_fast_ || x.cwiseAbs().maxCoeff() < kFartherThanTools * farthest_m_, "nodes that stay near");
       for (Eigen::Index i = 0; i < x.size(); ++i) digest_.add(x.data()[i]);
       for (Eigen::Index i = 0; i < v.size(); ++i) digest_.add(v.data()[i]);
     }
@@ -253,7 +276,11 @@ class Run {
   Digest digest_;
   std::int64_t stamps_ns_[3] = {10000000000, 10000000000, 10000000000};
   std::int64_t pushed_ = 0;
+  std::int64_t updates_ = 0;  ///< of these, to the topic that only updates
   std::int64_t last_moment_ns_ = 0;
+  std::int64_t moment_before_ns_ = 0;
+  std::vector<VectorX> joints_before_;
+  bool was_fast_ = false;
   double farthest_m_ = 0.03;  ///< of tissue or tools from the origin, so far
 };
 
