@@ -74,9 +74,10 @@ class Arrivals:
     def _take(self, _message):
         self.times.append(time.monotonic())
 
-    def longest_silence(self, start, end):
+    def longest_silence(self, start, end, excused=lambda a, b: 0.0):
+        """excused(a, b): how much of the time between the two is not for the sender to answer for."""
         times = [start] + [t for t in self.times if start <= t <= end] + [end]
-        return max(b - a for a, b in zip(times, times[1:]))
+        return max(b - a - excused(a, b) for a, b in zip(times, times[1:]))
 
 
 class RunDelay:
@@ -212,7 +213,7 @@ class Live(unittest.TestCase):
             seen["own lags"] = [lag - delay.between(at - lag - 0.01, at)
                                 for at, lag in zip(lag_arrivals.times, seen["lags"]) if at < end]
             seen["wrenches"] = list(wrenches.messages)
-            seen["silence"] = answers.longest_silence(first, end)
+            seen["silence"] = answers.longest_silence(first, end, delay.between)
             seen["diagnostics silence"] = told.longest_silence(start, end)
             seen["bulky"] = [len(b.times) for b in bulky]
             driver = Driver(rate_hz, path)  # under load again

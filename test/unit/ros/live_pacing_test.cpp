@@ -118,8 +118,8 @@ TEST(LivePacing, LearnsFastThatStepsAreDearAndSlowlyThatTheyAreCheap) {
   EXPECT_GE(pacing.mostSteps(), 99);
 }
 
-/// Two arms at 50 Hz, 10 ms apart, each with a topic of its own, whose steps cost what they like: the other arm's next
-/// state comes 10 ms later, and the own next one 20 ms later. Runs what the node's stepping thread does, on an artificial
+/// Two arms at 50 Hz, 1 ms apart, each with a topic of its own: the second's state has the other's next one 19 ms later,
+/// and its own next 20 ms later, to wait for. Runs what the node's stepping thread does, on an artificial
 /// clock. @return the largest lag of a wrench behind the receipt of its state.
 double worstLagOfTwoArms(double step_cost_s, int& wrenches) {
   const char* const scene = R"(
@@ -141,11 +141,10 @@ step: {max_step_s: 0.001, max_lag_s: 0.02}
   player.setPolicy(StatePolicy::kNewestState);
   ReceiptTimes receipts(2);
   LivePacing pacing(kBound);
-  constexpr double kPeriod = 0.01;
   double now_s = 100.0;
   int next = 0;
   double worst_s = 0.0;
-  const auto arrival = [](int i) { return 100.0 + kPeriod * i; };
+  const auto arrival = [](int i) { return 100.0 + 0.02 * (i / 2) + 0.001 * (i % 2); };
   while (next < 200) {
     // Waits: for the next state, or until the earliest has waited long enough.
     double until_s = arrival(next);
