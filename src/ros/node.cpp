@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "tissue_contact/ros/environment.h"
+#include "tissue_contact/ros/logger_service.h"
 #include "tissue_contact/ros/private_parameters.h"
 #include "tissue_contact/scene/load_scene.h"
 
@@ -87,6 +88,7 @@ int Node::run() {
   outputs_.start([this] { inbox_.wake(); });
   stepper_.start();
   receiver_.start(player_.topics());
+  loggers_ = advertiseLoggers(private_node_);
   master_.start();
   diagnostics_thread_ = std::thread([this] { tellDiagnostics(); });
   constexpr double kWakeUp = 0.05;  // s: how long a signal may go unseen

@@ -24,6 +24,7 @@ std::int64_t toNanoseconds(double seconds) {
 JointStatePlayer::JointStatePlayer(Simulator& simulator)
     : simulator_(simulator),
       max_gap_ns_(toNanoseconds(simulator.scene().step.max_gap_s)),
+      shortest_ns_(toNanoseconds(kShortestShare * simulator.scene().step.max_step_s)),
       live_wait_ns_(std::min(max_gap_ns_, toNanoseconds(kWaitShare * simulator.scene().step.max_lag_s))),
       owes_(simulator.instruments().size(), false) {
   const std::vector<InstrumentDescription>& instruments = simulator.scene().instruments;
@@ -253,12 +254,14 @@ void JointStatePlayer::startLoop() {
   simulator_.reset();
   forgetJoints();
   time_ns_.reset();
+  behind_ns_ = 0;
   ++resets_;
 }
 
 /// Where time was before the stamps far off; the tissues and joints stay as these have left them.
 void JointStatePlayer::resume() {
   time_ns_ = resumption_->from_ns;
+  behind_ns_ = 0;
   for (Topic& topic : topic_states_) topic.taken.reset();
 }
 
@@ -341,9 +344,10 @@ void JointStatePlayer::placeNewJoints() {
 }
 
 void JointStatePlayer::advanceTo(std::int64_t stamp_ns, PlayedSample& played) {
-  std::int64_t interval_ns = time_ns_ ? stamp_ns - *time_ns_ : 0;
+  std::int64_t interval_ns = time_ns_ ? stamp_ns - *time_ns_ + behind_ns_ : 0;
   time_ns_ = stamp_ns;
-  if (interval_ns == 0) return;
+  behind_ns_ = interval_ns < shortest_ns_ ? interval_ns : 0;
+  if (interval_ns == 0 || behind_ns_ > 0) return;
   if (interval_ns > max_gap_ns_) {
     interval_ns = max_gap_ns_;
     played.was_gap = true;

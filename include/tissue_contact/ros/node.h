@@ -4,6 +4,7 @@
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
+#include <ros/service_server.h>
 
 #include <atomic>
 #include <condition_variable>
@@ -64,6 +65,7 @@ class Node {
   Outputs outputs_;
   Stepper stepper_;
   Receiver receiver_;
+  ros::ServiceServer loggers_;
   MasterWatch master_;
   std::atomic<bool> counts_told_{false};
 

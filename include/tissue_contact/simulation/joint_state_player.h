@@ -78,6 +78,10 @@ struct PlayedSample {
 /// the simulation, without a reset. A looped recording shorter than max_gap_s needs restart(); without it passes are
 /// refused as late until their stamps have gone through max_gap_s, and the next pass is a loop.
 ///
+/// An interval shorter than a tenth of max_step_s (kShortestShare) is jitter of stamps or another topic's clock, and no time
+/// in which to move a tool: the tissues stay, the moment's wrenches are those of the step before, and its time and motion
+/// are part of the next interval.
+///
 /// Counts. pushed = accepted + merged + refused (count() of the other verdicts) + waiting(), at any time. Accepted are
 /// the samples of moments that were played, and those of update-only topics up to them. Merged are those that were
 /// passed over: under kNewestState older moments, which only shape the motion by their last positions; and those
@@ -93,6 +97,7 @@ struct PlayedSample {
 class JointStatePlayer {
  public:
   /// Of max_lag_s, under kNewestState; the rest is for the steps.
+  static constexpr double kShortestShare = 0.1;  ///< of max_step_s
   static constexpr double kWaitShare = 0.25;
   /// Samples that may wait for another topic: 20 s of one 500 Hz topic. Beyond it nothing waits.
   static constexpr std::size_t kMaxWaiting = 10000;
@@ -212,6 +217,7 @@ class JointStatePlayer {
 
   Simulator& simulator_;
   std::int64_t max_gap_ns_;
+  std::int64_t shortest_ns_;   ///< interval that is simulated
   std::int64_t live_wait_ns_;  ///< message time that a topic is waited for under kNewestState
   StatePolicy policy_ = StatePolicy::kEveryState;
   AdvanceLimits limits_;
@@ -226,7 +232,8 @@ class JointStatePlayer {
   enum class Heard { kNever, kNow, kBefore };
   std::vector<std::vector<Heard>> heard_;  ///< per instrument and joint: since the last reset; kNow: to be placed
   std::vector<bool> owes_;                 ///< per instrument: has a triggering sample without a wrench
-  std::optional<std::int64_t> time_ns_;    ///< stamp the simulator is at
+  std::optional<std::int64_t> time_ns_;    ///< stamp of the moment played last
+  std::int64_t behind_ns_ = 0;             ///< by how much the simulator is behind that, < shortest_ns_
   int epoch_ = 0;                          ///< loop being played
   bool finished_ = false;
   std::array<std::int64_t, kVerdictCount> counts_{};

@@ -44,6 +44,38 @@ TEST(JointStateTime, AStampALittleBackIsLateAndChangesNoBit) {
   EXPECT_TRUE(got == run(without, 0));
 }
 
+/// Half a millimetre within 280 ns would be a tool at 1800 m/s.
+TEST(JointStateTime, AStampALittleAheadIsPartOfTheNextInterval) {
+  std::vector<JointStateSample> jittered = press(kSecond, 0.006);
+  jittered[20].stamp_ns = jittered[19].stamp_ns + 280;
+  std::vector<JointStateSample> without = press(kSecond, 0.006);
+  without.erase(without.begin() + 20);
+  const Trace got = run(jittered, 0);
+  Trace expected = run(without, 0);
+  // One row more, with the wrench of the step before; all others to the bit.
+  ASSERT_EQ(got.stamps.size(), expected.stamps.size() + 1);
+  expected.stamps.insert(expected.stamps.begin() + 20, jittered[20].stamp_ns);
+  const std::vector<double> before(expected.forces.begin() + 19 * 6, expected.forces.begin() + 20 * 6);
+  expected.forces.insert(expected.forces.begin() + 20 * 6, before.begin(), before.end());
+  EXPECT_TRUE(got.pressed());
+  EXPECT_TRUE(got == expected);
+}
+
+/// States faster than the shortest step are steps as soon as their intervals add up to one.
+TEST(JointStateTime, IntervalsTooShortAddUp) {
+  const auto simulator = oneProbe();
+  const auto shortest_ns =
+      static_cast<std::int64_t>(1e9 * JointStatePlayer::kShortestShare * simulator->scene().step.max_step_s);
+  JointStatePlayer player(*simulator);
+  constexpr int kStates = 101;
+  for (int k = 0; k < kStates; ++k) {
+    player.push(0, sample(kSecond + k * shortest_ns / 10, 0.0));
+    drain(player);
+  }
+  EXPECT_EQ(player.count(Verdict::kAccepted), kStates);
+  EXPECT_EQ(simulator->stepCount(), (kStates - 1) / 10);
+}
+
 TEST(JointStateTime, UpToMaxGapBackIsLateAndFartherBackALoop) {
   const auto simulator = oneProbe();
   JointStatePlayer player(*simulator);
