@@ -73,8 +73,6 @@ Pose waitForFrame(const std::string& frame, const std::string& world_frame, doub
   return toPose(buffer.lookupTransform(world_frame, frame, ros::Time(0)).transform);
 }
 
-}
-
 }  // namespace
 
 double steadySeconds() {
