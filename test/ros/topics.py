@@ -7,6 +7,7 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
+from roscpp.srv import GetLoggers, SetLoggerLevel
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -86,6 +87,16 @@ class Topics(unittest.TestCase):
                 self.assertLess(c.normal.z, 0.0)  # from the probe down into the tissue
                 states.add(c.state)
         self.assertIn(ContactPoint.KINETIC, states)
+
+    def test_loggers_are_listed_more_than_once(self):
+        """rosconsole's own service ends the process at the second call."""
+        level_of = rospy.ServiceProxy(NODE + "get_loggers", GetLoggers)
+        set_level = rospy.ServiceProxy(NODE + "set_logger_level", SetLoggerLevel)
+        for level in ["warn", "error", "info"]:
+            set_level("ros.tissue_contact", level)
+            levels = {logger.name: logger.level for logger in level_of().loggers}
+            self.assertEqual(levels["ros.tissue_contact"], level)
+            self.assertEqual(levels["ros.roscpp"], "info")
 
     def test_status(self):
         last = self.listeners["status"].messages[-1]
