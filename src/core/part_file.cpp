@@ -169,7 +169,11 @@ void PartFile::place() {
   finish();
   if (part_name_.empty()) giveName();
   if (!file_.close()) fail(errno);
-  place_.look();  // another program may have put something there meanwhile
+  try {
+    place_.look();                                // another program may have put something there meanwhile
+  } catch (const std::invalid_argument& error) {  // nobody's argument was wrong when the run began
+    throw std::runtime_error(error.what());
+  }
   if (renameat(place_.directory.number(), part_name_.c_str(), place_.directory.number(), place_.name.c_str()) != 0) {
     fail(errno);
   }

@@ -14,8 +14,6 @@
 namespace tissue_contact {
 namespace {
 
-/// W is held dense: 650 MB at this number. More contacts in one file are refused before anything is allocated.
-constexpr int kMaxContacts = 3000;
 /// What so many contacts take with 17 digits per number; the text is held in memory.
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{2} << 30U;
 
@@ -141,7 +139,7 @@ DelassusProblem readContactProblem(const std::string& file) {
   words.expect("FC3D");
   words.expect("1");
   words.expect("n");
-  const int contacts = words.integer("the number of contacts", 1, kMaxContacts);
+  const int contacts = words.integer("the number of contacts", 1, kMostDenseContacts);
   words.requireRoomFor(4.0 * contacts, "q and mu");
   words.expect("W");
   DelassusProblem problem;

@@ -23,6 +23,11 @@ struct DelassusSystem::Bodies {
   DelassusProblem problem;
 
   explicit Bodies(const ContactProblem& all) : contacts(all) {
+    if (contacts.contacts.size() > static_cast<std::size_t>(kMostDenseContacts)) {
+      throw std::invalid_argument(
+          std::to_string(contacts.contacts.size()) + " contacts in one step; a dense problem has at most " +
+          std::to_string(kMostDenseContacts) + "; use method: predictor_corrector or a coarser mesh");
+    }
     for (std::size_t k = 0; k < contacts.bodies.size(); ++k) addBody(k);
     const Eigen::Index n = static_cast<Eigen::Index>(contacts.contacts.size());
     problem.W.setZero(3 * n, 3 * n);

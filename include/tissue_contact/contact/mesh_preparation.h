@@ -1,5 +1,5 @@
 /// @file
-/// Room `contact`: how mesh shapes are prepared at start-up.
+/// Room `contact`: how mesh shapes are prepared at start-up, and where progress of that is told.
 #pragma once
 
 #include <functional>
@@ -10,8 +10,9 @@ namespace tissue_contact {
 /// All members may be empty: no cache, nothing said.
 struct MeshPreparation {
   std::string cache_directory;  ///< made when missing; a directory that cannot be used is said once
-  std::function<void(const std::string& line)> say;  ///< progress of more than a second, and one line per mesh
-  std::function<double()> clock;                     ///< seconds, for those lines alone
+  /// Progress of more than a second, one line per mesh, and where large tissues are built.
+  std::function<void(const std::string& line)> say;
+  std::function<double()> clock;  ///< seconds, for those lines alone
 };
 
 }  // namespace tissue_contact

@@ -96,9 +96,8 @@ struct PlayedSample {
 /// thread-safe.
 class JointStatePlayer {
  public:
-  /// Of max_lag_s, under kNewestState; the rest is for the steps.
   static constexpr double kShortestShare = 0.1;  ///< of max_step_s
-  static constexpr double kWaitShare = 0.25;
+  static constexpr double kWaitShare = 0.25;     ///< of max_lag_s, under kNewestState; the rest is for the steps
   /// Samples that may wait for another topic: 20 s of one 500 Hz topic. Beyond it nothing waits.
   static constexpr std::size_t kMaxWaiting = 10000;
 

@@ -13,6 +13,9 @@
 
 namespace tissue_contact {
 
+/// Contacts of a dense problem: W takes 650 MB at this number, and is not made for more, from a file or from a step.
+constexpr int kMostDenseContacts = 3000;
+
 /// Per contact three rows (n, t1, t2): u = W r + q, 0 <= u_n  _|_  r_n >= 0, Coulomb friction. u_n here has the
 /// velocity that closes the gap already taken off (u_n - required_u_n of ContactRow).
 struct DelassusProblem {

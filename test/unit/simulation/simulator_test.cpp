@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "tissue_contact/simulation/instrument_motion.h"
 #include "validation/text_scene.h"
 
 namespace tissue_contact {
@@ -184,6 +185,15 @@ TEST(Simulator, JumpIsNotSweptAndStaysFinite) {
   EXPECT_FALSE(simulator.report().jumped);
   // Released: back at rest, up to what damping leaves after 0.3 s.
   EXPECT_LT((simulator.positions(0) - simulator.tissues()[0].restPositions()).colwise().norm().maxCoeff(), 1e-5);
+}
+
+TEST(Simulator, MotionFasterThanAnyInstrumentIsAJump) {
+  for (const double speed : {0.9 * InstrumentMotion::kFastestMotion, 1.1 * InstrumentMotion::kFastestMotion}) {
+    Simulator simulator = makeScene();
+    simulator.advance(0.001, {Vector3(0.001 * speed, 0.0, 0.0)});  // few travel steps, in the air
+    EXPECT_EQ(simulator.report().jumped, speed > InstrumentMotion::kFastestMotion) << speed;
+    EXPECT_EQ(simulator.jointPositions(0), VectorX(Vector3(0.001 * speed, 0.0, 0.0)));
+  }
 }
 
 // A full turn within one interval ends where it began: it must not count as standing still.
