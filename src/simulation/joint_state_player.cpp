@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -24,7 +26,7 @@ std::int64_t toNanoseconds(double seconds) {
 JointStatePlayer::JointStatePlayer(Simulator& simulator)
     : simulator_(simulator),
       max_gap_ns_(toNanoseconds(simulator.scene().step.max_gap_s)),
-      shortest_ns_(toNanoseconds(kShortestShare * simulator.scene().step.max_step_s)),
+      shortest_ns_(toNanoseconds(std::min(kShortest_s, kShortestShare * simulator.scene().step.max_step_s))),
       live_wait_ns_(std::min(max_gap_ns_, toNanoseconds(kWaitShare * simulator.scene().step.max_lag_s))),
       owes_(simulator.instruments().size(), false) {
   const std::vector<InstrumentDescription>& instruments = simulator.scene().instruments;
@@ -65,6 +67,7 @@ void JointStatePlayer::push(int topic, JointStateSample sample) {
     refuse(verdict, topic, sample.stamp_ns, detail);
     return;
   }
+  keepKnown(topic_states_[static_cast<std::size_t>(topic)], sample);
   place(topic, std::move(sample));
 }
 
@@ -89,7 +92,7 @@ void JointStatePlayer::place(int topic, JointStateSample sample) {
     case ClockRuling::kLoops:
       return accept(topic, epoch + 1, std::move(sample));
     case ClockRuling::kResumes:
-      resumption_ = Resumption{newest + 1, state.clock.resumedFrom()};
+      resumptions_[newest + 1] = state.clock.resumedFrom();
       return accept(topic, newest + 1, std::move(sample));
     case ClockRuling::kHeld:
       ++waiting_;
@@ -98,6 +101,27 @@ void JointStatePlayer::place(int topic, JointStateSample sample) {
     default:
       refuseByClock(ruling, topic, sample.stamp_ns, was_late);
   }
+}
+
+/// Keeps the joints that the topic's instruments know, each once: what waits is no larger than they are.
+void JointStatePlayer::keepKnown(const Topic& topic, JointStateSample& sample) const {
+  constexpr std::size_t kUsual = 100;  // names; so many may be there twice
+  const auto is_known = [&](const std::string& name) {
+    return std::any_of(topic.listeners.begin(), topic.listeners.end(), [&](const Listener& listener) {
+      return simulator_.instruments()[static_cast<std::size_t>(listener.instrument)].jointOfRecordedName(name) >= 0;
+    });
+  };
+  if (sample.names.size() <= kUsual && std::all_of(sample.names.begin(), sample.names.end(), is_known)) return;
+  JointStateSample known{sample.stamp_ns, {}, {}};
+  std::set<std::string> seen;
+  for (std::size_t k = sample.names.size(); k-- > 0;) {  // of one name the last position counts
+    if (!is_known(sample.names[k]) || !seen.insert(sample.names[k]).second) continue;
+    known.names.push_back(std::move(sample.names[k]));
+    known.positions.push_back(sample.positions[k]);
+  }
+  std::reverse(known.names.begin(), known.names.end());
+  std::reverse(known.positions.begin(), known.positions.end());
+  sample = std::move(known);
 }
 
 void JointStatePlayer::accept(int topic, int epoch, JointStateSample sample) {
@@ -239,10 +263,11 @@ std::optional<PlayedSample> JointStatePlayer::playNext() {
 
 void JointStatePlayer::play(const Moment& moment, PlayedSample& played) {
   if (moment.epoch > epoch_) {
-    played.was_resumed = resumption_ && resumption_->epoch == moment.epoch && time_ns_;
+    played.was_resumed = resumes(moment);
     played.was_reset = !played.was_resumed;
-    played.was_reset ? startLoop() : resume();
+    played.was_reset ? startLoop() : resume(moment);
     epoch_ = moment.epoch;
+    resumptions_.erase(resumptions_.begin(), resumptions_.upper_bound(epoch_));
   }
   for (std::size_t t = 0; t < topic_states_.size(); ++t) take(moment, static_cast<int>(t), played);
   placeNewJoints();
@@ -258,9 +283,16 @@ void JointStatePlayer::startLoop() {
   ++resets_;
 }
 
-/// Where time was before the stamps far off; the tissues and joints stay as these have left them.
-void JointStatePlayer::resume() {
-  time_ns_ = resumption_->from_ns;
+/// Whether no loop that is a new beginning lies between the one played last and the moment's.
+bool JointStatePlayer::resumes(const Moment& moment) const {
+  const auto known = std::distance(resumptions_.upper_bound(epoch_), resumptions_.upper_bound(moment.epoch));
+  return time_ns_ && known == moment.epoch - epoch_;
+}
+
+/// Where time was before the stamps far off; the tissues and joints stay as these have left them. The first moment may
+/// be another topic's that was not so far.
+void JointStatePlayer::resume(const Moment& moment) {
+  time_ns_ = std::min(resumptions_.at(moment.epoch), moment.stamp_ns);
   behind_ns_ = 0;
   for (Topic& topic : topic_states_) topic.taken.reset();
 }

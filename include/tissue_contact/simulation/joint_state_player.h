@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -78,8 +79,8 @@ struct PlayedSample {
 /// the simulation, without a reset. A looped recording shorter than max_gap_s needs restart(); without it passes are
 /// refused as late until their stamps have gone through max_gap_s, and the next pass is a loop.
 ///
-/// An interval shorter than a tenth of max_step_s (kShortestShare) is jitter of stamps or another topic's clock, and no time
-/// in which to move a tool: the tissues stay, the moment's wrenches are those of the step before, and its time and motion
+/// An interval shorter than 100 us (kShortest_s), or than a tenth of max_step_s (kShortestShare), is jitter of stamps or
+/// another topic's clock, and no time in which to move a tool: the tissues stay, the moment's wrenches are those of the step before, and its time and motion
 /// are part of the next interval.
 ///
 /// Counts. pushed = accepted + merged + refused (count() of the other verdicts) + waiting(), at any time. Accepted are
@@ -97,7 +98,8 @@ struct PlayedSample {
 class JointStatePlayer {
  public:
   static constexpr double kShortestShare = 0.1;  ///< of max_step_s
-  static constexpr double kWaitShare = 0.25;     ///< of max_lag_s, under kNewestState; the rest is for the steps
+  static constexpr double kShortest_s = 1e-4;
+  static constexpr double kWaitShare = 0.25;  ///< of max_lag_s, under kNewestState; the rest is for the steps
   /// Samples that may wait for another topic: 20 s of one 500 Hz topic. Beyond it nothing waits.
   static constexpr std::size_t kMaxWaiting = 10000;
 
@@ -181,12 +183,6 @@ class JointStatePlayer {
     std::int64_t last_ns = 0;   ///< newest stamp in it
   };
 
-  /// A loop that goes on where another was.
-  struct Resumption {
-    int epoch = 0;
-    std::int64_t from_ns = 0;
-  };
-
   void refuse(Verdict verdict, int topic, std::int64_t stamp_ns, const std::string& detail);
   void refuseHeld(int topic);
   Verdict judgeContent(const JointStateSample& sample, const Topic& topic, std::string& detail) const;
@@ -194,6 +190,8 @@ class JointStatePlayer {
   bool joinsNewest(std::int64_t stamp_ns, const Topic& topic) const;
   void place(int topic, JointStateSample sample);
   void refuseByClock(ClockRuling ruling, int topic, std::int64_t stamp_ns, bool was_late);
+  void keepKnown(const Topic& topic, JointStateSample& sample) const;
+  bool resumes(const Moment& moment) const;
   void accept(int topic, int epoch, JointStateSample sample);
   void acceptHeld(int topic, int epoch);
   void noteMoment(const Moment& moment);
@@ -209,7 +207,7 @@ class JointStatePlayer {
   void headForNext(const Moment& moment, const Topic& topic);
   void placeNewJoints();
   void startLoop();
-  void resume();
+  void resume(const Moment& moment);
   void forgetJoints();
   void advanceTo(std::int64_t stamp_ns, PlayedSample& played);
   void settle(PlayedSample& played);
@@ -224,10 +222,11 @@ class JointStatePlayer {
   std::vector<Topic> topic_states_;
   std::deque<PlayedSample> refused_;  ///< not yet reported
   std::optional<NewestLoop> newest_;
-  std::optional<Moment> released_;        ///< nothing up to it waits for a topic
-  std::optional<Resumption> resumption_;  ///< the newest
-  std::size_t waiting_ = 0;               ///< samples in all queues
-  std::vector<VectorX> targets_;          ///< joint positions at the moment played last, per instrument
+  std::optional<Moment> released_;  ///< nothing up to it waits for a topic
+  /// Loops that go on where an earlier one was, and the stamp there; those not yet played.
+  std::map<int, std::int64_t> resumptions_;
+  std::size_t waiting_ = 0;       ///< samples in all queues
+  std::vector<VectorX> targets_;  ///< joint positions at the moment played last, per instrument
   enum class Heard { kNever, kNow, kBefore };
   std::vector<std::vector<Heard>> heard_;  ///< per instrument and joint: since the last reset; kNow: to be placed
   std::vector<bool> owes_;                 ///< per instrument: has a triggering sample without a wrench

@@ -65,7 +65,8 @@ TEST(JointStateTime, AStampALittleAheadIsPartOfTheNextInterval) {
 TEST(JointStateTime, IntervalsTooShortAddUp) {
   const auto simulator = oneProbe();
   const auto shortest_ns =
-      static_cast<std::int64_t>(1e9 * JointStatePlayer::kShortestShare * simulator->scene().step.max_step_s);
+      static_cast<std::int64_t>(1e9 * std::min(JointStatePlayer::kShortest_s,
+                                               JointStatePlayer::kShortestShare * simulator->scene().step.max_step_s));
   JointStatePlayer player(*simulator);
   constexpr int kStates = 101;
   for (int k = 0; k < kStates; ++k) {
@@ -74,6 +75,59 @@ TEST(JointStateTime, IntervalsTooShortAddUp) {
   }
   EXPECT_EQ(player.count(Verdict::kAccepted), kStates);
   EXPECT_EQ(simulator->stepCount(), (kStates - 1) / 10);
+}
+
+/// One outlier on one of two topics; the other's next stamp lies before the last one before the outlier.
+TEST(JointStateTime, AnotherTopicMayBeBehindWhereTimeIsResumed) {
+  for (const StatePolicy policy : {StatePolicy::kEveryState, StatePolicy::kNewestState}) {
+    const auto simulator = twoProbes();
+    JointStatePlayer player(*simulator);
+    player.setPolicy(policy);
+    const std::int64_t start = 100 * kSecond;
+    int pushed = 0;
+    int resumed = 0;
+    std::int64_t last = 0;
+    const auto play = [&](int topic, std::int64_t stamp_ns) {
+      player.push(topic, sample(stamp_ns, 0.0));
+      ++pushed;
+      for (const PlayedSample& played : drain(player)) {
+        resumed += static_cast<int>(played.was_resumed);
+        if (played.verdict == Verdict::kAccepted) last = played.stamp_ns;
+      }
+    };
+    play(1, start);
+    play(0, start + 45 * kMillisecond);
+    play(0, 50 * start);
+    play(0, start + 46 * kMillisecond);
+    for (int k = 1; k < 20; ++k) {
+      play(1, start + 10 * k * kMillisecond);
+      if (k > 5) play(0, start + (10 * k + 1) * kMillisecond);
+    }
+    player.finish();
+    drain(player);
+    EXPECT_EQ(player.resets(), 0);
+    EXPECT_LE(resumed, 1);
+    EXPECT_GT(last, start + 150 * kMillisecond);
+    std::int64_t counted = player.merged() + player.waiting();
+    for (int v = 0; v < kVerdictCount; ++v) counted += player.count(static_cast<Verdict>(v));
+    EXPECT_EQ(counted, pushed);
+  }
+}
+
+/// What waits for another topic is no larger than the instrument's joints.
+TEST(JointStateTime, NamesThatNobodyKnowsAreNotKept) {
+  const auto simulator = oneProbe();
+  JointStatePlayer player(*simulator);
+  JointStateSample large = sample(kSecond, -0.001);
+  for (int k = 0; k < 1000; ++k) {
+    large.names.push_back("unknown" + std::to_string(k));
+    large.positions.push_back(1.0);
+    large.names.emplace_back("x");
+    large.positions.push_back(1e-6 * k);
+  }
+  player.push(0, std::move(large));
+  ASSERT_EQ(drain(player).size(), 1U);
+  EXPECT_EQ(simulator->jointPositions(0), VectorX(Vector3(1e-6 * 999, 0.0, -0.001)));  // of one name the last counts
 }
 
 TEST(JointStateTime, UpToMaxGapBackIsLateAndFartherBackALoop) {
@@ -416,7 +470,7 @@ TEST(JointStateTime, AnyMixtureOfClocksIsCountedAndBounded) {
     std::int64_t now = 2 * kHour;
     while (pushed < 2000) {
       const std::int64_t offset = offsets[random() % offsets.size()];
-      for (unsigned k = 1 + random() % 12; k > 0; --k) {
+      for (auto k = 1 + random() % 12; k > 0; --k) {
         player.push(0, sample((now += 2 * kMillisecond) + offset, 0.0));
         ++pushed;
         drain(player);
