@@ -29,9 +29,13 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string nearestWord(const std::string& word, const std::vector<std::string>& allowed) {
+  return nearestWord(word, allowed, std::max<std::size_t>(2, word.size() / 2));
+}
+
+std::string nearestWord(const std::string& word, const std::vector<std::string>& allowed, std::size_t most) {
   if (word.empty() || word.size() > kMostBytes) return "";
   std::string nearest;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 2);
+  std::size_t least = most;
   for (const std::string& candidate : allowed) {
     const bool lacks_suffix = candidate.size() > word.size() && candidate.compare(0, word.size() + 1, word + "_") == 0;
     const std::size_t distance = lacks_suffix ? 1 : editDistance(word, candidate);

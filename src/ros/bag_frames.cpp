@@ -7,8 +7,10 @@
 #include <tf2/exceptions.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
+#include <string>
 
 #include "bag_reader.h"
 #include "message_reader.h"
@@ -19,6 +21,9 @@ namespace {
 
 /// A robot of 50 frames at 100 Hz sends so many in 3 minutes; tf2 keeps all of them.
 constexpr std::size_t kMaxTransforms = 1000000;
+
+/// tf2 keeps the name of every frame, and a bag may have as many of them as transforms.
+constexpr std::size_t kMaxFrameName = 256;
 
 geometry_msgs::TransformStamped readTransform(MessageReader& reader) {
   geometry_msgs::TransformStamped transform;
@@ -57,6 +62,9 @@ class BagTransforms {
     });
   }
 
+  /// Transforms that were left out because of the length of a frame's name.
+  std::size_t tooLong() const { return too_long_; }
+
  private:
   /// What tf2 itself refuses (NaN, a frame that is its own parent, a stamp out of range) is left out.
   void add(std::string_view data, bool is_static, tf2::BufferCore& buffer) {
@@ -64,6 +72,10 @@ class BagTransforms {
     MessageReader reader(data);
     for (std::size_t left = reader.count(kLeastBytes); left > 0 && count_ < kMaxTransforms; --left, ++count_) {
       const geometry_msgs::TransformStamped transform = readTransform(reader);
+      if (std::max(transform.header.frame_id.size(), transform.child_frame_id.size()) > kMaxFrameName) {
+        ++too_long_;
+        continue;
+      }
       try {
         buffer.setTransform(transform, "bag", is_static);
       } catch (const std::runtime_error&) {  // arithmetic of ros::Time
@@ -73,6 +85,7 @@ class BagTransforms {
 
   BagReader bag_;
   std::size_t count_ = 0;
+  std::size_t too_long_ = 0;
 };
 
 }  // namespace
@@ -85,8 +98,13 @@ Pose frameInBag(const std::string& frame, const std::string& world_frame, const 
   try {
     return toPose(buffer.lookupTransform(world_frame, frame, ros::Time(0)).transform);
   } catch (const tf2::TransformException& error) {
+    std::string detail = error.what();
+    if (transforms.tooLong() > 0) {
+      detail += "; " + std::to_string(transforms.tooLong()) + " transforms with names of frames longer than " +
+                std::to_string(kMaxFrameName) + " bytes were left out";
+    }
     throw std::invalid_argument("tf frame '" + frame + "' has no transform to the world frame '" + world_frame +
-                                "' in " + bag_file + " (" + error.what() + ")");
+                                "' in " + bag_file + " (" + detail + ")");
   }
 }
 

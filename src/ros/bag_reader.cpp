@@ -10,6 +10,7 @@
 
 #include "bag_merge.h"
 #include "bag_records.h"
+#include "tissue_contact/core/printable.h"
 
 namespace tissue_contact {
 namespace {
@@ -19,6 +20,19 @@ constexpr std::string_view kAnyVersion = "#ROSBAG V";
 
 /// A connection's data hold the whole definition of its message type; those of ROS have some ten kilobytes at most.
 constexpr std::uint32_t kMaxDefinition = 1 << 22;
+
+/// Of a topic's name, a type's or its md5sum: ROS's own have some dozens of bytes.
+constexpr std::size_t kMaxName = 1024;
+
+std::string nameFrom(const BagFields& fields, std::string_view field) {
+  const std::string_view name = fields.text(field);
+  if (name.size() > kMaxName) {
+    throw BagError("the " + std::string(field) + " of a connection has " + std::to_string(name.size()) +
+                       " bytes; at most " + std::to_string(kMaxName) + " are read",
+                   BagError::Remedy::kAsSaid);
+  }
+  return std::string(name);
+}
 
 std::string remedyText(BagError::Remedy remedy) {
   switch (remedy) {
@@ -41,7 +55,7 @@ Compression compressionOf(std::string_view name) {
   if (name == "none") return Compression::kNone;
   if (name == "bz2") return Compression::kBz2;
   if (name == "lz4") return Compression::kLz4;
-  throw BagError("a chunk is compressed by '" + std::string(name.substr(0, 32)) + "'; known are none, bz2 and lz4",
+  throw BagError("a chunk is compressed by '" + printable(std::string(name), 32) + "'; known are none, bz2 and lz4",
                  BagError::Remedy::kAsSaid);
 }
 
@@ -50,7 +64,7 @@ void requireVersion(const InputFile& input) {
   input.read(0, line.data(), line.size());
   if (line == kVersionLine) return;
   if (std::string_view(line).substr(0, kAnyVersion.size()) == kAnyVersion) {
-    throw BagError("format " + line.substr(kAnyVersion.size(), 3) +
+    throw BagError("format " + printable(line.substr(kAnyVersion.size(), 3)) +
                        "; only 2.0 is read, into which `rosbag filter old.bag new.bag True` turns it",
                    BagError::Remedy::kAsSaid);
   }
@@ -84,8 +98,8 @@ auto BagReader::guarded(const Work& work) const {
 void BagReader::fail(const std::string& what) const { throw std::runtime_error("bag '" + file_ + "': " + what); }
 
 void BagReader::fail(const BagMessage& message, const BagError& error) const {
-  fail("message on " + message.connection.topic + " recorded at " + std::to_string(message.recorded.toSec()) +
-       " s: " + error.what() + remedyText(error.remedy()));
+  fail("message on " + printable(message.connection.topic) + " recorded at " +
+       std::to_string(message.recorded.toSec()) + " s: " + error.what() + remedyText(error.remedy()));
 }
 
 BagReader::BagReader(const std::string& file, const BagLimits& limits) : file_(file), limits_(limits), input_(file) {
@@ -164,11 +178,11 @@ void BagReader::readSummary(BagRecords& records) {
 void BagReader::readConnection(BagRecords& records) {
   const auto number = records.fields().number<std::uint32_t>("conn");
   BagConnection connection;
-  connection.topic = records.fields().text("topic");
+  connection.topic = nameFrom(records.fields(), "topic");
   BagFields fields;
   fields.parse(records.data(kMaxDefinition));
-  connection.type = fields.text("type");
-  connection.md5sum = fields.text("md5sum");
+  connection.type = nameFrom(fields, "type");
+  connection.md5sum = nameFrom(fields, "md5sum");
   connections_.emplace(number, std::move(connection));  // of two with one number the first, as rosbag does
   if (connections_.size() > limits_.connections) throw tooMany(limits_.connections, "connections");
 }
@@ -181,6 +195,7 @@ void BagReader::select(const std::function<bool(const BagConnection&)>& wanted) 
   }
   chunks_.clear();
   parts_.clear();
+  last_chunk_.clear();
   begin_ = end_ = ros::Time();
   guarded([this] { readIndex(); });
 }
@@ -208,7 +223,8 @@ void BagReader::readIndex() {
   for (const auto& [number, indexed] : indexed_) {
     if (indexed == summed_[number]) continue;
     throw BagError("its chunks have an index of " + std::to_string(indexed) + " messages on " +
-                       connections_.at(number).topic + ", but should have " + std::to_string(summed_[number]),
+                       printable(connections_.at(number).topic) + ", but should have " +
+                       std::to_string(summed_[number]),
                    BagError::Remedy::kReindex);
   }
   if (end_.sec - begin_.sec > static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max() - 1)) {
@@ -242,14 +258,16 @@ void BagReader::readChunkIndex(BagRecords& records) {
     part.chunk = static_cast<std::uint32_t>(chunks_.size() - 1);
     if (connections_.count(part.connection) == 0) throw BagError("its connection is not listed");
     if (counts_.count(part.connection) == 0) return;
-    for (std::size_t i = chunks_.back().part; i < parts_.size(); ++i) {
-      if (parts_[i].connection == part.connection) throw BagError("it is its chunk's second of one connection");
+    const auto last = last_chunk_.find(part.connection);
+    if (last != last_chunk_.end() && last->second == part.chunk) {
+      throw BagError("it is its chunk's second of one connection");
     }
     readPart(records, part);
     if (part.count == 0) return;
     if (parts_.size() == limits_.parts) throw tooMany(limits_.parts, "chunks for the connections that are read");
     counts_[part.connection] += part.count;
     parts_.push_back(part);
+    last_chunk_[part.connection] = part.chunk;
   } catch (const BagError& error) {
     const bool said = error.remedy() == BagError::Remedy::kAsSaid;
     throw BagError("index at byte " + std::to_string(records.dataPosition()) + ": " + error.what(),

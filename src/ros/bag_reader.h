@@ -112,11 +112,12 @@ class BagReader {
   std::uint32_t chunk_count_ = 0;
   std::uint32_t connection_count_ = 0;
   std::map<std::uint32_t, BagConnection> connections_;
-  std::map<std::uint32_t, std::uint64_t> summed_;   ///< messages of each connection, by the chunks' summaries
-  std::vector<Chunk> chunks_;                       ///< in the order of the file
-  std::vector<Part> parts_;                         ///< those of the chosen connections, chunk by chunk
-  std::map<std::uint32_t, std::uint64_t> counts_;   ///< messages of the chosen connections
-  std::map<std::uint32_t, std::uint64_t> indexed_;  ///< those and what was recorded at time 0
+  std::map<std::uint32_t, std::uint64_t> summed_;      ///< messages of each connection, by the chunks' summaries
+  std::vector<Chunk> chunks_;                          ///< in the order of the file
+  std::vector<Part> parts_;                            ///< those of the chosen connections, chunk by chunk
+  std::map<std::uint32_t, std::uint64_t> counts_;      ///< messages of the chosen connections
+  std::map<std::uint32_t, std::uint64_t> indexed_;     ///< those and what was recorded at time 0
+  std::map<std::uint32_t, std::uint32_t> last_chunk_;  ///< of parts_, by connection
   ros::Time begin_, end_;
 };
 

@@ -73,7 +73,7 @@ void Health::noteWork(std::optional<double> received_s) {
 }
 
 bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
-  warn(played);
+  warn(played, steps);
   const bool accepted = played.verdict == Verdict::kAccepted;
   const bool finite = accepted && isFinite(simulator_);
   std::unique_lock<std::mutex> lock(mutex_);
@@ -95,7 +95,7 @@ bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
   return finite;
 }
 
-void Health::warn(const PlayedSample& played) {
+void Health::warn(const PlayedSample& played, int steps) {
   if (played.verdict != Verdict::kAccepted) {
     if (refusals_[static_cast<std::size_t>(played.verdict)].pass()) {
       const bool name_publishers = played.verdict == Verdict::kTwoClocks && publishers_;
@@ -118,6 +118,7 @@ void Health::warn(const PlayedSample& played) {
                                                                      << " s: simulated as "
                                                                      << simulator_.scene().step.max_gap_s << " s");
   }
+  if (steps == 0) return;  // the report is that of an interval before, and told
   if (simulator_.report().jumped && jumps_.pass()) {
     ROS_WARN_STREAM("an instrument moved too far before " << toTime(played.stamp_ns)
                                                           << " s to be swept: it was placed at its new position");

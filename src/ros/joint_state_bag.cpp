@@ -9,6 +9,7 @@
 
 #include "bag_reader.h"
 #include "message_reader.h"
+#include "tissue_contact/core/printable.h"
 #include "tissue_contact/ros/conversions.h"
 
 namespace tissue_contact {
@@ -40,18 +41,18 @@ void requireJointStates(const BagReader& bag, const BagConnection& connection) {
   if (connection.md5sum == md5sum) return;
   const std::string type = ros::message_traits::datatype<JointState>();
   if (connection.type == type) {
-    bag.fail("topic " + connection.topic + " is of a " + type + " with another definition (md5sum " +
-             connection.md5sum.substr(0, md5sum.size()) + ", not " + md5sum + ")");
+    bag.fail("topic " + printable(connection.topic) + " is of a " + type + " with another definition (md5sum " +
+             printable(connection.md5sum, md5sum.size()) + ", not " + md5sum + ")");
   }
-  bag.fail("topic " + connection.topic + " is of type " + connection.type + "; it must be " + type);
+  bag.fail("topic " + printable(connection.topic) + " is of type " + printable(connection.type) + "; it must be " +
+           type);
 }
 
 }  // namespace
 
 std::string joinedNames(const std::set<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none" : text;
+  constexpr std::size_t kMost = 100;  // robots record some fifty topics
+  return names.empty() ? "none" : listOf({names.begin(), names.end()}, kMost);
 }
 
 JointStateBag::JointStateBag(const std::string& file, const std::vector<std::string>& topics)

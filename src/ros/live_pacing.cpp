@@ -32,9 +32,9 @@ LivePacing::LivePacing(double max_lag_s) : max_lag_s_(max_lag_s), for_steps_s_(k
 
 double LivePacing::waitUntil(double received_s) const { return received_s + JointStatePlayer::kWaitShare * max_lag_s_; }
 
-void LivePacing::noteReceived(double received_s) {
+void LivePacing::notePlayed(double received_s) {
   if (last_received_s_) note(std::clamp(received_s - *last_received_s_, 0.0, max_lag_s_), kWeightInMean, apart_s_);
-  last_received_s_ = received_s;
+  last_received_s_ = std::max(received_s, last_received_s_.value_or(received_s));
 }
 
 int LivePacing::mostSteps() const {

@@ -81,7 +81,7 @@ class Registrar {
     ask(own_uri_, "publisherUpdate", update);
   }
 
-  /// Those that roscpp offers for every node; this one has none of its own.
+  /// Those that every node has: roscpp's, and ~get_loggers in its place (see logger_service.h).
   void services() {
     for (const char* relative : {"~get_loggers", "~set_logger_level"}) {
       const std::string name = ros::names::resolve(relative);

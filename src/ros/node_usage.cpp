@@ -24,7 +24,7 @@ private parameters
                        looked for here, then in every namespace up to /
   ~tf_timeout_s        how long to wait for tf frames that the scene names, s; default 10
   ~markers/...         force_arrow_m_per_n, displacement_full_scale_m: sizes in RViz
-  any other, and any argument that is not name:=value, is refused
+  any other argument, also _parameter:=value, is refused; of what is set on the parameter server, misspelt names only
 
 subscribed topics
   as the scene names them  sensor_msgs/JointState

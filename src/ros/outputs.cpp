@@ -127,6 +127,7 @@ void Outputs::publishSnapshot(std::int64_t stamp_ns, int substeps, double step_t
   if (status) {
     snapshot->status.header.frame_id = simulator_.scene().world_frame;
     fillStatus(simulator_, player_, stamp_ns, snapshot->status);
+    if (substeps == 0) snapshot->status.discarded = snapshot->status.jumped = 0;  // told with the interval before
     health_.addTo(snapshot->status);
     snapshot->status.substeps = static_cast<std::uint32_t>(substeps);
     snapshot->status.step_time = step_time_s;

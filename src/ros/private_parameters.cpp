@@ -2,30 +2,33 @@
 /// Room `ros`: see private_parameters.h.
 #include "tissue_contact/ros/private_parameters.h"
 
+#include <ros/console.h>
 #include <ros/param.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <stdexcept>
 
 #include "tissue_contact/core/nearest_word.h"
+#include "tissue_contact/core/printable.h"
 
 namespace tissue_contact {
 namespace {
 
 const std::string kBecomes = ":=";
+constexpr std::size_t kMaxName = 256;  // printed of a name that anybody may have set
 
 bool contains(const std::vector<std::string>& all, const std::string& one) {
   return std::find(all.begin(), all.end(), one) != all.end();
 }
 
 /// Relative to the private namespace. diagnostic_period is diagnostic_updater's; roscpp, rosconsole and tf2_ros read none.
+const std::vector<std::string> kOwnNames = {"diagnostic_period", "markers/displacement_full_scale_m",
+                                            "markers/force_arrow_m_per_n", "scene", "tf_timeout_s"};
+
 std::vector<std::string> knownNames(const Scene* scene) {
-  std::vector<std::string> names = {"diagnostic_period",
-                                    "markers/displacement_full_scale_m",
-                                    "markers/force_arrow_m_per_n",
-                                    "robot_description",
-                                    "scene",
-                                    "tf_timeout_s"};
+  std::vector<std::string> names = kOwnNames;
+  names.emplace_back("robot_description");
   if (scene == nullptr) return names;
   for (const InstrumentDescription& instrument : scene->instruments) {
     const std::string& name = instrument.robot_description_parameter;
@@ -38,6 +41,18 @@ std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
+}
+
+std::string refusalText(const std::string& refused, const std::string& own, const std::vector<std::string>& names,
+                        const std::vector<std::string>& arguments) {
+  const std::string relative = refused.substr(own.size() + 1);
+  const std::string nearest = nearestWord(relative, names);
+  return "parameter '" + printable(refused, kMaxName) + "' is none that this node reads; " +
+         (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") + "It reads " + joined(names) + ". " +
+         (contains(arguments, relative)
+              ? "It was given as _" + printable(relative, kMaxName) + ":=..."
+              : "Correct it where it is set (a launch file?), or remove it: rosparam delete " +
+                    printable(refused, kMaxName));
 }
 
 }  // namespace
@@ -74,6 +89,11 @@ std::vector<std::string> unknownNames(const std::vector<std::string>& set, const
   return unknown;
 }
 
+std::string misspelt(const std::string& name) {
+  constexpr std::size_t kMostLetters = 2;
+  return nearestWord(name, kOwnNames, kMostLetters);
+}
+
 void refuseUnknownParameters(const ros::NodeHandle& private_node, const Scene* scene,
                              const std::vector<std::string>& arguments) {
   std::vector<std::string> set;
@@ -84,18 +104,16 @@ void refuseUnknownParameters(const ros::NodeHandle& private_node, const Scene* s
   const std::string& own = private_node.getNamespace();
   const std::vector<std::string> unknown = unknownNames(set, own, known);
   if (unknown.empty()) return;
-  for (const std::string& argument : arguments) {
-    const std::string name = own + "/" + argument;
-    if (contains(unknown, name)) ros::param::del(name);
+  std::vector<std::string> refused;
+  std::vector<std::string> ignored;
+  for (const std::string& name : unknown) {
+    const std::string relative = name.substr(own.size() + 1);
+    const bool is_argument = contains(arguments, relative);
+    if (is_argument) ros::param::del(name);
+    (is_argument || !misspelt(relative).empty() ? refused : ignored).push_back(name);
   }
-  const std::string first = unknown.front().substr(own.size() + 1);
-  const std::string nearest = nearestWord(first, names);
-  const bool is_argument = contains(arguments, first);
-  throw std::invalid_argument(
-      "parameter '" + unknown.front() + "' is none that this node reads; " +
-      (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") + "It reads " + joined(names) + ". " +
-      (is_argument ? "It was given as _" + first + ":=..."
-                   : "Correct it where it is set (a launch file?), or remove it: rosparam delete " + unknown.front()));
+  if (!refused.empty()) throw std::invalid_argument(refusalText(refused.front(), own, names, arguments));
+  ROS_WARN_STREAM("parameters that this node does not read: " << listOf(ignored) << "; it reads " << joined(names));
 }
 
 }  // namespace tissue_contact

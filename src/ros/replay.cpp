@@ -118,7 +118,7 @@ class Replay {
         throw std::runtime_error("the step ending at " + stampText(played->stamp_ns) + " s gave no finite answer");
       }
       if (!touched_) noteApproach(played->stamp_ns);
-      table.add(simulator_, *played);
+      table.add(simulator_, *played, steps);
       if (timing_ && steps > 0) timing_->add(played->stamp_ns, elapsed.count(), steps);
     }
   }

@@ -23,7 +23,7 @@ ReplayTable::ReplayTable(const std::string& file) : file_(file) {
          "implausible_load,inverted_elements,contact_pressure_pa,pinched_contacts\n";
 }
 
-void ReplayTable::add(const Simulator& simulator, const PlayedSample& played) {
+void ReplayTable::add(const Simulator& simulator, const PlayedSample& played, long steps) {
   const StepReport& report = simulator.report();
   const Residuals& residuals = report.residuals;
   std::ostream& out = file_.stream();
@@ -32,8 +32,8 @@ void ReplayTable::add(const Simulator& simulator, const PlayedSample& played) {
     addInstrument(simulator, instrument);
     out << ',' << residuals.momentum << ',' << residuals.penetration_m << ',' << residuals.adhesion_n << ','
         << residuals.complementarity_w << ',' << residuals.cone_violation_n << ',' << residuals.static_slip_m_per_s
-        << ',' << residuals.kinetic_angle_rad << ',' << static_cast<int>(report.discarded) << ','
-        << static_cast<int>(report.jumped) << ',' << static_cast<int>(report.implausible_load.found) << ','
+        << ',' << residuals.kinetic_angle_rad << ',' << static_cast<int>(steps > 0 && report.discarded) << ','
+        << static_cast<int>(steps > 0 && report.jumped) << ',' << static_cast<int>(report.implausible_load.found) << ','
         << report.implausible_load.inverted_elements << ',' << report.implausible_load.pressure_pa << ','
         << report.pinched_contacts << '\n';
   }

@@ -86,7 +86,6 @@ void Stepper::takeReceived() {
     newest_received_s_ = state->received_s;
     if (player_.triggers(state->topic)) {
       receipts_.note(state->topic, {state->sample.stamp_ns, state->received_s, state->age_s});
-      pacing_.noteReceived(state->received_s);
     }
     player_.push(state->topic, std::move(state->sample));
   }
@@ -103,7 +102,10 @@ bool Stepper::playNext() {
     const bool is_moment = played->verdict == Verdict::kAccepted && !played->interrupted;
     const std::optional<Receipt> receipt = is_moment ? receipts_.take(played->stamp_ns) : std::nullopt;
     if (health_.note(*played, steps, pacing_.stepCost())) publish(*played, receipt, steps, step_time_s);
-    if (receipt) choosePolicy(*played, *receipt);
+    if (receipt) {
+      pacing_.notePlayed(receipt->received_s);
+      choosePolicy(*played, *receipt);
+    }
   }
   health_.noteWork(std::nullopt);
   return played.has_value();

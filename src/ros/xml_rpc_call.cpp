@@ -14,7 +14,9 @@ std::optional<RosAnswer> callRos(const std::string& uri, const std::string& meth
                                  const XmlRpc::XmlRpcValue& parameters, std::chrono::duration<double> most_s,
                                  const std::atomic<bool>& stop) {
   using Clock = std::chrono::steady_clock;
-  constexpr double kLook_ms = 20.0;  // how long `stop` may go unseen
+  // How long `stop` and the end may go unseen. In seconds, which is what work() of libxmlrpcpp 1.15 counts in: its header
+  // says milliseconds.
+  constexpr double kLook_s = 0.02;
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(most_s);
   std::string host;
   std::uint32_t port = 0;
@@ -26,7 +28,7 @@ std::optional<RosAnswer> callRos(const std::string& uri, const std::string& meth
     while (!client.executeCheckDone(result)) {
       // A connection that failed is no longer among the dispatcher's.
       if (stop || Clock::now() >= end || client._disp._sources.empty()) return std::nullopt;
-      client._disp.work(kLook_ms);
+      client._disp.work(kLook_s);
     }
     constexpr int kParts = 3;
     if (client.isFault() || result.getType() != XmlRpc::XmlRpcValue::TypeArray || result.size() != kParts) {

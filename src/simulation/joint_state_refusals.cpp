@@ -1,11 +1,11 @@
 /// @file
 /// Room `simulation`: which joint states JointStatePlayer refuses, and to which loop of time it counts the others.
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
 #include <utility>
 
+#include "tissue_contact/core/printable.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 
 namespace tissue_contact {
@@ -13,23 +13,6 @@ namespace {
 
 /// The last moment that a ROS stamp can name, 2106-02-07: 32 bits of seconds and less than a second of nanoseconds.
 constexpr std::int64_t kLastStamp_ns = 4294967295999999999;
-
-/// As much of a name from outside as a line of a log can bear: neither megabytes nor control characters.
-std::string printable(const std::string& name) {
-  constexpr std::size_t kMaxLength = 60;
-  std::string text = name.substr(0, kMaxLength);
-  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
-  std::replace_if(text.begin(), text.end(), is_control, '?');
-  return name.size() > kMaxLength ? text + "..." : text;
-}
-
-std::string listOf(const std::vector<std::string>& names) {
-  constexpr std::size_t kMaxNamed = 12;  // a message may hold any number of names, a warning should not
-  std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kMaxNamed); ++i)
-    text += (i == 0 ? "" : ", ") + printable(names[i]);
-  return names.size() > kMaxNamed ? text + ", ..." : text;
-}
 
 std::string stampText(std::int64_t stamp_ns) {
   std::ostringstream text;

@@ -2,6 +2,7 @@
 """Every start-up that cannot work ends with one fatal message that names the fault, and an exit code other than 0."""
 import os
 import shutil
+import signal
 import sys
 import tempfile
 import unittest
@@ -133,6 +134,28 @@ class BadStartup(unittest.TestCase):
     def test_extra_argument(self):
         for extra in [harness.SCENE, "--scene", "_scene=" + harness.SCENE, ""]:
             self.assert_refused(["_scene:=" + harness.SCENE, extra], "'" + extra + "'", "_scene:=")
+
+    def test_parameters_of_others_are_a_warning(self):
+        # Of a node below, of a scene that uses more URDFs, of an older version on a master that lives long.
+        others = ["camera/tf_timeout_s", "left/description", "gravity"]
+        for name in others:
+            rospy.set_param("/tissue_contact/" + name, "x")
+        with harness.node(harness.SCENE) as node:
+            harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)  # waits for the publisher
+            node.send_signal(signal.SIGINT)
+            self.assertEqual(node.wait(harness.DEADLINE_S), 0)
+            node.output.seek(0)
+            warnings = [line for line in node.output if "[ WARN]" in line and "does not read" in line]
+        self.assertEqual(len(warnings), 1, warnings)
+        for name in others:
+            self.assertIn("/tissue_contact/" + name, warnings[0])
+            self.assertTrue(rospy.has_param("/tissue_contact/" + name))
+
+    def test_parameter_of_others_by_the_command_line_is_refused(self):
+        rospy.set_param("/tissue_contact/left/description", "x")
+        self.assert_refused(["_scene:=" + harness.SCENE, "_right/description:=x"], "/tissue_contact/right/description")
+        self.assertFalse(rospy.has_param("/tissue_contact/right/description"))
+        self.assertTrue(rospy.has_param("/tissue_contact/left/description"))
 
     def test_known_parameters_start_the_node(self):
         # Of the node, of diagnostic_updater, of roscpp and of nodes beside it.

@@ -53,11 +53,11 @@ class FaultsMaster(unittest.TestCase):
         self.master = Master()
         self.addCleanup(self.master.kill)
 
-    def master_status(self, diagnostics, condition, what):
+    def master_status(self, diagnostics, condition, what, deadline_s=harness.DEADLINE_S):
         def holds(messages):
             status = faults.status_named(messages[-1], "ROS master") if messages else None
             return status is not None and condition(status)
-        return faults.status_named(diagnostics.wait(holds, what)[-1], "ROS master")
+        return faults.status_named(diagnostics.wait(holds, what, deadline_s)[-1], "ROS master")
 
     def play(self, samples):
         """By a program that was not there before either."""
@@ -88,7 +88,9 @@ class FaultsMaster(unittest.TestCase):
             self.assertGreater(len(before), 5)
 
             self.master.signal(signal.SIGSTOP)  # answers nothing, closes nothing
-            status = self.master_status(diagnostics, lambda s: s.level == faults.WARN, "a warning that it is stopped")
+            # A second to the next call, five of patience, a second to the next diagnostics, and one more.
+            status = self.master_status(diagnostics, lambda s: s.level == faults.WARN, "a warning that it is stopped",
+                                        8.0 * harness.SLOWNESS)
             self.assertIn("does not answer", status.message)
             self.assert_wrench_for_each(source, wrenches, samples[:50])
             self.master.signal(signal.SIGCONT)

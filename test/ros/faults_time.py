@@ -66,7 +66,7 @@ class FaultsTime(unittest.TestCase):
                 end = time.monotonic() + 10.0
                 harness.wait_until(lambda: time.monotonic() > end, "ten seconds")
                 process.send_signal(signal.SIGCONT)
-                # As prompt as before: wrenches of what is sent now.
+                # Not only of what has piled up: wrenches of what is sent now.
                 now = rospy.Time.from_sec(time.time())
                 wrenches.wait(lambda all: len([w for w in all if w.header.stamp > now]) > 100, "wrenches after")
             finally:

@@ -2,6 +2,7 @@
 /// Room `core`: the word somebody may have meant.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -11,5 +12,8 @@ namespace tissue_contact {
 /// the first of several; one that only lacks its "_suffix" counts as one. Empty when all need more than half of the
 /// word (and more than two), or the word is empty or longer than 80 bytes.
 std::string nearestWord(const std::string& word, const std::vector<std::string>& allowed);
+
+/// The same; empty when all need more than `most`.
+std::string nearestWord(const std::string& word, const std::vector<std::string>& allowed, std::size_t most);
 
 }  // namespace tissue_contact

@@ -78,7 +78,7 @@ class Health {
     std::optional<Clock::time_point> began_;
   };
 
-  void warn(const PlayedSample& played);
+  void warn(const PlayedSample& played, int steps);
   bool noteSteps(const PlayedSample& played, int steps, bool finite);
   static void tellBroken(const PlayedSample& played, bool finite);
   double worstLag(const LiveFigures& figures);

@@ -23,8 +23,9 @@ class LivePacing {
   /// Until when a state received then may wait for another topic's.
   double waitUntil(double received_s) const;
 
-  /// A state came that a wrench is owed for.
-  void noteReceived(double received_s);
+  /// A moment was played; the first of its states was received then. One moment of several topics counts once, and
+  /// what was refused not at all: neither takes time of its own.
+  void notePlayed(double received_s);
 
   /// Steps that the interval that has begun may be cut into; 0 (no limit) until a step was seen.
   int mostSteps() const;
@@ -52,7 +53,7 @@ class LivePacing {
   std::optional<double> cost_s_;       ///< usual: soon knows that steps have become dearer
   std::optional<double> mean_cost_s_;  ///< over some sixty steps
   std::optional<double> last_received_s_;
-  std::optional<double> apart_s_;  ///< mean time between states, none counted for more than the bound
+  std::optional<double> apart_s_;  ///< mean time between moments, none counted for more than the bound
   double step_began_s_ = 0.0;
   double received_s_ = 0.0;
   double for_steps_s_;  ///< of the interval

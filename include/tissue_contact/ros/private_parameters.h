@@ -22,10 +22,16 @@ std::vector<std::string> privateArguments(int argc, const char* const* argv);
 std::vector<std::string> unknownNames(const std::vector<std::string>& set, const std::string& own,
                                       const std::vector<std::string>& known);
 
-/// Looks through the parameter server for private parameters that neither the node nor a library it uses reads. What
-/// came by the command line of this process is removed from the server again, so that the next start does not meet it.
+/// The parameter of the node that `name`, relative to its namespace, must be a misspelling of: two letters away at most, or
+/// without its unit. Empty otherwise: it may be another node's below this namespace, or a URDF that this scene does not use
+/// (one that it does use is missed, and asked for by its name).
+std::string misspelt(const std::string& name);
+
+/// Looks through the parameter server for private parameters that neither the node nor a library it uses reads. Those
+/// that came by the command line of this process, or are misspelt, are refused; one warning names the others. What came by
+/// the command line is removed from the server again, so that the next start does not meet it.
 /// @param scene names the parameters that hold URDFs; null: not known. @param arguments see privateArguments().
-/// @throws std::invalid_argument naming the first, the nearest known name, and where to correct it.
+/// @throws std::invalid_argument naming the first refused, the nearest known name, and where to correct it.
 void refuseUnknownParameters(const ros::NodeHandle& private_node, const Scene* scene,
                              const std::vector<std::string>& arguments);
 

@@ -24,7 +24,8 @@ class ReplayTable {
   /// One line per instrument of an accepted sample: stamp, tip pose in the world frame, wrench in the tip frame,
   /// contacts of this instrument per state, residuals of the last step over all contacts, 0 or 1 for `discarded` and
   /// `jumped` of the interval that ended here, and what its loads were like (see StepReport, ImplausibleLoad).
-  void add(const Simulator& simulator, const PlayedSample& played);
+  /// @param steps implicit steps of that interval; 0: there was none, so nothing was discarded and nothing jumped.
+  void add(const Simulator& simulator, const PlayedSample& played, long steps);
 
   void finish() { file_.finish(); }
   void commit() { file_.commit(); }

@@ -2,12 +2,13 @@
 /// Room `ros`: messages that a publisher numbered and that never came: lost in its own queue, or in ours.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
+
+#include "tissue_contact/core/printable.h"
 
 namespace tissue_contact {
 
@@ -30,10 +31,8 @@ class SequenceGaps {
     std::string text;
     int named = 0;
     for (auto at = last_.lower_bound({topic, ""}); at != last_.end() && at->first.first == topic && named < 4; ++at) {
-      text += (named++ > 0 ? ", " : "") + at->first.second;
+      text += (named++ > 0 ? ", " : "") + printable(at->first.second, kLongestName);
     }
-    const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
-    std::replace_if(text.begin(), text.end(), is_control, '?');
     return text;
   }
 

@@ -3,9 +3,12 @@
 
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include "tissue_contact/core/block_matrix.h"
 #include "tissue_contact/core/check.h"
+#include "tissue_contact/core/nearest_word.h"
+#include "tissue_contact/core/printable.h"
 
 namespace tissue_contact {
 namespace {
@@ -30,6 +33,23 @@ TEST(Check, MessageNamesThingValueUnitAndRange) {
   } catch (const std::invalid_argument& error) {
     EXPECT_EQ(std::string(error.what()), "poissons_ratio is 0.69999999999999996 (none); it must be > -1 and < 0.5");
   }
+}
+
+TEST(Printable, KeepsNamesShortAndFreeOfControlCharacters) {
+  EXPECT_EQ(printable("wrist\xc3\xa9"), "wrist\xc3\xa9");
+  EXPECT_EQ(printable("a\nb\x1b[0m\x7f"), "a?b?[0m?");
+  EXPECT_EQ(printable(std::string(60, 'x')), std::string(60, 'x'));
+  EXPECT_EQ(printable(std::string(61, 'x')), std::string(60, 'x') + "...");
+  EXPECT_EQ(printable("abcd", 2), "ab...");
+  EXPECT_EQ(listOf({}), "");
+  EXPECT_EQ(listOf({"a", "b\t"}), "a, b?");
+  EXPECT_EQ(listOf({"a", "b", "c"}, 2), "a, b, ...");
+}
+
+TEST(NearestWord, HasABound) {
+  EXPECT_EQ(nearestWord("left/description", {"robot_description"}), "robot_description");
+  EXPECT_EQ(nearestWord("left/description", {"robot_description"}, 2), "");
+  EXPECT_EQ(nearestWord("sceen", {"scene"}, 2), "scene");
 }
 
 // Two tetrahedra sharing the face (1, 2, 3); node 4 fixed.

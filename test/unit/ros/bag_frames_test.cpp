@@ -86,5 +86,29 @@ TEST_F(BagFramesTest, ImpossibleTransformsAreLeftOut) {
   EXPECT_NO_THROW(frameInBag("tool", "world", file_));
 }
 
+/// tf2 would keep the names of all frames: of a thousand such transforms, 100 MB.
+TEST_F(BagFramesTest, LongNamesOfFramesAreLeftOutAndCounted) {
+  {
+    rosbag::Bag bag(file_, rosbag::bagmode::Write);
+    bag.setCompression(rosbag::compression::LZ4);
+    for (unsigned i = 0; i < 1000; ++i) {
+      bag.write("/tf_static", ros::Time(1000 + i),
+                transform("base", std::string(100000, 'x') + std::to_string(i), 0.25, 1000));
+    }
+    bag.write("/tf_static", ros::Time(3000), transform(std::string(257, 'p'), "lost", 0.5, 1000));
+    bag.write("/tf_static", ros::Time(3001), transform("world", std::string(256, 'c'), 0.5, 1000));
+  }
+  const MemoryLimit limit(kSmall);
+  EXPECT_EQ(frameInBag(std::string(256, 'c'), "world", file_).translation().z(), 0.5);
+  try {
+    frameInBag("lost", "world", file_);
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("1001 transforms with names of frames longer than 256 bytes"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace tissue_contact

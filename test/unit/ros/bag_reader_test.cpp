@@ -85,6 +85,32 @@ TEST_F(BagReaderTest, EachLimitIsKept) {
   expectRefused(limits, "which is more than is read");
 }
 
+/// Each chunk has one index for each connection; which came before is known by connection, in whatever order they lie.
+TEST_F(BagReaderTest, ChunksHaveOneIndexForEachConnection) {
+  const std::vector<std::string> topics{kTopic, "/b", "/c"};
+  {
+    rosbag::Bag bag(file_, rosbag::bagmode::Write);
+    bag.setChunkThreshold(2000);
+    for (int i = 0; i < 120; ++i)
+      bag.write(topics[static_cast<std::size_t>(i) % 3], ros::Time(1000 + i), jointState(i));
+  }
+  ASSERT_EQ(read(BagLimits()), 40u);
+  const std::string bytes = readBytes(file_);
+  const auto select_all = [this] { BagReader(file_).select([](const BagConnection&) { return true; }); };
+  const std::uint32_t first = numberAt<std::uint32_t>(bytes, recordOf(bytes, kIndexOp, 3).field.at("conn"));
+  for (const std::size_t index : {std::size_t{4}, std::size_t{5}}) {  // of the second chunk
+    writeBytes(file_, patched(bytes, recordOf(bytes, kIndexOp, index).field.at("conn"), bytesOf(first)));
+    try {
+      select_all();
+      ADD_FAILURE() << index;
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("second of one connection"), std::string::npos) << error.what();
+    }
+  }
+  writeBytes(file_, bytes);
+  EXPECT_NO_THROW(select_all());
+}
+
 TEST_F(BagReaderTest, ClaimedSizeOfACompressedChunkTakesNoMemory) {
   for (const auto compression : {BZ2, LZ4}) {
     writeJointStates(file_, 200, compression);

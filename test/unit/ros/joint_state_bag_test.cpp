@@ -272,6 +272,51 @@ TEST_F(JointStateBagTest, TypeAndDefinition) {
   expectRefused(readBytes(directory_.file("others.bag")), {kTopic, "/other"});
 }
 
+/// Names in a bag are anybody's: they neither fill a log nor steer a terminal.
+TEST_F(JointStateBagTest, NamesInMessagesArePrintable) {
+  const auto write_strings = [this](const std::vector<std::string>& topics) {
+    rosbag::Bag bag(directory_.file("names.bag"), rosbag::bagmode::Write);
+    for (const std::string& topic : topics) bag.write(topic, ros::Time(1), std_msgs::String());
+  };
+  const auto error_of = [this](const std::string& bytes) {
+    const std::optional<std::string> error = errorOf(write("spoilt.bag", bytes));
+    if (!error) return std::string();
+    for (const char c : *error) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << *error;
+    EXPECT_LT(error->size(), 10000u);
+    return *error;
+  };
+  write_strings({"/red\x1b[31m", "/" + std::string(1000, 'x')});
+  EXPECT_NE(error_of(readBytes(directory_.file("names.bag"))).find("/red?[31m, /xxx"), std::string::npos);
+  std::vector<std::string> many;
+  for (int i = 0; i < 1000; ++i) many.push_back("/topic" + std::to_string(i));
+  write_strings(many);
+  EXPECT_NE(error_of(readBytes(directory_.file("names.bag"))).find(", ..."), std::string::npos);
+  write_strings({kTopic});
+  std::string bytes = readBytes(directory_.file("names.bag"));
+  for (std::size_t at = 0; (at = bytes.find("std_msgs", at)) != std::string::npos;) bytes[at] = '\x1b';
+  EXPECT_NE(error_of(bytes).find("?td_msgs/String"), std::string::npos);
+}
+
+TEST_F(JointStateBagTest, LongNamesAreRefused) {
+  const auto bytes_of = [this](const char* field, std::size_t size) {
+    auto header = boost::make_shared<ros::M_string>();
+    (*header)["type"] = "sensor_msgs/JointState";
+    (*header)["md5sum"] = ros::message_traits::md5sum<sensor_msgs::JointState>();
+    (*header)["message_definition"] = ros::message_traits::definition<sensor_msgs::JointState>();
+    (*header)[field] = std::string(size, 'x');
+    const bool is_topic = std::string(field) == "topic";
+    rosbag::Bag bag(directory_.file("long.bag"), rosbag::bagmode::Write);
+    bag.write(kTopic, ros::Time(1), jointState(1));
+    bag.write(is_topic ? (*header)[field] : "/other", ros::Time(2), jointState(2), header);
+    bag.close();
+    return readBytes(directory_.file("long.bag"));
+  };
+  for (const char* field : {"topic", "type", "md5sum"}) {
+    expectRefused(bytes_of(field, 1025), {field, "1025 bytes", "at most 1024"});
+    EXPECT_EQ(rowsOf(write("sound.bag", bytes_of(field, 1024))).size(), 1u) << field;
+  }
+}
+
 /// The player refuses such a stamp and counts it; the messages before and behind it are played.
 TEST_F(JointStateBagTest, ImpossibleStampIsHandedOver) {
   const std::string bytes = sound();

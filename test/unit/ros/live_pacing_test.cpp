@@ -190,7 +190,7 @@ TEST(LivePacing, TwoArmsThatWaitForEachOtherKeepTheBoundInSum) {
 void drive(LivePacing& pacing, double& now_s, double step_cost_s, int states) {
   for (int i = 0; i < states; ++i) {
     now_s += 0.001;
-    pacing.noteReceived(now_s);
+    pacing.notePlayed(now_s);
     pacing.begin(now_s, now_s, 1);
     pacing.noteStep(now_s + step_cost_s);
   }
@@ -208,6 +208,39 @@ TEST(LivePacing, ADearStepEndsWhenTheNextStateIsDue) {
   EXPECT_NEAR(pacing.promptDeadline(now_s + 0.0006), now_s + 0.0011, 1e-6);
   pacing.begin(now_s, now_s, 2);  // both are to be done by then: too much
   EXPECT_TRUE(std::isinf(pacing.promptDeadline(now_s)));
+}
+
+/// What the node's stepping thread does with receipts: two arms send every stamp within 10 us, and states that are refused
+/// come in between.
+TEST(LivePacing, AMomentOfTwoTopicsAndRefusedStatesIsOneMoment) {
+  LivePacing pacing(kBound);
+  ReceiptTimes receipts(2);
+  double now_s = 10.0;
+  for (int i = 1; i <= 500; ++i) {
+    now_s += 0.001;
+    const std::int64_t stamp_ns = 1000000LL * i;
+    for (const int topic : {0, 1}) receipts.note(topic, {stamp_ns, now_s + 1e-5 * topic});
+    receipts.note(0, {stamp_ns - 500, now_s + 0.0003});  // late, so never played
+    if (const auto receipt = receipts.take(stamp_ns)) pacing.notePlayed(receipt->received_s);
+    pacing.begin(now_s, now_s, 1);
+    pacing.noteStep(now_s + 0.0005);
+  }
+  pacing.begin(now_s, now_s, 1);
+  EXPECT_NEAR(pacing.promptDeadline(now_s), now_s + 0.0008, 1e-6);
+}
+
+/// Of two topics the one that came first may be played last.
+TEST(LivePacing, ReceiptsOutOfOrderDoNotAddTime) {
+  LivePacing pacing(kBound);
+  double now_s = 10.0;
+  for (int i = 0; i < 1000; ++i) {
+    now_s += 0.001;
+    pacing.notePlayed(now_s + (i % 2 == 0 ? 0.0 : -0.003));
+    pacing.begin(now_s, now_s, 1);
+    pacing.noteStep(now_s + 0.0005);
+  }
+  pacing.begin(now_s, now_s, 1);
+  EXPECT_LT(pacing.promptDeadline(now_s), now_s + 0.0009);  // 0.8 of 1 ms and some for the running mean
 }
 
 TEST(LivePacing, ADriverThatPausesIsStillTakenForFast) {
