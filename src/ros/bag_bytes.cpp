@@ -126,7 +126,11 @@ class Lz4Bytes : public CompressedBytes {
 }  // namespace
 
 InputFile::InputFile(const std::string& name) {
-  requireRegularFile(name, "bag");
+  try {
+    requireRegularFile(name, "bag");
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(error.what());  // as for all else that is wrong with a bag
+  }
   const auto refuse = [&](const std::string& why) { return std::runtime_error("bag '" + name + "' " + why); };
   descriptor_ = open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // O_NONBLOCK: opening a FIFO would wait
   if (descriptor_ < 0) throw refuse(std::string("cannot be read: ") + std::strerror(errno));

@@ -29,7 +29,7 @@ class BagError : public std::runtime_error {
 /// A regular file, open for reading.
 class InputFile {
  public:
-  /// Never waits: a FIFO, device or directory is refused. @throws std::exception naming the file and the reason.
+  /// Never waits: a FIFO, device or directory is refused. @throws std::runtime_error naming the file and the reason.
   explicit InputFile(const std::string& name);
   ~InputFile();
   InputFile(const InputFile&) = delete;

@@ -100,6 +100,7 @@ void refuseUnknownParameters(const ros::NodeHandle& private_node, const Scene* s
   if (!ros::param::getParamNames(set)) return;  // the master went away: told by who needs it
   const std::vector<std::string> names = knownNames(scene);
   std::vector<std::string> known;
+  known.reserve(names.size());
   for (const std::string& name : names) known.push_back(private_node.resolveName(name));
   const std::string& own = private_node.getNamespace();
   const std::vector<std::string> unknown = unknownNames(set, own, known);
