@@ -150,7 +150,7 @@ const BadCase kTissues[] = {
     {"FrameWithoutTf", "    fibre_direction: [1, 0, 0]", "    pose: {tf_frame: base}\n    fibre_direction: [1, 0, 0]",
      "7: tissues[0].pose.tf_frame", "no tf is available"},
     {"MeshIsNoMesh", "", "", "17: tissues[1].mesh.file", "neither Gmsh", "organ.vtk", "x"},
-    {"MeshIsEmpty", "", "", "17: tissues[1].mesh.file", "the file is empty", "organ.vtk", ""},
+    {"MeshIsEmpty", "", "", "17: tissues[1].mesh.file", "is empty", "organ.vtk", ""},
     {"MeshHasFlatElement", "", "", "17: tissues[1].mesh.file", "tetrahedron 0", "organ.vtk",
      "# vtk DataFile Version 2.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 1 1 0\n"
      "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"},
