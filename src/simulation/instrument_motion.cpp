@@ -85,7 +85,7 @@ int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vec
   const double by_time = std::max(1.0, std::ceil(duration_s / max_step_s - kRoundOff));
   double steps = std::max(by_time, joint_steps);
   if (joint_steps <= kMaxTravelSteps) steps *= std::max(1.0, std::ceil(longestTravelOver(steps) / kTravelPerStep));
-  const double most_for_travel = std::min(kMaxTravelSteps, kMaxTravelStepsPerStep * duration_s / max_step_s);
+  const double most_for_travel = std::min(kMaxTravelSteps, kMaxTravelStepsPerSecond * duration_s);
   jumped_ = !(steps <= std::max(by_time, most_for_travel));
   if (jumped_) {
     for (std::size_t i = 0; i < states_.size(); ++i) place(static_cast<int>(i), targets[i]);

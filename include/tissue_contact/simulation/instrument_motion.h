@@ -21,8 +21,8 @@ class InstrumentMotion {
   /// Prepares the interval to `targets` (sizes checked by the caller) and returns the number of equal steps to cut it
   /// into: none longer than max_step_s, none in which a shape moves more than half its smallest half extent, so that it
   /// cannot pass through a feature thinner than itself, and none in which a joint turns by more than 1 rad (a full turn
-  /// ends where it began). A motion that would need more than kMaxTravelSteps steps, or kMaxTravelStepsPerStep
-  /// for each max_step_s that it has, is a jump: the instruments are placed at the targets. With most_steps > 0 there are no more than that, however long they get.
+  /// ends where it began). A motion that would need more than kMaxTravelSteps steps, or kMaxTravelStepsPerSecond
+  /// for its duration, is a jump: the instruments are placed at the targets. With most_steps > 0 there are no more than that, however long they get.
   int begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets, int most_steps = 0);
   bool jumped() const { return jumped_; }  ///< by the last begin()
 
@@ -40,8 +40,8 @@ class InstrumentMotion {
   double smallestHalfExtent(int instrument, int contact_link, int shape) const;
 
   static constexpr double kMaxTravelSteps = 2000.0;
-  /// The same for each max_step_s. A shaft of 5 mm in steps of 1 ms may move at 250 m/s; robots do at below 10.
-  static constexpr double kMaxTravelStepsPerStep = 200.0;
+  /// And so many for each second of it: a shaft of 5 mm may move at 250 m/s, a blade of 0.5 mm at 25; robots stay below 10.
+  static constexpr double kMaxTravelStepsPerSecond = 2e5;
 
  private:
   struct MovingShape {

@@ -188,8 +188,8 @@ TEST(Simulator, JumpIsNotSweptAndStaysFinite) {
 }
 
 TEST(Simulator, MotionFasterThanAnyInstrumentIsAJump) {
-  // Half the ball's radius in a travel step, in the air, within one step of time.
-  const double farthest_m = InstrumentMotion::kMaxTravelStepsPerStep * 0.5 * 0.005;
+  // Half the ball's radius in a travel step, in the air, within a millisecond.
+  const double farthest_m = InstrumentMotion::kMaxTravelStepsPerSecond * 0.001 * 0.5 * 0.005;
   for (const double share : {0.9, 1.1}) {
     Simulator simulator = makeScene();
     simulator.advance(0.001, {Vector3(share * farthest_m, 0.0, 0.0)});
