@@ -52,10 +52,10 @@ class ReplayOutputs(unittest.TestCase):
         self.assertEqual(sorted(os.listdir(self.directory)), ["out.csv", "press.bag", "timing.csv"])
 
     def test_a_jump_is_told_once(self):
-        # 1.8 m in 10 ms; the state 10 us after it is no interval of its own, so nothing jumped there.
+        # 10 m in 10 ms; the state 10 us after it is no interval of its own, so nothing jumped there.
         (first, _), (second, _) = self.samples[:2]
         stamps = [first, second, second + rospy.Duration(nsecs=10000), second + rospy.Duration(nsecs=10000000)]
-        harness.write_bag(self.bag, [(stamp, (x, 0.0, 0.01)) for stamp, x in zip(stamps, [-0.9, 0.9, 0.9, 0.9])])
+        harness.write_bag(self.bag, [(stamp, (x, 0.0, 0.01)) for stamp, x in zip(stamps, [-5.0, 5.0, 5.0, 5.0])])
         errors = self.replay("out.csv")
         self.assertIn("1 jumps", errors)
         with open(self.path("out.csv"), newline="", encoding="ascii") as stream:
