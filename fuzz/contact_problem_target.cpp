@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "fuzz/fuzz_support.h"
-#include "tissue_contact/solver/delassus.h"
+#include "tissue_contact/baselines/delassus.h"
 
 using namespace tissue_contact;
 

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "contact/mesh_field.h"
+#include "contact/shape/mesh_field.h"
 #include "fuzz/fuzz_support.h"
-#include "instrument/mesh_cleanup.h"
+#include "mesh/nodes.h"
+#include "mesh/reader/mesh_cleanup.h"
 
 using namespace tissue_contact;
 
@@ -51,7 +52,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     TriangleMesh mesh = mergeVertices(vertices, triangles);
     orientOutward(mesh);
     dropFlatTriangles(mesh);
-    dropUnusedVertices(mesh);
+    dropUnusedNodes(mesh.vertices, mesh.triangles);
     check(mesh);
     if (mesh.triangles.empty()) return 0;
     MeshPreparation no_cache;

@@ -4,13 +4,15 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "fuzz/fuzz_support.h"
+#include "support/text_scene.h"
 #include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/simulation/joint_state_player.h"
-#include "validation/text_scene.h"
+#include "tissue_contact/simulation/scene.h"
 
 using namespace tissue_contact;
 
@@ -25,13 +27,7 @@ constexpr double kFastestTool = 2.0;  // m/s; real ones move at up to 0.5
 /// be flagged.
 constexpr double kMostForce = 2.0 * 5000.0 * 1.6e-3;  // N
 
-constexpr const char* kScene = R"(
-tissues:
-  - name: block
-    block: {size_m: [0.02, 0.02, 0.01], cells: [1, 1, 1]}
-    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}
-    damping: {stiffness_s: 0.003}
-    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]
+const std::string kScene = blockScene("[0.02, 0.02, 0.01]", "[1, 1, 1]") + R"(
 instruments:
   - name: left
     robot_description: probe
@@ -224,13 +220,16 @@ class Run {
     fuzz::require(played.was_reset || played.was_resumed || played.stamp_ns >= last_moment_ns_,
                   "time goes back by a reset only, or from a stamp far off");
     last_moment_ns_ = played.stamp_ns;
+    if (played.was_reset) {  // tissue is as at the start, and tools were placed
+      was_fast_ = false;
+      moment_before_ns_ = last_moment_ns_;
+    }
     fuzz::require(!played.interrupted || played.instruments.empty(), "what was interrupted owes no wrench");
     for (const int instrument : played.instruments) digest_.add(instrument);
   }
 
   void watchTools() {
     constexpr double kMaxGap = 0.02;  // s, of the scene: what is longer is simulated as that long
-    // After a reset tools are placed.
     const double passed_s = std::min(1e-9 * static_cast<double>(last_moment_ns_ - moment_before_ns_), kMaxGap);
     for (int i = 0; i < static_cast<int>(simulator_.instruments().size()); ++i) {
       const VectorX& now = simulator_.jointPositions(i);

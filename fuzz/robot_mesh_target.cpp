@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "fuzz/fuzz_support.h"
-#include "instrument/assimp_reader.h"
-#include "tissue_contact/instrument/collision_shape.h"
+#include "mesh/reader/assimp_reader.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
 
 using namespace tissue_contact;
 

@@ -5,8 +5,12 @@
 #include <vector>
 
 #include "fuzz/fuzz_support.h"
+#include "support/text_scene.h"
+#include "tissue_contact/instrument/instrument_description.h"
+#include "tissue_contact/mesh/mesh_description.h"
 #include "tissue_contact/scene/load_scene.h"
-#include "validation/text_scene.h"
+#include "tissue_contact/simulation/scene.h"
+#include "tissue_contact/tissue/tissue_description.h"
 
 using namespace tissue_contact;
 

@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "fuzz/fuzz_support.h"
-#include "tissue_contact/tissue/tet_mesh.h"
+#include "tissue_contact/mesh/tet_mesh.h"
 
 using namespace tissue_contact;
 

@@ -4,6 +4,7 @@
 
 #include "fuzz/fuzz_support.h"
 #include "tissue_contact/instrument/collision_shape.h"
+#include "tissue_contact/instrument/instrument_description.h"
 #include "tissue_contact/instrument/parse_urdf.h"
 
 using namespace tissue_contact;

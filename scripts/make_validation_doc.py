@@ -182,7 +182,7 @@ def advisor_section(file):
     head = list(rows[0])
     text = ("Each scene with each choice of the advisor off and on: processor time per step, what it adds to the wrench (RMS of "
             "the force over the run, relative), and the bound stated for it. Sleep is off while another choice is measured. "
-            "Made by `bench/advisor.cpp`.")
+            "Made by `benchmark/drivers/advisor.cpp`.")
     return ["## What a scene does not need", text,
             table([name.replace("_", " ") for name in head], [[row[name] for name in head] for row in rows])]
 
@@ -203,7 +203,7 @@ def run(command, result, reuse, may_fail=False, stdout=None):
 
 
 def write_path(bag_file, csv_file):
-    """Two dips of the recorded arm as a table of joint positions, for bench/advisor.cpp: the benchmark's, seen to their end."""
+    """Two dips of the recorded arm as a table of joint positions, for benchmark/drivers/advisor.cpp: the benchmark's, seen to their end."""
     begin, end = 14.1, 19.1  # s from the first joint state
     with open(os.path.join(PACKAGE, "config", "psm_dvrk.yaml"), encoding="utf-8") as stream:
         instrument = yaml.safe_load(stream)["instruments"][0]
@@ -223,11 +223,11 @@ def write_path(bag_file, csv_file):
 def run_advisor(build, robot_bag, result, reuse):
     if reuse and os.path.exists(result) and os.path.exists(result + ".commit"):
         return
-    command = [os.path.join(build, "bench", "advisor"), "1"]
+    command = [os.path.join(build, "benchmark", "drivers", "advisor")]
     if robot_bag:
         path = os.path.join(os.path.dirname(result), "psm_path.csv")
         write_path(robot_bag, path)
-        command.append("psm=" + path)
+        command += ["--psm", path]
     with open(result, "w", encoding="ascii") as stream:
         run(command, result, False, stdout=stream)
 

@@ -17,7 +17,8 @@ namespace tissue_contact {
 /// edge or a tip that pokes into the middle of a triangle).
 /// Where all of it counts, the vertices' own contacts say the same and the point needs none.
 /// @param corners, distances of the triangle's vertices, m, and the shape's signed distance phi there.
-/// @param weights barycentric. @param gap phi at that point, m.
+/// @param weights barycentric.
+/// @param gap phi at that point, m.
 struct ConformingGap {
   double gap = 0.0;    ///< m; but for round-off not less than the one given where that is the triangle's least
   bool fully = false;  ///< all of the sagitta counts

@@ -9,8 +9,11 @@
 
 #include "contact/conforming_gap.h"
 #include "contact/narrow_phase.h"
-#include "contact/shape_union.h"
-#include "contact/triangle_tree.h"
+#include "contact/shape/shape_union.h"
+#include "contact/tolerances.h"
+#include "mesh/mesh_checks.h"
+#include "mesh/surface/moving_surface.h"
+#include "mesh/surface/triangle_geometry.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/entry_error.h"
 
@@ -32,14 +35,6 @@ struct TouchingShape {
   double half_extent;  ///< smallest, m
 };
 
-struct TouchableSurface {
-  TriangleTree tree;
-  NarrowPhase narrow_phase;
-  int node_count;
-  Eigen::AlignedBox3d box = Eigen::AlignedBox3d();  ///< around all nodes, this call
-  bool refitted = false;                            ///< this call: only tissues that a shape comes near need their tree
-};
-
 std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instruments,
                                           const MeshPreparation& preparation) {
   ShapeDistances distances(preparation);
@@ -59,20 +54,6 @@ std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instrum
   return result;
 }
 
-/// @param index of the tissue or instrument meant, -1 for none. No allocation while all is well.
-void requireSameSize(const char* what, int index, std::size_t size, std::size_t expected) {
-  if (size == expected) return;
-  throw std::invalid_argument(std::string("contact detection: ") + what +
-                              (index < 0 ? "" : " " + std::to_string(index)) + ": " + std::to_string(size) +
-                              " given; there must be " + std::to_string(expected));
-}
-
-Eigen::AlignedBox3d boxAround(const NodalVectors& positions) {
-  Eigen::AlignedBox3d box;
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) box.extend(Vector3(positions.col(i)));
-  return box;
-}
-
 Eigen::AlignedBox3d boxAround(const ShapeDistance& shape, const Pose& X_WS, double margin) {
   const Vector3 centre = X_WS * shape.boxCentre();
   const Vector3 half = shape.halfExtents(X_WS.linear()) + Vector3::Constant(margin);
@@ -83,38 +64,28 @@ Eigen::AlignedBox3d boxAround(const ShapeDistance& shape, const Pose& X_WS, doub
 
 struct ContactDetector::Implementation {
   std::vector<TouchingShape> shapes;
-  std::vector<TouchableSurface> surfaces;
+  SharedSurfaces surfaces;
   std::vector<std::size_t> link_counts;  ///< per instrument
+  NarrowPhase narrow_phase;
   std::vector<int> candidates;
   std::vector<ShapeContact> found;
   int pinched = 0;  ///< contacts left out by the last detect(), because there is no room for them
 
-  void detectPair(int tissue, const NodalVectors& positions, const TouchingShape& shape, const Pose& X_WS,
-                  double margin, std::vector<Contact>& contacts);
+  void detectPair(MovingSurface& surface, const TouchingShape& shape, const Pose& X_WS, double margin,
+                  std::vector<Contact>& contacts);
   double deepestGroove(const TouchingShape& shape, const std::vector<Pose>& X_WL) const;
-  bool besideOthers(const TouchingShape& shape, const std::vector<std::vector<Pose>>& X_WL, Contact& contact) const;
-  double surfaceDistance(TouchableSurface& surface, const NodalVectors& positions, const TouchingShape& shape,
-                         const Pose& X_WS, double bound);
+  bool fitBetweenShapes(const TouchingShape& shape, const std::vector<std::vector<Pose>>& X_WL, Contact& contact) const;
+  double surfaceDistance(MovingSurface& surface, const TouchingShape& shape, const Pose& X_WS, double bound);
 };
 
-ContactDetector::ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
-                                 const std::vector<NodalVectors>& positions, const MeshPreparation& preparation)
+ContactDetector::ContactDetector(const std::vector<Instrument>& instruments, SharedSurfaces surfaces,
+                                 const MeshPreparation& preparation)
     : implementation_(std::make_unique<Implementation>()) {
-  requireSameSize("positions of tissues", -1, positions.size(), surfaces.size());
   implementation_->shapes = touchingShapes(instruments, preparation);
+  implementation_->surfaces = std::move(surfaces);
+  for (const MovingSurface& surface : *implementation_->surfaces) implementation_->narrow_phase.makeRoom(surface);
   for (const Instrument& one : instruments) implementation_->link_counts.push_back(one.model().links().size());
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const int node_count = static_cast<int>(positions[i].cols());
-    // The narrow phase checks the indices that the tree then relies on.
-    NarrowPhase narrow_phase(surfaces[i].triangles, std::move(surfaces[i].fixed), node_count, surfaces[i].thickness_m);
-    implementation_->surfaces.push_back(
-        {TriangleTree(positions[i], std::move(surfaces[i].triangles)), std::move(narrow_phase), node_count});
-  }
 }
-
-ContactDetector::ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
-                                 const std::vector<NodalVectors>& positions)
-    : ContactDetector(instruments, std::move(surfaces), positions, MeshPreparation()) {}
 
 ContactDetector::~ContactDetector() = default;
 ContactDetector::ContactDetector(ContactDetector&&) noexcept = default;
@@ -125,26 +96,21 @@ void ContactDetector::detect(const std::vector<NodalVectors>& positions, const s
   Implementation& self = *implementation_;
   if (!(margin_m >= 0.0 && std::isfinite(margin_m)))
     requireNonNegative("contact detection: margin", margin_m, "m");  // no string else
-  requireSameSize("positions of tissues", -1, positions.size(), self.surfaces.size());
-  requireSameSize("link poses of instruments", -1, X_WL.size(), self.link_counts.size());
+  requireCount("link poses of instruments", X_WL.size(), self.link_counts.size());
   for (std::size_t i = 0; i < X_WL.size(); ++i) {
-    requireSameSize("link poses of instrument", static_cast<int>(i), X_WL[i].size(), self.link_counts[i]);
+    requireCount("link poses of an instrument", X_WL[i].size(), self.link_counts[i]);
   }
+  placeAll(*self.surfaces, positions);
   contacts.clear();
   self.pinched = 0;
-  for (std::size_t tissue = 0; tissue < positions.size(); ++tissue) {
-    requireSameSize("nodes of tissue", static_cast<int>(tissue), positions[tissue].cols(),
-                    self.surfaces[tissue].node_count);
-    self.surfaces[tissue].refitted = false;
-    self.surfaces[tissue].box = boxAround(positions[tissue]);
+  for (MovingSurface& surface : *self.surfaces) {
     for (const TouchingShape& shape : self.shapes) {
       const auto first = static_cast<std::ptrdiff_t>(contacts.size());
       const double groove = self.deepestGroove(shape, X_WL[shape.instrument]);
-      self.detectPair(static_cast<int>(tissue), positions[tissue], shape,
-                      X_WL[shape.instrument][shape.link] * shape.X_LS, margin_m + groove, contacts);
+      self.detectPair(surface, shape, X_WL[shape.instrument][shape.link] * shape.X_LS, margin_m + groove, contacts);
       if (self.shapes.size() == 1) continue;
       const auto is_none = [&](Contact& contact) {
-        const bool has_room = self.besideOthers(shape, X_WL, contact);
+        const bool has_room = self.fitBetweenShapes(shape, X_WL, contact);
         self.pinched += static_cast<int>(!has_room);
         return !has_room || contact.gap_m > margin_m;
       };
@@ -153,24 +119,20 @@ void ContactDetector::detect(const std::vector<NodalVectors>& positions, const s
   }
 }
 
-void ContactDetector::Implementation::detectPair(int tissue, const NodalVectors& positions, const TouchingShape& shape,
-                                                 const Pose& X_WS, double margin, std::vector<Contact>& contacts) {
-  TouchableSurface& surface = surfaces[tissue];
-  const Eigen::AlignedBox3d box = boxAround(*shape.distance, X_WS, margin + surface.narrow_phase.halfThickness());
-  if (!surface.box.intersects(box)) return;
-  if (!surface.refitted) surface.tree.refit(positions);
-  surface.refitted = true;
-  surface.tree.overlapping(box, candidates);
+void ContactDetector::Implementation::detectPair(MovingSurface& surface, const TouchingShape& shape, const Pose& X_WS,
+                                                 double margin, std::vector<Contact>& contacts) {
+  const Eigen::AlignedBox3d box = boxAround(*shape.distance, X_WS, margin + surface.halfThickness());
+  if (!surface.box().intersects(box)) return;
+  surface.tree().overlapping(box, candidates);
   if (candidates.empty()) return;
-  surface.narrow_phase.findContacts(*shape.distance, X_WS, positions, candidates, margin, found);
+  narrow_phase.findContacts(*shape.distance, X_WS, surface, candidates, margin, found);
   for (const ShapeContact& one : found) {
     Contact& contact = contacts.emplace_back();
-    contact.key = {tissue, shape.instrument, shape.contact_link, shape.shape, one.feature, one.corner, 0,
-                   -1,     {-1, -1, -1}};
+    contact.key = {surface.tissue(), shape.instrument, shape.contact_link, shape.shape, one.feature, one.corner, 0, -1,
+                   {-1, -1, -1}};
     contact.nodes = one.nodes;
     contact.weights = one.weights;
-    contact.p_WC.setZero();
-    for (int i = 0; i < 3; ++i) contact.p_WC += one.weights[i] * positions.col(one.nodes[i]);
+    contact.p_WC = pointOf(surface.positions(), one.nodes, one.weights);
     contact.R_WC = contactFrame(one.normal_W);
     contact.gap_m = one.gap;
   }
@@ -193,14 +155,16 @@ double ContactDetector::Implementation::deepestGroove(const TouchingShape& shape
   return kStands * deepest;
 }
 
-/// Heeds the other shapes near a contact: turns it to the filling of the groove between this shape and another of the
-/// instrument. @return false where it is pinched: shapes that touch each other press its point from opposed sides. There
-/// is no room for tissue then and no force that would make any, so the point is let go.
-bool ContactDetector::Implementation::besideOthers(const TouchingShape& shape,
-                                                   const std::vector<std::vector<Pose>>& X_WL, Contact& contact) const {
+/// Fits a contact to the other shapes near it: turns it to the filling of the groove between this shape and another of the
+/// instrument.
+/// @return false where it is pinched: shapes that touch each other press its point from opposed sides. There is no room
+///   for tissue then and no force that would make any, so it is dropped.
+bool ContactDetector::Implementation::fitBetweenShapes(const TouchingShape& shape,
+                                                       const std::vector<std::vector<Pose>>& X_WL,
+                                                       Contact& contact) const {
   constexpr double kRoom = 0.05;       // of that radius: shapes that near touch each other
   constexpr double kSheetRoom = 0.25;  // of a sheet's thickness, if that is less
-  const double half_thickness = surfaces[contact.key.tissue].narrow_phase.halfThickness();
+  const double half_thickness = (*surfaces)[contact.key.tissue].halfThickness();
   const PlacedShape own{shape.distance.get(), X_WL[shape.instrument][shape.link] * shape.X_LS};
   std::optional<SignedDistance> before;
   SignedDistance united;
@@ -226,6 +190,8 @@ bool ContactDetector::Implementation::besideOthers(const TouchingShape& shape,
   return true;
 }
 
+const SharedSurfaces& ContactDetector::surfaces() const { return implementation_->surfaces; }
+
 int ContactDetector::pinchedContacts() const { return implementation_->pinched; }
 
 const TriangleMesh* ContactDetector::actingSurface(int instrument, int contact_link, int shape) const {
@@ -243,53 +209,51 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
   const NodalVectors& x = positions.at(key.tissue);
   for (const TouchingShape& shape : implementation_->shapes) {
     if (shape.instrument != key.instrument || shape.contact_link != key.link || shape.shape != key.shape) continue;
+    const MovingSurface& surface = (*implementation_->surfaces)[key.tissue];
     const Pose X_WS = X_WL.at(shape.instrument).at(shape.link) * shape.X_LS;
-    Vector3 p_W = Vector3::Zero();
+    const Vector3 p_W = pointOf(x, contact.nodes, contact.weights);
     std::array<Vector3, 3> corners_S;
     std::array<double, 3> distances;
     for (int i = 0; i < 3; ++i) {
-      p_W += contact.weights[i] * x.col(contact.nodes[i]);
       corners_S[i] = X_WS.linear().transpose() * (x.col(contact.nodes[i]) - X_WS.translation());
       distances[i] = shape.distance->at(corners_S[i]).distance;
     }
     const SignedDistance here = shape.distance->at(X_WS.linear().transpose() * (p_W - X_WS.translation()));
     const Vector3 normal_W = (X_WS.linear() * here.normal).normalized();
-    const NarrowPhase& surface = implementation_->surfaces[key.tissue].narrow_phase;
     const double gap =
         conformingGap(corners_S, distances, contact.weights, here.distance).gap - surface.halfThickness();
+    const auto faces = [&](int triangle) {
+      const Triangle& nodes = surface.triangles()[triangle];
+      return normal_W.dot(triangleNormal(x.col(nodes[0]), x.col(nodes[1]), x.col(nodes[2]))) < -kFacing;
+    };
     if (!(gap <= margin_m + implementation_->deepestGroove(shape, X_WL[shape.instrument])) ||
-        !surface.faces(key.feature, normal_W, x))
+        (surface.isVolume() && !surface.anyTriangleOf(key.feature, faces)))
       return false;
     contact.p_WC = p_W;
     contact.R_WC = contactFrame(normal_W);
     contact.gap_m = gap;
     if (implementation_->shapes.size() == 1) return true;
-    return implementation_->besideOthers(shape, X_WL, contact) && contact.gap_m <= margin_m;
+    return implementation_->fitBetweenShapes(shape, X_WL, contact) && contact.gap_m <= margin_m;
   }
   return false;
 }
 
 /// Least signed distance of the shape over the surface's triangles, or `bound` if that is less.
-double ContactDetector::Implementation::surfaceDistance(TouchableSurface& surface, const NodalVectors& positions,
-                                                        const TouchingShape& shape, const Pose& X_WS, double bound) {
+double ContactDetector::Implementation::surfaceDistance(MovingSurface& surface, const TouchingShape& shape,
+                                                        const Pose& X_WS, double bound) {
   const ShapeDistance& distance = *shape.distance;
-  if (!surface.refitted) surface.tree.refit(positions);
-  surface.refitted = true;
   // The surface node nearest to the middle of the shape tells how far to look.
   const Vector3 middle = X_WS * distance.boxCentre();
-  int node = surface.narrow_phase.triangles().front()[0];
-  for (const Triangle& triangle : surface.narrow_phase.triangles()) {
-    for (const int other : triangle) {
-      if ((positions.col(other) - middle).squaredNorm() < (positions.col(node) - middle).squaredNorm()) node = other;
-    }
-  }
+  const auto squared = [&](int node) { return (surface.x(node) - middle).squaredNorm(); };
+  const int node = *std::min_element(surface.nodes().begin(), surface.nodes().end(),
+                                     [&](int a, int b) { return squared(a) < squared(b); });
   const Matrix3 R_SW = X_WS.linear().transpose();
-  double nearest = std::min(bound, distance.at(R_SW * (positions.col(node) - X_WS.translation())).distance);
-  surface.tree.overlapping(boxAround(distance, X_WS, std::max(nearest, 0.0)), candidates);
-  const auto inShape = [&](int one) -> Vector3 { return R_SW * (positions.col(one) - X_WS.translation()); };
+  const auto inShape = [&](int one) -> Vector3 { return R_SW * (surface.x(one) - X_WS.translation()); };
+  double nearest = std::min(bound, distance.at(inShape(node)).distance);
+  surface.tree().overlapping(boxAround(distance, X_WS, std::max(nearest, 0.0)), candidates);
   ClosestPoint closest;
   for (const int triangle : candidates) {
-    const Triangle& nodes = surface.narrow_phase.triangles()[triangle];
+    const Triangle& nodes = surface.triangles()[triangle];
     const TrianglePoints points(inShape(nodes[0]), inShape(nodes[1]), inShape(nodes[2]));
     if (distance.closest(points, nearest, closest)) nearest = std::min(nearest, closest.distance);
   }
@@ -299,19 +263,17 @@ double ContactDetector::Implementation::surfaceDistance(TouchableSurface& surfac
 void ContactDetector::lowerClosestApproach(const std::vector<NodalVectors>& positions,
                                            const std::vector<std::vector<Pose>>& X_WL, Approach& closest) {
   Implementation& self = *implementation_;
-  for (std::size_t tissue = 0; tissue < positions.size(); ++tissue) {
-    TouchableSurface& surface = self.surfaces.at(tissue);
-    if (surface.narrow_phase.triangles().empty()) continue;
-    surface.refitted = false;
-    const Eigen::AlignedBox3d box = boxAround(positions[tissue]);
-    const double half_thickness = surface.narrow_phase.halfThickness();
+  placeAll(*self.surfaces, positions);
+  for (MovingSurface& surface : *self.surfaces) {
+    if (surface.nodes().empty()) continue;
     for (const TouchingShape& shape : self.shapes) {
       const Pose X_WS = X_WL.at(shape.instrument).at(shape.link) * shape.X_LS;
-      const double bound = closest.distance_m + half_thickness;
-      if (!(box.exteriorDistance(boxAround(*shape.distance, X_WS, 0.0)) < bound)) continue;
-      const double nearest = self.surfaceDistance(surface, positions[tissue], shape, X_WS, bound);
+      const double bound = closest.distance_m + surface.halfThickness();
+      if (!(surface.box().exteriorDistance(boxAround(*shape.distance, X_WS, 0.0)) < bound)) continue;
+      const double nearest = self.surfaceDistance(surface, shape, X_WS, bound);
       if (!(nearest < bound)) continue;
-      closest = {static_cast<int>(tissue), shape.instrument, shape.contact_link, shape.shape, nearest - half_thickness};
+      closest = {surface.tissue(), shape.instrument, shape.contact_link, shape.shape,
+                 nearest - surface.halfThickness()};
     }
   }
 }

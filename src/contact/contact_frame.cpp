@@ -1,6 +1,6 @@
 /// @file
 /// Room `contact`: a tangent frame for a normal.
-#include "tissue_contact/contact/contact_detector.h"
+#include "tissue_contact/contact/contact.h"
 
 namespace tissue_contact {
 

@@ -1,13 +1,11 @@
 #include "contact/narrow_phase.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
-#include <utility>
 
 #include "contact/conforming_gap.h"
-#include "contact/stationary_gradient.h"
 #include "contact/tolerances.h"
-#include "tissue_contact/core/check.h"
 
 namespace tissue_contact {
 namespace {
@@ -49,19 +47,17 @@ Direction contactDirection(const ClosestPoint& closest, const Matrix3& tangent) 
 
 }  // namespace
 
-NarrowPhase::NarrowPhase(std::vector<Triangle> triangles, std::vector<bool> fixed, int node_count, double thickness_m)
-    : topology_(std::move(triangles), node_count),
-      fixed_(std::move(fixed)),
-      half_thickness_(0.5 * requireNonNegative("tissue surface: thickness", thickness_m, "m")) {
-  requireOneFlagPerNode(fixed_, node_count);
-  nodes_.resize(node_count);
-  normals_.resize(topology_.triangles().size());
+void NarrowPhase::makeRoom(const MovingSurface& surface) {
+  nodes_.resize(std::max(nodes_.size(), static_cast<std::size_t>(surface.nodeCount())));
+  normals_.resize(std::max(normals_.size(), surface.triangles().size()));
 }
 
-void NarrowPhase::findContacts(const ShapeDistance& shape, const Pose& X_WS, const NodalVectors& positions,
+void NarrowPhase::findContacts(const ShapeDistance& shape, const Pose& X_WS, const MovingSurface& surface,
                                const std::vector<int>& candidates, double margin, std::vector<ShapeContact>& contacts) {
-  call_ = {&shape, &positions, X_WS.linear().transpose(), X_WS.translation(), margin + half_thickness_, &contacts};
+  call_ = {&shape,   &surface, X_WS.linear().transpose(), X_WS.translation(), margin + surface.halfThickness(),
+           &contacts};
   ++call_index_;
+  makeRoom(surface);
   contacts.clear();
   for (const int triangle : candidates) {
     const TrianglePoints points = trianglePoints(triangle);
@@ -76,7 +72,7 @@ const Vector3& NarrowPhase::nodePosition(int node) {
   if (cache.placed != call_index_) {
     cache.placed = call_index_;
     // Coordinates relative to the shape first: its origin may be far from the world's.
-    cache.p_S.noalias() = call_.R_SW * (call_.positions->col(node) - call_.p_WS);
+    cache.p_S.noalias() = call_.R_SW * (call_.surface->positions().col(node) - call_.p_WS);
   }
   return cache.p_S;
 }
@@ -85,14 +81,14 @@ const Vector3& NarrowPhase::triangleNormalOf(int triangle) {
   NormalCache& cache = normals_[triangle];
   if (cache.computed != call_index_) {
     cache.computed = call_index_;
-    const Triangle& nodes = topology_.triangles()[triangle];
+    const Triangle& nodes = call_.surface->triangles()[triangle];
     cache.normal_S = triangleNormal(nodePosition(nodes[0]), nodePosition(nodes[1]), nodePosition(nodes[2]));
   }
   return cache.normal_S;
 }
 
 TrianglePoints NarrowPhase::trianglePoints(int triangle) {
-  const Triangle& nodes = topology_.triangles()[triangle];
+  const Triangle& nodes = call_.surface->triangles()[triangle];
   TrianglePoints points;
   points.corners = {nodePosition(nodes[0]), nodePosition(nodes[1]), nodePosition(nodes[2])};
   points.normal = triangleNormalOf(triangle);
@@ -101,13 +97,13 @@ TrianglePoints NarrowPhase::trianglePoints(int triangle) {
 
 /// Of vertices that certainlyFar() has measured.
 std::array<double, 3> NarrowPhase::vertexDistances(int triangle) const {
-  const Triangle& nodes = topology_.triangles()[triangle];
+  const Triangle& nodes = call_.surface->triangles()[triangle];
   return {nodes_[nodes[0]].distance, nodes_[nodes[1]].distance, nodes_[nodes[2]].distance};
 }
 
 /// Distance of a tissue vertex, and its contact if it has one.
 const NarrowPhase::NodeCache& NarrowPhase::measureVertex(int triangle, int corner) {
-  NodeCache& cache = nodes_[topology_.triangles()[triangle][corner]];
+  NodeCache& cache = nodes_[call_.surface->triangles()[triangle][corner]];
   if (cache.measured == call_index_) return cache;
   cache.measured = call_index_;
   const SignedDistance here = call_.shape->at(cache.p_S);
@@ -135,7 +131,7 @@ double NarrowPhase::addCorners(int triangle, const TrianglePoints& points) {
   if (points.normal.isZero(0.0)) return lowest;
   // A sheet is met from the side on which the shape's middle is.
   const bool from_below =
-      half_thickness_ > 0.0 && points.normal.dot(call_.shape->boxCentre() - points.corners[0]) < 0.0;
+      !call_.surface->isVolume() && points.normal.dot(call_.shape->boxCentre() - points.corners[0]) < 0.0;
   const Vector3 forward = from_below ? points.normal : -points.normal;
   Eigen::AlignedBox3d reach;
   for (const Vector3& p : points.corners) {
@@ -163,15 +159,16 @@ double NarrowPhase::addCorners(int triangle, const TrianglePoints& points) {
 /// gap.
 double NarrowPhase::addCornerInFold(int triangle, const ShapeCorner& corner) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  if (half_thickness_ > 0.0) return kNone;
+  if (!call_.surface->isVolume()) return kNone;
   const auto nearest = [&](int other) { return snapped(projectOnTriangle(trianglePoints(other).corners, corner.p_S)); };
   const Vector3 weights = nearest(triangle);
-  const SurfaceFeature feature = topology_.featureOf(triangle, weights);
+  const SurfaceFeature feature = call_.surface->featureOf(triangle, weights);
   const Vector3 p = trianglePoints(triangle).pointAt(weights);
   Vector3 outward = Vector3::Zero();
-  const bool elsewhere = topology_.anyTriangleOf(feature, [&](int other) {
+  const bool elsewhere = call_.surface->anyTriangleOf(feature, [&](int other) {
     outward += triangleNormalOf(other);
-    return triangleNormalOf(other).dot(corner.p_S - p) >= 0.0 || topology_.featureOf(other, nearest(other)) != feature;
+    return triangleNormalOf(other).dot(corner.p_S - p) >= 0.0 ||
+           call_.surface->featureOf(other, nearest(other)) != feature;
   });
   if (elsewhere || outward.isZero(0.0)) return kNone;
   outward.normalize();
@@ -184,7 +181,7 @@ void NarrowPhase::addClosest(int triangle, const TrianglePoints& points, double 
   ClosestPoint closest;
   if (!call_.shape->closest(points, call_.margin, closest)) return;
   const Vector3 weights = snapped(closest.weights);
-  const SurfaceFeature feature = topology_.featureOf(triangle, weights);
+  const SurfaceFeature feature = call_.surface->featureOf(triangle, weights);
   if (feature[1] < 0) return;  // a vertex: measureVertex() has it
   Direction direction = contactDirection(closest, tangentOf(points, weights));
   if (!closest.beyond_rim) {
@@ -211,15 +208,14 @@ double NarrowPhase::lowestVertexGap(const SurfaceFeature& feature) const {
 bool NarrowPhase::add(int triangle, const Vector3& weights, int corner, const Vector3& normal_S, double gap) {
   if (!(gap <= call_.margin)) return false;
   ShapeContact contact;
-  contact.feature = topology_.featureOf(triangle, weights);
-  const auto isFixed = [&](int node) { return node < 0 || fixed_[node]; };
-  if (std::all_of(contact.feature.begin(), contact.feature.end(), isFixed)) return false;
+  contact.feature = call_.surface->featureOf(triangle, weights);
+  if (call_.surface->isFixed(contact.feature)) return false;
   const auto faces = [&](int other) { return normal_S.dot(triangleNormalOf(other)) < -kFacing; };
-  if (half_thickness_ == 0.0 && !topology_.anyTriangleOf(contact.feature, faces)) return false;
+  if (call_.surface->isVolume() && !call_.surface->anyTriangleOf(contact.feature, faces)) return false;
 
-  const Triangle& own = topology_.triangles()[triangle];
-  topology_.anyTriangleOf(contact.feature, [&](int first) {
-    contact.nodes = topology_.triangles()[first];
+  const Triangle& own = call_.surface->triangles()[triangle];
+  call_.surface->anyTriangleOf(contact.feature, [&](int first) {
+    contact.nodes = call_.surface->triangles()[first];
     return true;
   });
   for (int i = 0; i < 3; ++i) {
@@ -229,17 +225,9 @@ bool NarrowPhase::add(int triangle, const Vector3& weights, int corner, const Ve
   }
   contact.corner = corner;
   contact.normal_W = (call_.R_SW.transpose() * normal_S).normalized();
-  contact.gap = gap - half_thickness_;
+  contact.gap = gap - call_.surface->halfThickness();
   call_.contacts->push_back(contact);
   return true;
-}
-
-bool NarrowPhase::faces(const SurfaceFeature& feature, const Vector3& normal_W, const NodalVectors& positions) const {
-  return half_thickness_ > 0.0 || topology_.anyTriangleOf(feature, [&](int triangle) {
-    const Triangle& nodes = topology_.triangles()[triangle];
-    const Vector3 own = triangleNormal(positions.col(nodes[0]), positions.col(nodes[1]), positions.col(nodes[2]));
-    return normal_W.dot(own) < -kFacing;
-  });
 }
 
 /// One contact per feature and corner: the one of smallest gap, whatever order the triangles came in.

@@ -10,7 +10,7 @@
 ///  - On the boundary of a volume a contact counts when at least one surface triangle at its feature faces the
 ///    instrument (contact normal times triangle normal < -kFacing). A point of the tissue nearest to something outside
 ///    it always has such a triangle. The lower face of a thin layer pressed from above has none, nor has a surface that
-///    the middle of the shape has already passed: tissue more than half-way through an instrument is let go, never
+///    the middle of the shape has already passed: tissue more than half-way through an instrument is released, never
 ///    pulled through its far side; an instrument that starts inside touches nothing until it reaches the surface.
 ///  - A sheet is touched from both sides, half its thickness before its triangles; which side, the shape's signed
 ///    distance tells: it is pushed out on the side it is nearest to.
@@ -24,8 +24,8 @@
 #include <limits>
 #include <vector>
 
-#include "contact/shape_distance.h"
-#include "contact/surface_topology.h"
+#include "contact/shape/shape_distance.h"
+#include "mesh/surface/moving_surface.h"
 #include "tissue_contact/core/types.h"
 
 namespace tissue_contact {
@@ -41,20 +41,15 @@ struct ShapeContact {
 
 class NarrowPhase {
  public:
-  /// @param fixed per node. @param thickness_m > 0: a sheet, 0: the boundary of a volume. @throws std::invalid_argument
-  ///   for bad triangles, a size that differs from the node count or a thickness that is not finite or < 0.
-  NarrowPhase(std::vector<Triangle> triangles, std::vector<bool> fixed, int node_count, double thickness_m = 0.0);
+  /// Takes the memory that a surface needs, so that findContacts() need not.
+  void makeRoom(const MovingSurface& surface);
 
-  /// @param positions m, world frame. @param candidates surface triangles to look at, ascending. @param margin m.
+  /// @param surface where it has been placed.
+  /// @param candidates its triangles to look at, ascending.
+  /// @param margin m.
   /// @param contacts overwritten, sorted by feature and corner. No allocation once the vectors have grown.
-  void findContacts(const ShapeDistance& shape, const Pose& X_WS, const NodalVectors& positions,
+  void findContacts(const ShapeDistance& shape, const Pose& X_WS, const MovingSurface& surface,
                     const std::vector<int>& candidates, double margin, std::vector<ShapeContact>& contacts);
-
-  double halfThickness() const { return half_thickness_; }
-  const std::vector<Triangle>& triangles() const { return topology_.triangles(); }
-
-  /// Whether a surface triangle at the feature faces a shape whose contact normal is `normal_W` (unit).
-  bool faces(const SurfaceFeature& feature, const Vector3& normal_W, const NodalVectors& positions) const;
 
  private:
   struct NodeCache {
@@ -70,7 +65,7 @@ class NarrowPhase {
   };
   struct Call {
     const ShapeDistance* shape = nullptr;
-    const NodalVectors* positions = nullptr;
+    const MovingSurface* surface = nullptr;
     Matrix3 R_SW;
     Vector3 p_WS;
     double margin = 0.0;  ///< from the triangles themselves
@@ -90,9 +85,6 @@ class NarrowPhase {
   bool add(int triangle, const Vector3& weights, int corner, const Vector3& normal_S, double gap);
   void mergeAndSort();
 
-  SurfaceTopology topology_;
-  std::vector<bool> fixed_;
-  double half_thickness_;
   std::vector<NodeCache> nodes_;
   std::vector<NormalCache> normals_;
   std::vector<ShapeCorner> corners_;

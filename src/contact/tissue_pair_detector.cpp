@@ -2,27 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
 
-#include "contact/edge_edge.h"
-#include "contact/vertex_face.h"
+#include "contact/pair/edge_edge.h"
+#include "contact/pair/vertex_face.h"
 #include "tissue_contact/core/check.h"
 
 namespace tissue_contact {
 namespace {
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("tissue pairs: " + what); }
-
-/// No allocation while all is well.
-void requireSameSize(const char* what, std::size_t size, std::size_t expected) {
-  if (size == expected) return;
-  refuse(std::string(what) + ": " + std::to_string(size) + " given; there must be " + std::to_string(expected));
-}
 
 void requireKnownAndOnce(const std::vector<TouchingTissues>& pairs, std::size_t tissue_count) {
   std::set<std::pair<int, int>> seen;
@@ -42,30 +35,18 @@ void requireKnownAndOnce(const std::vector<TouchingTissues>& pairs, std::size_t 
 
 struct TissuePairDetector::Implementation {
   std::vector<TouchingTissues> pairs;
-  std::vector<std::optional<PairSurface>> surfaces;  ///< per tissue; none for tissues without a pair
-  std::vector<Eigen::Index> node_counts;
+  SharedSurfaces surfaces;
   VertexFace vertex_face;
   EdgeEdge edge_edge;
-  std::vector<bool> placed;  ///< scratch, per tissue
 
-  void place(int tissue, const std::vector<NodalVectors>& positions);
   void detectPair(const SurfacePair& pair, std::vector<Contact>& contacts);
 };
 
-TissuePairDetector::TissuePairDetector(std::vector<TouchingTissues> pairs, std::vector<TissueSurface> surfaces,
-                                       const std::vector<NodalVectors>& rest)
+TissuePairDetector::TissuePairDetector(std::vector<TouchingTissues> pairs, SharedSurfaces surfaces)
     : implementation_(std::make_unique<Implementation>()) {
-  Implementation& self = *implementation_;
-  requireSameSize("positions at rest", rest.size(), surfaces.size());
-  requireKnownAndOnce(pairs, surfaces.size());
-  self.pairs = std::move(pairs);
-  self.surfaces.resize(surfaces.size());
-  for (const NodalVectors& one : rest) self.node_counts.push_back(one.cols());
-  for (const TouchingTissues& pair : self.pairs) {
-    for (const int tissue : {pair.tissue, pair.other}) {
-      if (!self.surfaces[tissue]) self.surfaces[tissue].emplace(tissue, std::move(surfaces[tissue]), rest[tissue]);
-    }
-  }
+  requireKnownAndOnce(pairs, surfaces->size());
+  implementation_->pairs = std::move(pairs);
+  implementation_->surfaces = std::move(surfaces);
 }
 
 TissuePairDetector::~TissuePairDetector() = default;
@@ -77,18 +58,12 @@ void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, doub
   Implementation& self = *implementation_;
   if (!(margin_m >= 0.0 && std::isfinite(margin_m)))
     requireNonNegative("tissue pairs: margin", margin_m, "m");  // no string else
-  requireSameSize("positions of tissues", positions.size(), self.surfaces.size());
+  std::vector<MovingSurface>& surfaces = *self.surfaces;
+  placeAll(surfaces, positions);
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(contacts.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    requireSameSize("nodes of a tissue", positions[i].cols(), self.node_counts[i]);
-  }
-  self.placed.assign(positions.size(), false);
   for (std::size_t p = 0; p < self.pairs.size(); ++p) {
     if (!apart.empty() && apart[p]) continue;
-    const TouchingTissues& pair = self.pairs[p];
-    self.place(pair.tissue, positions);
-    self.place(pair.other, positions);
-    self.detectPair({*self.surfaces[pair.tissue], *self.surfaces[pair.other], margin_m}, contacts);
+    self.detectPair({surfaces[self.pairs[p].tissue], surfaces[self.pairs[p].other], margin_m}, contacts);
   }
   const auto order = [](const Contact& a, const Contact& b) {
     return std::tie(a.key, a.gap_m) < std::tie(b.key, b.gap_m);
@@ -98,18 +73,11 @@ void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, doub
   contacts.erase(std::unique(contacts.begin() + first, contacts.end(), same), contacts.end());
 }
 
-void TissuePairDetector::Implementation::place(int tissue, const std::vector<NodalVectors>& positions) {
-  if (!placed[tissue]) surfaces[tissue]->place(positions[tissue]);
-  placed[tissue] = true;
-}
-
 void TissuePairDetector::Implementation::detectPair(const SurfacePair& pair, std::vector<Contact>& contacts) {
   Eigen::AlignedBox3d near = pair.own.box();
   near.min().array() -= pair.reach();
   near.max().array() += pair.reach();
   if (!near.intersects(pair.other.box())) return;
-  pair.own.refit();
-  pair.other.refit();
   vertex_face.find(pair, false, contacts);
   if (!pair.folds()) vertex_face.find({pair.other, pair.own, pair.margin}, true, contacts);
   edge_edge.find(pair, contacts);

@@ -5,10 +5,6 @@
 
 namespace tissue_contact {
 
-/// A barycentric weight below this is zero: the point lies on the opposite edge. Well above the round-off of a
-/// projection (1e-15) and well below anything a mesh resolves.
-constexpr double kSnapWeight = 1e-9;
-
 /// Of the size: points whose distances differ by less are equally close. It makes the choice among them continuous
 /// (their weighted mean), at the price of a location that may be this much off the minimum; 2 nm for a 2 mm instrument.
 constexpr double kTie = 1e-6;
@@ -33,8 +29,5 @@ constexpr double kCornerSlope = 0.1;
 /// touches; an edge with less on both sides is as good as flat. Between two flat edges, vertices on faces leave a
 /// penetration of less than this slope times a quarter of the edge.
 constexpr double kSharp = 0.1;
-
-/// Twice the area below this, relative to the longest edge squared: a triangle without a usable normal.
-constexpr double kFlatTriangle = 1e-12;
 
 }  // namespace tissue_contact

@@ -4,6 +4,9 @@
 
 #include <unistd.h>
 
+#include <cstdint>
+#include <limits>
+#include <string>
 #include <utility>
 
 namespace tissue_contact {
@@ -27,5 +30,15 @@ class Descriptor {
  private:
   int number_ = -1;
 };
+
+struct OpenFile {
+  Descriptor descriptor;
+  std::uintmax_t bytes = 0;  ///< when it was opened
+};
+
+/// For reading what requireRegularFile() accepts.
+/// @throws as that.
+OpenFile openRegularFile(const std::string& file, const std::string& what,
+                         std::uintmax_t max_bytes = std::numeric_limits<std::uintmax_t>::max());
 
 }  // namespace tissue_contact

@@ -1,10 +1,10 @@
-/// @file
-/// Room `core`: see nearest_word.h.
 #include "tissue_contact/core/nearest_word.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
+
+#include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 namespace {
@@ -44,6 +44,11 @@ std::string nearestWord(const std::string& word, const std::vector<std::string>&
     least = distance;
   }
   return nearest;
+}
+
+std::string suggestion(const std::string& word, const std::vector<std::string>& allowed) {
+  const std::string nearest = nearestWord(word, allowed);
+  return nearest.empty() ? "" : "did you mean " + inQuotes(nearest) + "? ";
 }
 
 }  // namespace tissue_contact

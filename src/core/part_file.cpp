@@ -1,5 +1,3 @@
-/// @file
-/// Room `core`: see part_file.h.
 #include "core/part_file.h"
 
 #include <fcntl.h>

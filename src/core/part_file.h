@@ -19,7 +19,8 @@ struct OutputPlace {
   /// @throws std::invalid_argument when there is no such directory, or something else than a writable regular file.
   explicit OutputPlace(const std::string& file);
 
-  /// Looks again at what has the name. @throws as the constructor.
+  /// Looks again at what has the name.
+  /// @throws as the constructor.
   void look();
   bool isSameAs(const OutputPlace& other) const;
   bool isSameAs(const struct stat& file) const;

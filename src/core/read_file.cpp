@@ -1,19 +1,50 @@
-/// @file
-/// Room `core`: see read_file.h.
 #include "tissue_contact/core/read_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <filesystem>
 #include <stdexcept>
 #include <system_error>
 
 #include "core/descriptor.h"
-#include "tissue_contact/core/stand_in_file.h"
 
 namespace tissue_contact {
 namespace {
+
+namespace fs = std::filesystem;
+
+bool begins(const std::string& text, const char* with) { return text.rfind(with, 0) == 0; }
+
+std::string beginningOf(const std::string& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return "";
+  const Descriptor opened(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  std::string beginning(64, '\0');
+  const ssize_t count = opened.isOpen() ? read(opened.number(), beginning.data(), beginning.size()) : 0;
+  beginning.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  return beginning;
+}
+
+/// "is a git-lfs pointer ...; fetch it with: git lfs pull" and the like for a file that stands for data kept elsewhere, as a
+/// clone without git-lfs or git-annex leaves it; also for a link that leads into a git-annex store which is not there. Empty
+/// when it is none of these or cannot be read. Formats: git-lfs specification version 1 (a text whose first line is the key
+/// `version`); git-annex's pointer files ("/annex/objects/<key>") and links (into ".git/annex/objects").
+std::string standInProblem(const std::string& file) {
+  const std::string beginning = beginningOf(file);
+  if (begins(beginning, "version https://git-lfs") || begins(beginning, "version http://git-media")) {
+    return "is a git-lfs pointer, not the data itself; fetch the data in its repository with: git lfs pull";
+  }
+  std::error_code error;
+  const bool annex_link = beginning.empty() && fs::is_symlink(file, error) && !fs::exists(file, error) &&
+                          fs::read_symlink(file, error).string().find("annex/objects") != std::string::npos;
+  if (annex_link || begins(beginning, "/annex/objects/")) {
+    return "stands for data that git-annex keeps elsewhere; fetch the data in its repository with: git annex get";
+  }
+  return "";
+}
 
 [[noreturn]] void refuse(const std::string& file, const std::string& what, const std::string& why) {
   throw std::invalid_argument(what + " '" + file + "' " + why);
@@ -37,12 +68,9 @@ void requireSize(const std::string& file, const std::string& what, std::uintmax_
   }
 }
 
-struct OpenFile {
-  Descriptor descriptor;
-  std::uintmax_t bytes = 0;
-};
+}  // namespace
 
-OpenFile openRegular(const std::string& file, const std::string& what, std::uintmax_t max_bytes) {
+OpenFile openRegularFile(const std::string& file, const std::string& what, std::uintmax_t max_bytes) {
   if (const std::string problem = standInProblem(file); !problem.empty()) refuse(file, what, problem);
   struct stat status {};
   // Looked at before it is opened, since opening alone does something to some devices ...
@@ -58,8 +86,6 @@ OpenFile openRegular(const std::string& file, const std::string& what, std::uint
   return opened;
 }
 
-}  // namespace
-
 std::string fileTypeName(unsigned mode) {
   if (S_ISREG(mode)) return "";
   if (S_ISDIR(mode)) return "a directory";
@@ -70,11 +96,11 @@ std::string fileTypeName(unsigned mode) {
 }
 
 void requireRegularFile(const std::string& file, const std::string& what, std::uintmax_t max_bytes) {
-  openRegular(file, what, max_bytes);
+  openRegularFile(file, what, max_bytes);
 }
 
 std::string readFile(const std::string& file, const std::string& what, std::uintmax_t max_bytes) {
-  const OpenFile opened = openRegular(file, what, max_bytes);
+  const OpenFile opened = openRegularFile(file, what, max_bytes);
   const auto bytes = static_cast<std::size_t>(opened.bytes);
   std::string content(bytes + 1, '\0');  // one more, to see whether it has grown since
   std::size_t filled = 0;

@@ -1,5 +1,3 @@
-/// @file
-/// Room `core`: see whole_file.h.
 #include "tissue_contact/core/whole_file.h"
 
 #include <sys/stat.h>

@@ -1,44 +1,28 @@
 #include "friction/check_friction_law.h"
 
 #include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include "tissue_contact/core/check.h"
+#include "tissue_contact/core/entry_error.h"
+#include "tissue_contact/core/name_table.h"
 
 namespace tissue_contact {
 namespace {
 
 using Kind = FrictionLawDescription::Kind;
 
-/// Keeps squares of coefficients finite; dry friction seldom passes 2.
-constexpr double kLargestCoefficient = 1e6;
-
 /// Round-off of typed decimals, as a share of the size of a matrix.
 constexpr double kRoundOff = 1e-12;
-
-std::string element(const char* list, std::size_t i) { return std::string(list) + "[" + std::to_string(i) + "]"; }
 
 std::string text(double value) {
   std::ostringstream stream;
   stream.precision(std::numeric_limits<double>::max_digits10);
   stream << value;
   return stream.str();
-}
-
-const char* kindName(Kind kind) {
-  switch (kind) {
-    case Kind::kIsotropic:
-      return "isotropic friction: ";
-    case Kind::kOrthotropic:
-      return "orthotropic friction: ";
-    case Kind::kAsymmetric:
-      return "asymmetric friction: ";
-    case Kind::kTable:
-      return "friction table: ";
-    case Kind::kTensor:
-      return "friction tensor: ";
-  }
-  return "";
 }
 
 std::size_t expectedCount(const FrictionLawDescription& law) {
@@ -63,41 +47,39 @@ void checkCount(const std::string& what, std::size_t count, std::size_t expected
                               std::to_string(expected) + ", " + why);
 }
 
-void checkRange(const std::string& what, double value, double low, double high, const char* unit = "") {
-  if (!(value >= low && value <= high)) throwBadValue(what, value, unit, text(low) + " to " + text(high));
-}
-
-/// Starts at 0 and ascends.
-void checkAscending(const std::string& what, const char* list, const std::vector<double>& values, const char* unit) {
+void checkRange(const std::string& what, const char* list, const std::vector<double>& values, const Range& allowed) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::string name = what + element(list, i);
-    if (!std::isfinite(values[i])) throwBadValue(name, values[i], unit, "finite");
-    if (i == 0 && values[0] != 0.0) throwBadValue(name, values[0], unit, "0: the list starts there");
-    if (i > 0 && !(values[i] > values[i - 1])) {
-      throwBadValue(name, values[i], unit, "> " + text(values[i - 1]) + ", the value before it");
-    }
+    atEntry(elementOf(list, i), [&] { allowed.require(what + elementOf(list, i), values[i]); });
   }
 }
 
-void checkAngles(const std::string& what, const std::vector<double>& angles) {
-  if (angles.empty()) throw std::invalid_argument(what + "angles_rad is empty; it must have at least 1 value, 0");
-  checkAscending(what, "angles_rad", angles, "rad");
-  if (!(angles.back() < 2.0 * M_PI)) {
-    throwBadValue(what + element("angles_rad", angles.size() - 1), angles.back(), "rad",
-                  "< 2 pi: the table closes by itself");
+/// Starts at 0 and ascends.
+void checkAscending(const std::string& what, const char* list, const std::vector<double>& values,
+                    const Range& allowed) {
+  checkRange(what, list, values, allowed);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    atEntry(elementOf(list, i), [&] {
+      const std::string name = what + elementOf(list, i);
+      if (i == 0 && values[0] != 0.0) throwBadValue(name, values[0], allowed.unit, "0; begin the table at 0");
+      if (i > 0 && !(values[i] > values[i - 1])) {
+        throwBadValue(name, values[i], allowed.unit,
+                      "> " + text(values[i - 1]) + "; it is not greater than the value before it; sort the table");
+      }
+    });
   }
 }
 
 void checkScalarCoefficients(const std::string& what, const FrictionLawDescription& law) {
+  checkRange(what, "kinetic", law.kinetic_coefficients, FrictionLawDescription::kCoefficients);
+  checkRange(what, "static", law.static_coefficients, FrictionLawDescription::kCoefficients);
   for (std::size_t i = 0; i < law.kinetic_coefficients.size(); ++i) {
-    const double mu_kinetic = law.kinetic_coefficients[i];
-    const double mu_static = law.static_coefficients[i];
-    checkRange(what + element("kinetic", i), mu_kinetic, 0.0, kLargestCoefficient);
-    checkRange(what + element("static", i), mu_static, 0.0, kLargestCoefficient);
-    if (!(mu_static >= mu_kinetic)) {
-      throwBadValue(what + element("static", i), mu_static, "",
-                    ">= " + element("kinetic", i) + " = " + text(mu_kinetic));
-    }
+    if (law.static_coefficients[i] >= law.kinetic_coefficients[i]) continue;
+    // The one coefficient of an isotropic law is no list in a scene.
+    atEntry(law.kind == Kind::kIsotropic ? "static" : elementOf("static", i), [&] {
+      throwBadValue(what + elementOf("static", i), law.static_coefficients[i], "",
+                    ">= " + elementOf("kinetic", i) + " = " + text(law.kinetic_coefficients[i]) +
+                        "; the static coefficient is smaller than the kinetic one; swap or equal them");
+    });
   }
 }
 
@@ -127,27 +109,21 @@ void checkStaticHoldsKinetic(const std::string& what, const FrictionLawDescripti
 }
 
 void checkTensor(const std::string& what, const FrictionLawDescription& law) {
-  for (std::size_t i = 0; i < 4; ++i) {
-    checkRange(what + element("kinetic", i), law.kinetic_coefficients[i], -kLargestCoefficient, kLargestCoefficient);
-    checkRange(what + element("static", i), law.static_coefficients[i], -kLargestCoefficient, kLargestCoefficient);
-  }
+  checkRange(what, "kinetic", law.kinetic_coefficients, FrictionLawDescription::kTensorEntries);
+  checkRange(what, "static", law.static_coefficients, FrictionLawDescription::kTensorEntries);
   checkDissipates(what, "kinetic", law.kinetic_coefficients);
   checkStaticHoldsKinetic(what, law);
-}
-
-void checkSpeeds(const std::string& what, const FrictionLawDescription& law) {
-  checkCount(what + "speed_factors", law.speed_factors.size(), law.speeds_m_per_s.size(), "one per speed");
-  checkAscending(what, "speeds_m_per_s", law.speeds_m_per_s, "m/s");
-  for (std::size_t i = 0; i < law.speed_factors.size(); ++i) {
-    checkRange(what + element("speed_factors", i), law.speed_factors[i], 0.0, 1.0);
-  }
 }
 
 }  // namespace
 
 void checkFrictionLaw(const FrictionLawDescription& law) {
-  const std::string what = kindName(law.kind);
-  if (law.kind == Kind::kTable) checkAngles(what, law.angles_rad);
+  const std::string what = std::string(nameOf(law.kind, kFrictionLawNames, "friction law")) + " friction: ";
+  if (law.kind == Kind::kTable) {
+    if (law.angles_rad.empty())
+      throw std::invalid_argument(what + "angles_rad is empty; it must have at least 1 value, 0");
+    checkAscending(what, "angles_rad", law.angles_rad, FrictionLawDescription::kAngles);
+  }
   const char* why = law.kind == Kind::kTable ? "one per angle" : "as many as this law has coefficients";
   checkCount(what + "static", law.static_coefficients.size(), expectedCount(law), why);
   checkCount(what + "kinetic", law.kinetic_coefficients.size(), expectedCount(law), why);
@@ -156,7 +132,9 @@ void checkFrictionLaw(const FrictionLawDescription& law) {
   } else {
     checkScalarCoefficients(what, law);
   }
-  checkSpeeds(what, law);
+  checkCount(what + "speed_factors", law.speed_factors.size(), law.speeds_m_per_s.size(), "one per speed");
+  checkAscending(what, "speeds_m_per_s", law.speeds_m_per_s, FrictionLawDescription::kSpeeds);
+  checkRange(what, "speed_factors", law.speed_factors, FrictionLawDescription::kSpeedFactors);
 }
 
 }  // namespace tissue_contact

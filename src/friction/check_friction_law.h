@@ -4,11 +4,11 @@
 #pragma once
 
 #include "tissue_contact/core/types.h"
-#include "tissue_contact/scene/scene.h"
+#include "tissue_contact/friction/friction_law_description.h"
 
 namespace tissue_contact {
 
-/// @throws std::invalid_argument as makeAnisotropicFriction says.
+/// @throws EntryError of an entry of the law ("angles_rad[2]") as makeAnisotropicFriction says.
 void checkFrictionLaw(const FrictionLawDescription& law);
 
 /// Coefficients m11, m12, m21, m22 as a matrix.

@@ -131,7 +131,8 @@ class SlidingSearch {
     return tryPoint((right.e + left.e).normalized(), {f, Vector2::Zero()});
   }
 
-  /// Tries points all around, outwards from `start` to both sides. @return a consistent root was found.
+  /// Tries points all around, outwards from `start` to both sides.
+  /// @return a consistent root was found.
   bool findAround(const Vector2& start, int points, double slack, Trial& answer) const {
     const Eigen::Rotation2Dd turn(2.0 * M_PI / points);
     Trial left = tryAt(start);  // the outermost on the side of growing angle

@@ -1,13 +1,15 @@
 #include "tissue_contact/instrument/collision_shape.h"
 
-#include <algorithm>
+#include <array>
 #include <filesystem>
-#include <set>
 #include <stdexcept>
 #include <utility>
 #include <variant>
 
+#include "mesh/edge_table.h"
 #include "tissue_contact/core/check.h"
+#include "tissue_contact/instrument/instrument_description.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
 
 namespace tissue_contact {
 namespace {
@@ -34,16 +36,18 @@ void check(const MeshGeometry& mesh) {
 /// Contact needs to know which side is inside. Meshes as they come have small holes; an open sheet is mostly border.
 void checkSolid(const TriangleMesh& mesh, const std::string& file) {
   constexpr double kMostBorder = 0.2;  // share of triangle sides without a partner
-  std::set<std::pair<int, int>> sides;
-  for (const Triangle& t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) sides.insert({t[k], t[(k + 1) % 3]});
+  const EdgeTable table(mesh.triangles);
+  int sides = 0;  // each way along an edge counts once, however many triangles run it
+  int open = 0;
+  for (const EdgeTable::Edge& edge : table) {
+    std::array<bool, 2> runs = {false, false};
+    for (const EdgeUse& use : table.usesOf(edge)) runs[use.forward ? 0 : 1] = true;
+    sides += runs[0] && runs[1] ? 2 : 1;
+    open += runs[0] && runs[1] ? 0 : 1;
   }
-  const auto open = std::count_if(sides.begin(), sides.end(), [&](const std::pair<int, int>& side) {
-    return sides.count({side.second, side.first}) == 0;
-  });
-  if (static_cast<double>(open) <= kMostBorder * static_cast<double>(sides.size())) return;
+  if (open <= kMostBorder * sides) return;
   throw std::invalid_argument("mesh '" + file + "' is an open sheet: " + std::to_string(open) + " of its " +
-                              std::to_string(sides.size()) +
+                              std::to_string(sides) +
                               " triangle sides have no neighbour; a tool that touches tissue must be a closed solid");
 }
 

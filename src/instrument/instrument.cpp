@@ -7,21 +7,16 @@
 #include <utility>
 
 #include "tissue_contact/core/entry_error.h"
+#include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 namespace {
 
-/// "a, b, c" for messages, cut short when there are many.
 template <typename Named>
 std::string listNames(const std::vector<Named>& named) {
-  constexpr std::size_t kMax = 20;
-  std::string list;
-  for (std::size_t i = 0; i < named.size() && i < kMax; ++i) {
-    if (i > 0) list += ", ";
-    list += named[i].name;
-  }
-  if (named.size() > kMax) list += ", ...";
-  return list.empty() ? "none" : list;
+  std::vector<std::string> names;
+  for (const Named& one : named) names.push_back(one.name);
+  return names.empty() ? "none" : listOf(names, 20);
 }
 
 /// The checks of one description against one model; every message starts with the instrument's name.
@@ -137,13 +132,11 @@ class Builder {
  private:
   /// Bounds what one instrument holds while its meshes are read; the scene's bounds come after it.
   void count(const CollisionShape& shape) {
-    constexpr std::size_t kMostShapes = 1000;
-    constexpr std::size_t kMostTriangles = 2'000'000;
     if (shape.mesh) triangles_ += shape.mesh->triangles.size();
-    if (++shapes_ > kMostShapes || triangles_ > kMostTriangles) {
+    if (++shapes_ > kMostShapes || triangles_ > kMostShapeTriangles) {
       throw std::invalid_argument("the shapes up to here are " + std::to_string(shapes_) + " with " +
                                   std::to_string(triangles_) + " triangles; an instrument may have at most " +
-                                  std::to_string(kMostShapes) + " with " + std::to_string(kMostTriangles) +
+                                  std::to_string(kMostShapes) + " with " + std::to_string(kMostShapeTriangles) +
                                   "; name fewer contact links, or simpler shapes in the scene");
     }
   }

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "instrument/urdfdom_document.h"
 #include "tissue_contact/core/read_file.h"
-#include "urdfdom_document.h"
 
 namespace tissue_contact {
 namespace {
@@ -135,7 +135,8 @@ class UrdfReader {
     link.offset = drive.offset;
   }
 
-  /// The joint that `joint` mimics. @throws when it does not exist or never moves.
+  /// The joint that `joint` mimics.
+  /// @throws when it does not exist or never moves.
   const urdf::Joint& mimicked(const urdf::Joint& joint) const {
     const auto found = urdf_.joints_.find(joint.mimic->joint_name);
     if (found == urdf_.joints_.end()) {

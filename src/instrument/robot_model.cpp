@@ -1,5 +1,6 @@
 #include "tissue_contact/instrument/robot_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <set>
@@ -43,39 +44,35 @@ void applyMotion(const RobotModel::Link& link, double position, Pose& X) {
   }
 }
 
+template <typename Named>
+int indexOf(const std::vector<Named>& all, const std::string& name) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
+  return found == all.end() ? -1 : static_cast<int>(found - all.begin());
+}
+
+template <typename Named>
+void requireDifferentNames(const std::vector<Named>& all, const std::string& complaint) {
+  std::set<std::string> names;
+  for (const Named& one : all) {
+    if (!names.insert(one.name).second) throw std::invalid_argument(complaint + " named '" + one.name + "'");
+  }
+}
+
 }  // namespace
 
 RobotModel::RobotModel(std::string name, std::vector<Link> links, std::vector<IndependentJoint> joints)
     : name_(std::move(name)), links_(std::move(links)), joints_(std::move(joints)) {
   if (links_.empty()) throw std::invalid_argument("robot '" + name_ + "' has no link; it needs at least a root link");
-  std::set<std::string> names;
   for (std::size_t i = 0; i < links_.size(); ++i) {
     checkLink(links_[i], static_cast<int>(i), static_cast<int>(joints_.size()));
-    if (!names.insert(links_[i].name).second) {
-      throw std::invalid_argument("robot '" + name_ + "' has two links named '" + links_[i].name + "'");
-    }
   }
-  names.clear();
-  for (const IndependentJoint& joint : joints_) {
-    if (!names.insert(joint.name).second) {
-      throw std::invalid_argument("robot '" + name_ + "' has two joints named '" + joint.name + "'");
-    }
-  }
+  requireDifferentNames(links_, "robot '" + name_ + "' has two links");
+  requireDifferentNames(joints_, "robot '" + name_ + "' has two joints");
 }
 
-int RobotModel::findLink(const std::string& name) const {
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (links_[i].name == name) return static_cast<int>(i);
-  }
-  return -1;
-}
+int RobotModel::findLink(const std::string& name) const { return indexOf(links_, name); }
 
-int RobotModel::findJoint(const std::string& name) const {
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    if (joints_[i].name == name) return static_cast<int>(i);
-  }
-  return -1;
-}
+int RobotModel::findJoint(const std::string& name) const { return indexOf(joints_, name); }
 
 void RobotModel::forwardKinematics(const VectorX& positions, std::vector<Pose>& X_BL) const {
   if (positions.size() != static_cast<Eigen::Index>(joints_.size())) {

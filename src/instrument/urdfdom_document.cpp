@@ -1,4 +1,4 @@
-#include "urdfdom_document.h"
+#include "instrument/urdfdom_document.h"
 
 #include <console_bridge/console.h>
 #include <urdf_parser/urdf_parser.h>
@@ -8,8 +8,8 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "instrument/xml_tags.h"
 #include "tissue_contact/instrument/parse_urdf.h"
-#include "xml_tags.h"
 
 namespace tissue_contact {
 namespace {

@@ -1,4 +1,4 @@
-#include "xml_tags.h"
+#include "instrument/xml_tags.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -6,8 +6,6 @@
 
 namespace tissue_contact {
 namespace {
-
-constexpr std::string_view kSpace = " \t\r\n";
 
 /// Offset just behind `end`, searched from `from`; the end of the text if it is missing.
 std::size_t behind(std::string_view xml, std::string_view end, std::size_t from) {
@@ -65,28 +63,9 @@ bool XmlTagScanner::next(XmlTag& tag) {
     tag.kind = XmlTag::Kind::kEmpty;
     inside.remove_suffix(1);
   }
-  const std::size_t name_end = std::min(inside.find_first_of(kSpace), inside.size());
-  tag.name = inside.substr(0, name_end);
-  tag.attributes = inside.substr(name_end);
+  tag.name = inside.substr(0, inside.find_first_of(" \t\r\n"));
   at_ = std::min(end + 1, xml_.size());
   return true;
-}
-
-std::string_view xmlAttribute(const XmlTag& tag, std::string_view key) {
-  std::string_view rest = tag.attributes;
-  while (true) {
-    const std::size_t equals = rest.find('=');
-    if (equals == std::string_view::npos) return {};
-    const std::size_t open = rest.find_first_of("\"'", equals);
-    if (open == std::string_view::npos) return {};
-    const std::size_t close = rest.find(rest[open], open + 1);
-    if (close == std::string_view::npos) return {};
-    std::string_view name = rest.substr(0, equals);
-    name.remove_prefix(std::min(name.find_first_not_of(kSpace), name.size()));
-    name = name.substr(0, name.find_last_not_of(kSpace) + 1);
-    if (name == key) return rest.substr(open + 1, close - open - 1);
-    rest.remove_prefix(close + 1);
-  }
 }
 
 int lineOf(std::string_view text, std::size_t position) {

@@ -14,8 +14,7 @@ namespace tissue_contact {
 struct XmlTag {
   enum class Kind { kOpen, kClose, kEmpty } kind = Kind::kOpen;  ///< <a>, </a>, <a/>
   std::string_view name;
-  std::string_view attributes;  ///< everything after the name, without '>' or '/>'
-  std::size_t position = 0;     ///< offset of '<' in the text
+  std::size_t position = 0;  ///< offset of '<' in the text
 };
 
 /// Walks over the tags; skips text, comments, CDATA, declarations and processing instructions.
@@ -31,9 +30,6 @@ class XmlTagScanner {
   std::string_view xml_;
   std::size_t at_ = 0;
 };
-
-/// Value of an attribute of a tag, without its quotes and with entities left as they are; empty if there is none.
-std::string_view xmlAttribute(const XmlTag& tag, std::string_view key);
 
 /// Line (1 = first) of an offset in a text.
 int lineOf(std::string_view text, std::size_t position);

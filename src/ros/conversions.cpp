@@ -1,6 +1,4 @@
-/// @file
-/// Room `ros`: see conversions.h.
-#include "tissue_contact/ros/conversions.h"
+#include "ros/conversions.h"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,5 +1,3 @@
-/// @file
-/// Room `ros`: see environment.h.
 #include "tissue_contact/ros/environment.h"
 
 #include <ros/console.h>
@@ -17,11 +15,11 @@
 #include <thread>
 #include <vector>
 
-#include "bag_frames.h"
+#include "ros/bag/bag_frames.h"
+#include "ros/conversions.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/read_file.h"
 #include "tissue_contact/instrument/parse_urdf.h"
-#include "tissue_contact/ros/conversions.h"
 
 namespace tissue_contact {
 namespace {
@@ -91,12 +89,16 @@ std::string packagePath(const std::string& package) {
   return rospack.find(package, path) ? path : std::string();
 }
 
-SceneEnvironment nodeEnvironment(const ros::NodeHandle& private_node, const std::string& world_frame) {
-  double timeout_s = 10.0;
-  if (private_node.hasParam("tf_timeout_s") && !private_node.getParam("tf_timeout_s", timeout_s)) {
-    throw std::invalid_argument("parameter '" + private_node.resolveName("tf_timeout_s") +
-                                "' is not a number; it must be a time in s");
+double numberParameter(const ros::NodeHandle& node, const std::string& name, double otherwise) {
+  double value = otherwise;
+  if (node.hasParam(name) && !node.getParam(name, value)) {
+    throw std::invalid_argument("parameter '" + node.resolveName(name) + "' is not a number");
   }
+  return value;
+}
+
+SceneEnvironment nodeEnvironment(const ros::NodeHandle& private_node, const std::string& world_frame) {
+  const double timeout_s = numberParameter(private_node, "tf_timeout_s", 10.0);
   requireNonNegative("parameter '" + private_node.resolveName("tf_timeout_s") + "'", timeout_s, "s");
   SceneEnvironment environment;
   environment.package_path = packagePath;

@@ -2,9 +2,14 @@
 
 #include <filesystem>
 #include <map>
+#include <stdexcept>
 
-#include "scene_sections.h"
+#include "scene/scene_sections.h"
+#include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/core/read_file.h"
+#include "tissue_contact/core/resolve_path.h"
+#include "tissue_contact/core/text.h"
+#include "tissue_contact/simulation/scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -18,7 +23,6 @@ constexpr Range kMaxLagRange{1e-6, 60.0, "s", "give seconds: 20 ms is 0.02"};
 constexpr std::pair<const char*, StatePolicy> kStatePolicies[] = {{"auto", StatePolicy::kAuto},
                                                                   {"every_state", StatePolicy::kEveryState},
                                                                   {"newest_state", StatePolicy::kNewestState}};
-constexpr Range kRateRange{0.0, 10000.0, "Hz", "0 switches the topic off"};
 
 /// Where each name was first given. One set for tissues and instruments: both become topics of the same node.
 using NameLines = std::map<std::string, int>;
@@ -32,7 +36,7 @@ void addName(const std::string& name, const YamlCursor& cursor, NameLines& lines
 }
 
 StepDescription parseStep(const YamlCursor& cursor) {
-  const YamlMap map = cursor.map(MapKind::kStep);
+  const YamlMap map = cursor.map();
   StepDescription step;
   if (const YamlCursor* value = map.find("max_step_s")) step.max_step_s = value->number(kMaxStepRange);
   if (const YamlCursor* value = map.find("max_gap_s")) step.max_gap_s = value->number(kMaxGapRange);
@@ -53,18 +57,25 @@ StepDescription parseStep(const YamlCursor& cursor) {
   return step;
 }
 
-PublishDescription parsePublish(const YamlCursor& cursor) {
-  const YamlMap map = cursor.map(MapKind::kPublish);
-  PublishDescription publish;
-  const std::pair<const char*, double*> rates[] = {{"mesh_rate_hz", &publish.mesh_rate_hz},
-                                                   {"contacts_rate_hz", &publish.contacts_rate_hz},
-                                                   {"status_rate_hz", &publish.status_rate_hz},
-                                                   {"markers_rate_hz", &publish.markers_rate_hz}};
-  for (const auto& [key, rate] : rates) {
-    if (const YamlCursor* value = map.find(key)) *rate = value->number(kRateRange);
-  }
-  if (const YamlCursor* value = map.find("tf")) publish.tf = value->boolean();
-  return publish;
+// 0.1: beyond a tenth of the contact force the answer is another one. 0: nothing sleeps that is held by anything.
+constexpr Range kSleepErrorRange{0.0, 0.1, "", "give a share: 0.1 % is 0.001"};
+
+/// `word` or `auto`.
+/// @return whether it is `word`.
+bool isWord(const YamlCursor& cursor, const char* word) {
+  const std::pair<const char*, bool> words[] = {{"auto", false}, {word, true}};
+  return cursor.choice(words);
+}
+
+AdvisorDescription parseAdvisor(const YamlCursor& cursor) {
+  const YamlMap map = cursor.map();
+  AdvisorDescription advisor;
+  if (const YamlCursor* value = map.find("sleep")) advisor.sleep = !isWord(*value, "never");
+  if (const YamlCursor* value = map.find("sleep_error")) advisor.sleep_error = value->number(kSleepErrorRange);
+  if (const YamlCursor* value = map.find("rotations")) advisor.adapt_rotations = !isWord(*value, "always");
+  if (const YamlCursor* value = map.find("self_contact")) advisor.skip_folds = !isWord(*value, "always");
+  if (const YamlCursor* value = map.find("friction_path")) advisor.general_friction = isWord(*value, "general");
+  return advisor;
 }
 
 void parseBodies(const YamlMap& map, const PathContext& paths, Scene& scene) {
@@ -81,13 +92,7 @@ void parseBodies(const YamlMap& map, const PathContext& paths, Scene& scene) {
   }
 }
 
-}  // namespace
-
-Scene parseScene(const std::string& yaml, const std::string& file, const PackagePath& package_path) {
-  const YamlMap map = parseYaml(yaml, file).map(MapKind::kScene);
-  const PathContext paths{fs::path(file).parent_path().string(), package_path};
-  Scene scene;
-  scene.file = file;
+void parseSections(const YamlMap& map, const PathContext& paths, Scene& scene) {
   if (const YamlCursor* value = map.find("world_frame")) scene.world_frame = parseFrame(*value);
   if (const YamlCursor* value = map.find("gravity_m_per_s2")) scene.gravity_m_per_s2 = value->vector3(kGravityRange);
   parseBodies(map, paths, scene);
@@ -96,16 +101,33 @@ Scene parseScene(const std::string& yaml, const std::string& file, const Package
   if (const YamlCursor* value = map.find("step")) scene.step = parseStep(*value);
   if (const YamlCursor* value = map.find("solver")) scene.solver = parseSolver(*value);
   if (const YamlCursor* value = map.find("advisor")) scene.advisor = parseAdvisor(*value);
-  if (const YamlCursor* value = map.find("publish")) scene.publish = parsePublish(*value);
-  map.cursor().addLines(scene.entry_lines);
+  if (const YamlCursor* value = map.find("publish")) value->map();  // read by whoever publishes
+}
+
+}  // namespace
+
+Scene parseScene(const std::string& yaml, const std::string& file, const PackagePath& package_path,
+                 const ReadMore& read_more) {
+  const YamlMap map = parseYaml(yaml, file).map();
+  const PathContext paths{fs::path(file).parent_path().string(), package_path};
+  Scene scene;
+  scene.file = file;
+  try {
+    parseSections(map, paths, scene);
+    if (read_more) read_more(map);
+    map.cursor().addLines(scene.entry_lines);
+  } catch (const EntryError& error) {  // of a room's own check, which knows no lines
+    map.cursor().addLines(scene.entry_lines);
+    throw std::invalid_argument(placeOf(scene, error.entry()) + ": " + error.what());
+  }
   return scene;
 }
 
-Scene loadScene(const std::string& file, const PackagePath& package_path) {
+Scene loadScene(const std::string& file, const PackagePath& package_path, const ReadMore& read_more) {
   // Only URIs: messages and Scene::file keep a plain path as it was given.
   const bool is_uri = file.find("://") != std::string::npos;
   const std::string path = is_uri ? resolvePath(file, "", package_path) : file;
-  return parseScene(readFile(path, "scene file", kMaxSceneBytes), path, package_path);
+  return parseScene(readFile(path, "scene file", kMaxSceneBytes), path, package_path, read_more);
 }
 
 }  // namespace tissue_contact

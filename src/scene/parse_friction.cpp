@@ -2,25 +2,21 @@
 #include <set>
 #include <tuple>
 
-#include "scene_sections.h"
+#include "friction/check_friction_law.h"
+#include "scene/scene_sections.h"
+#include "tissue_contact/core/entry_error.h"
+#include "tissue_contact/core/nearest_word.h"
+#include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 namespace {
 
 using Law = FrictionLawDescription;
 
+// Narrower than what a law can bear: typing errors.
 constexpr Range kCoefficientRange{0.0, 10.0};
 constexpr Range kTensorRange{-10.0, 10.0};
-constexpr Range kAngleRange{0.0, 6.283185307179586, "rad", "give radians from 0 to below 2 pi", false, true};
-constexpr Range kSpeedRange{0.0, 1000.0, "m/s"};
-constexpr Range kFactorRange{0.0, 1.0, "", "kinetic friction must not exceed the static one"};
 constexpr std::size_t kMaxTableEntries = 1000;
-
-constexpr std::pair<const char*, Law::Kind> kLaws[] = {{"isotropic", Law::Kind::kIsotropic},
-                                                       {"orthotropic", Law::Kind::kOrthotropic},
-                                                       {"asymmetric", Law::Kind::kAsymmetric},
-                                                       {"table", Law::Kind::kTable},
-                                                       {"tensor", Law::Kind::kTensor}};
 
 template <typename Element>
 std::vector<std::string> namesOf(const std::vector<Element>& list) {
@@ -56,17 +52,6 @@ std::vector<double> numbers(const std::vector<YamlCursor>& list, const Range& ra
   return values;
 }
 
-/// A table's first column: it begins at 0, each value is greater than the one before.
-std::vector<double> parseAscending(const YamlCursor& cursor, const Range& range) {
-  const std::vector<YamlCursor> list = cursor.list(2, kMaxTableEntries);
-  std::vector<double> values = numbers(list, range);
-  if (values.front() != 0.0) list.front().fail("is the first value of a table; it must be 0; begin the table at 0");
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    if (!(values[i] > values[i - 1])) list[i].fail("is not greater than the value before it; sort the table");
-  }
-  return values;
-}
-
 std::vector<double> parseCoefficients(const YamlCursor& cursor, const Law& law) {
   switch (law.kind) {
     case Law::Kind::kIsotropic:
@@ -87,17 +72,7 @@ std::vector<double> parseCoefficients(const YamlCursor& cursor, const Law& law) 
   return entries;
 }
 
-/// A tensor's limits are compared where its law is built: they do not follow from its entries one by one.
-void checkStaticNotBelowKinetic(const YamlCursor& cursor, const Law& law) {
-  if (law.kind == Law::Kind::kTensor) return;
-  for (std::size_t i = 0; i < law.static_coefficients.size(); ++i) {
-    if (law.static_coefficients[i] >= law.kinetic_coefficients[i]) continue;
-    (cursor.isScalar() ? cursor : cursor.list(0)[i])
-        .fail("the static coefficient is smaller than the kinetic one; it must be >= kinetic; swap or equal them");
-  }
-}
-
-void parseAxis(const YamlMap& map, bool has_fibre, bool has_link, Law& law) {
+void parseAxis(const YamlMap& map, Law& law) {
   if (law.kind == Law::Kind::kIsotropic) {
     if (const YamlCursor* axis = map.find("axis")) {
       axis->fail(
@@ -107,47 +82,35 @@ void parseAxis(const YamlMap& map, bool has_fibre, bool has_link, Law& law) {
     return;
   }
   const YamlCursor& axis = map.get("axis");
-  if (!axis.isScalar()) {
-    const Vector3 direction = parseDirection(axis.map(MapKind::kFrictionAxis).get("link_direction"));
-    if (!has_link) axis.fail("tissue against tissue has no link; it must be fibre");
-    law.axis = Law::Axis::kLink;
-    law.link_axis = direction;
-    return;
-  }
-  if (axis.text() != "fibre") {
+  law.axis = axis.isScalar() ? Law::Axis::kFibre : Law::Axis::kLink;
+  if (!axis.isScalar()) law.link_axis = parseDirection(axis.map().get("link_direction"));
+  if (axis.isScalar() && axis.text() != "fibre") {
     axis.fail("is " + inQuotes(axis.text()) + "; it must be fibre or {link_direction: [x, y, z]}");
   }
-  if (!has_fibre) {
-    axis.fail("is the tissue's fibre direction, which is not given; add fibre_direction to the tissue" +
-              std::string(has_link ? " or give {link_direction: [x, y, z]}" : ""));
-  }
-  law.axis = Law::Axis::kFibre;
 }
 
 void parseSpeeds(const YamlMap& map, Law& law) {
   const YamlCursor* speeds = map.find("speeds_m_per_s");
   const YamlCursor* factors = map.find("speed_factors");
   if (speeds == nullptr && factors == nullptr) return;
-  law.speeds_m_per_s = parseAscending(map.get("speeds_m_per_s"), kSpeedRange);
+  law.speeds_m_per_s = numbers(map.get("speeds_m_per_s").list(2, kMaxTableEntries), Law::kSpeeds);
   law.speed_factors =
       numbers(map.get("speed_factors").tuple(law.speeds_m_per_s.size(), "numbers, one for each of speeds_m_per_s"),
-              kFactorRange);
+              Law::kSpeedFactors);
 }
 
-Law parseLaw(const YamlMap& map, bool has_fibre, bool has_link) {
+Law parseLaw(const YamlMap& map) {
   Law law;
-  if (const YamlCursor* value = map.find("law")) law.kind = value->choice(kLaws);
+  if (const YamlCursor* value = map.find("law")) law.kind = value->choice(kFrictionLawNames);
   if (law.kind == Law::Kind::kTable) {
-    law.angles_rad = parseAscending(map.get("angles_rad"), kAngleRange);
+    law.angles_rad = numbers(map.get("angles_rad").list(2, kMaxTableEntries), Law::kAngles);
   } else if (const YamlCursor* value = map.find("angles_rad")) {
     value->fail("is for the law table only; remove it or give law: table");
   }
-  const YamlCursor& static_cursor = map.get("static");
-  law.static_coefficients = parseCoefficients(static_cursor, law);
+  law.static_coefficients = parseCoefficients(map.get("static"), law);
   const YamlCursor* kinetic = map.find("kinetic");
   law.kinetic_coefficients = kinetic == nullptr ? law.static_coefficients : parseCoefficients(*kinetic, law);
-  checkStaticNotBelowKinetic(static_cursor, law);
-  parseAxis(map, has_fibre, has_link, law);
+  parseAxis(map, law);
   parseSpeeds(map, law);
   return law;
 }
@@ -179,7 +142,7 @@ void parseTissueSide(const YamlMap& map, const Scene& scene, FrictionDescription
 }
 
 FrictionDescription parseFriction(const YamlCursor& cursor, const Scene& scene) {
-  const YamlMap map = cursor.map(MapKind::kFriction);
+  const YamlMap map = cursor.map();
   const bool has_instrument = map.exactlyOne({"instrument", "other_tissue"}) == "instrument";
   FrictionDescription friction;
   const TissueDescription& tissue = parseTissueName(map.get("tissue"), scene);
@@ -196,12 +159,11 @@ FrictionDescription parseFriction(const YamlCursor& cursor, const Scene& scene) 
     friction.region = region.name;
     fibre = region.fibre_direction;
   }
-  friction.law = parseLaw(map, !fibre.isZero(), has_instrument);
-  if (!has_instrument && (friction.law.kind == Law::Kind::kTable || friction.law.kind == Law::Kind::kTensor)) {
-    // Two points of two tissues may meet as a contact of either; only laws that axis 1 mirrors are the same in both.
-    map.get("law").fail(
-        "works for an instrument on a tissue only; between tissues give isotropic, orthotropic or asymmetric");
-  }
+  friction.law = parseLaw(map);
+  atEntry(cursor.path(), [&] {
+    requireLawForPair(friction, !fibre.isZero());
+    checkFrictionLaw(friction.law);
+  });
   return friction;
 }
 
@@ -211,7 +173,7 @@ std::vector<TissuePair> parseTissuePairs(const YamlCursor& cursor, const Scene& 
   std::vector<TissuePair> pairs;
   std::set<std::pair<std::string, std::string>> seen;
   for (const YamlCursor& element : cursor.list(0, kMostPairs)) {
-    const YamlMap map = element.map(MapKind::kTissuePair);
+    const YamlMap map = element.map();
     pairs.push_back({parseTissueName(map.get("tissue"), scene).name, parseTissueName(map.get("other"), scene).name});
     const TissuePair& pair = pairs.back();
     if (!seen.insert(unordered(pair.tissue, pair.other)).second) {

@@ -2,7 +2,8 @@
 #include <cctype>
 #include <set>
 
-#include "scene_sections.h"
+#include "scene/scene_sections.h"
+#include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 namespace {
@@ -57,7 +58,7 @@ std::vector<JointStateTopic> parseTopics(const YamlCursor& cursor) {
     if (element.isScalar()) {
       topics.back().name = parseRosName(element);
     } else {
-      const YamlMap map = element.map(MapKind::kJointStateTopic);
+      const YamlMap map = element.map();
       topics.back().name = parseRosName(map.get("topic"));
       const YamlCursor* triggers = map.find("triggers");
       is_given.back() = triggers != nullptr;
@@ -92,10 +93,56 @@ std::map<std::string, std::string> parseJointNames(const YamlCursor& cursor) {
   return names;
 }
 
+// A mirroring (negative) scale would turn the surface inside out.
+constexpr Range kMeshScaleRange{1e-9, 1e6, "m per file unit", "a mesh in millimetres has 0.001"};
+
+MeshGeometry parseMeshGeometry(const YamlCursor& cursor, const PathContext& paths) {
+  const YamlMap map = cursor.map();
+  MeshGeometry mesh;
+  mesh.file = parseFile(map.get("file"), paths, {".stl", ".obj", ".dae"});
+  if (const YamlCursor* value = map.find("scale")) {
+    mesh.scale =
+        value->isScalar() ? Vector3::Constant(value->number(kMeshScaleRange)).eval() : value->vector3(kMeshScaleRange);
+  }
+  return mesh;
+}
+
+ShapeGeometry parseGeometry(const YamlMap& map, const PathContext& paths) {
+  const std::string kind = map.exactlyOne({"sphere", "box", "cylinder", "mesh"});
+  const YamlCursor& value = map.get(kind);
+  if (kind == "sphere") {
+    return SphereGeometry{value.map().get("radius_m").number(kShapeSizeRange)};
+  }
+  if (kind == "box") return BoxGeometry{value.map().get("size_m").vector3(kShapeSizeRange)};
+  if (kind == "mesh") return parseMeshGeometry(value, paths);
+  const YamlMap cylinder = value.map();
+  return CylinderGeometry{cylinder.get("radius_m").number(kShapeSizeRange),
+                          cylinder.get("length_m").number(kShapeSizeRange)};
+}
+
+ShapeDescription parseShape(const YamlCursor& cursor, const PathContext& paths) {
+  const YamlMap map = cursor.map();
+  ShapeDescription shape;
+  shape.geometry = parseGeometry(map, paths);
+  if (const YamlCursor* value = map.find("pose")) shape.X_LS = parsePose(*value).X;
+  return shape;
+}
+
+ContactLinkDescription parseContactLink(const YamlCursor& cursor, const PathContext& paths) {
+  if (cursor.isScalar()) return {cursor.text(), {}};
+  const YamlMap map = cursor.map();
+  ContactLinkDescription link;
+  link.link = map.get("link").text();
+  if (const YamlCursor* value = map.find("shapes")) {
+    for (const YamlCursor& shape : value->list(1, kMostShapes)) link.shapes.push_back(parseShape(shape, paths));
+  }
+  return link;
+}
+
 std::vector<ContactLinkDescription> parseContactLinks(const YamlCursor& cursor, const PathContext& paths) {
   std::vector<ContactLinkDescription> links;
   std::set<std::string> seen;
-  for (const YamlCursor& element : cursor.list(1, kMostContactLinks)) {
+  for (const YamlCursor& element : cursor.list(1, kMostShapes)) {
     links.push_back(parseContactLink(element, paths));
     if (!seen.insert(links.back().link).second) {
       element.fail("link " + inQuotes(links.back().link) + " is named twice; list all its shapes in one place");
@@ -107,11 +154,11 @@ std::vector<ContactLinkDescription> parseContactLinks(const YamlCursor& cursor, 
 }  // namespace
 
 InstrumentDescription parseInstrument(const YamlCursor& cursor, const PathContext& paths) {
-  const YamlMap map = cursor.map(MapKind::kInstrument);
+  const YamlMap map = cursor.map();
   InstrumentDescription instrument;
   instrument.name = parseName(map.get("name"));
   parseUrdfSource(map, paths, instrument);
-  if (const YamlCursor* value = map.find("base_pose")) instrument.base_pose = parsePose(*value, MapKind::kPose);
+  if (const YamlCursor* value = map.find("base_pose")) instrument.base_pose = parsePose(*value);
   if (const YamlCursor* value = map.find("joint_state_topics")) instrument.joint_state_topics = parseTopics(*value);
   if (const YamlCursor* value = map.find("joint_names")) instrument.joint_names = parseJointNames(*value);
   if (const YamlCursor* value = map.find("initial_joint_positions")) {

@@ -1,51 +1,56 @@
 #include <set>
 
-#include "scene_sections.h"
+#include "scene/scene_sections.h"
+#include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 namespace {
 
 constexpr Range kYoungRange{1.0, 1e12, "Pa", "give pascals: 5 kPa is 5000, 1 MPa is 1e6"};
-constexpr Range kPoissonRange{-1.0, 0.5, "", "0.5 itself (incompressible) cannot be simulated, 0.49 can", true, true};
 constexpr Range kDensityRange{1.0, 1e5, "kg/m^3", "give kilograms per cubic metre: water is 1000, not 1"};
 constexpr Range kBendingRange{0.0, 1e6, "N m", "0 bends freely; leave it out for a plate of the given thickness"};
 constexpr Range kMassDampingRange{0.0, 1e4, "1/s"};
 constexpr Range kStiffnessDampingRange{0.0, 10.0, "s", "give seconds: 2 ms is 0.002"};
 
-constexpr std::pair<const char*, ElasticModel> kModels[] = {{"linear", ElasticModel::kLinear},
-                                                            {"corotational", ElasticModel::kCorotational},
-                                                            {"neo_hookean", ElasticModel::kNeoHookean},
-                                                            {"mass_spring", ElasticModel::kMassSpring},
-                                                            {"membrane", ElasticModel::kMembrane}};
-
 constexpr std::pair<const char*, Dilatation> kDilatations[] = {
     {"auto", Dilatation::kAuto}, {"element", Dilatation::kElement}, {"patch", Dilatation::kPatch}};
 
-ElasticModel parseModel(const YamlCursor& cursor, bool is_membrane) {
-  const ElasticModel model = cursor.choice(kModels);
-  if ((model == ElasticModel::kMembrane) == is_membrane) return model;
-  cursor.fail("is " + inQuotes(cursor.text()) +
-              (is_membrane ? "; a sheet or shell must be a membrane; remove the key"
-                           : "; only a sheet or shell can be a membrane; give linear, corotational, neo_hookean or "
-                             "mass_spring"));
+BoxRegion parseBoxRegion(const YamlCursor& cursor) {
+  const YamlMap map = cursor.map();
+  BoxRegion box;
+  box.min_m = map.get("min_m").vector3(kPositionRange);
+  box.max_m = map.get("max_m").vector3(kPositionRange);
+  if ((box.min_m.array() > box.max_m.array()).any()) {
+    cursor.fail("has a min_m greater than its max_m; min_m must be <= max_m along each axis; swap them");
+  }
+  return box;
+}
+
+PlaneRegion parsePlaneRegion(const YamlCursor& cursor) {
+  const YamlMap map = cursor.map();
+  PlaneRegion plane;
+  plane.point_m = map.get("point_m").vector3(kPositionRange);
+  plane.normal = parseDirection(map.get("normal"));
+  return plane;
 }
 
 TissueRegion parseTissueRegion(const YamlCursor& cursor, const TissueDescription& tissue) {
-  const YamlMap map = cursor.map(MapKind::kTissueRegion);
+  const YamlMap map = cursor.map();
   TissueRegion region;
   region.name = parseName(map.get("name"));
   for (const YamlCursor& part : map.get("where").list(1, kMostPlaces)) region.where.push_back(parseRegion(part));
   MaterialDescription& material = region.material;
   material = tissue.material;
   if (const YamlCursor* value = map.find("material")) {
-    const YamlMap given = value->map(MapKind::kRegionMaterial);
+    const YamlMap given = value->map();
     if (const YamlCursor* v = given.find("youngs_modulus_pa")) material.youngs_modulus_pa = v->number(kYoungRange);
-    if (const YamlCursor* v = given.find("poissons_ratio")) material.poissons_ratio = v->number(kPoissonRange);
+    if (const YamlCursor* v = given.find("poissons_ratio"))
+      material.poissons_ratio = v->number(MaterialDescription::kPoissonsRatio);
     if (const YamlCursor* v = given.find("density_kg_per_m3")) material.density_kg_per_m3 = v->number(kDensityRange);
   }
   region.damping_stiffness_s = tissue.damping.stiffness_s;
   if (const YamlCursor* value = map.find("damping")) {
-    region.damping_stiffness_s = value->map(MapKind::kRegionDamping).get("stiffness_s").number(kStiffnessDampingRange);
+    region.damping_stiffness_s = value->map().get("stiffness_s").number(kStiffnessDampingRange);
   }
   region.fibre_direction = tissue.fibre_direction;
   if (const YamlCursor* value = map.find("fibre_direction")) region.fibre_direction = parseDirection(*value);
@@ -54,20 +59,24 @@ TissueRegion parseTissueRegion(const YamlCursor& cursor, const TissueDescription
 
 }  // namespace
 
+Region parseRegion(const YamlCursor& cursor) {
+  const YamlMap map = cursor.map();
+  const std::string kind = map.exactlyOne({"box", "plane", "sphere"});
+  const YamlCursor& value = map.get(kind);
+  if (kind == "box") return parseBoxRegion(value);
+  if (kind == "plane") return parsePlaneRegion(value);
+  const YamlMap sphere = value.map();
+  return SphereRegion{sphere.get("center_m").vector3(kPositionRange), sphere.get("radius_m").number(kShapeSizeRange)};
+}
+
 MaterialDescription parseMaterial(const YamlCursor& cursor, bool is_membrane) {
-  const YamlMap map = cursor.map(MapKind::kMaterial);
+  const YamlMap map = cursor.map();
   MaterialDescription material;
   material.model = is_membrane ? ElasticModel::kMembrane : ElasticModel::kCorotational;
-  if (const YamlCursor* value = map.find("model")) material.model = parseModel(*value, is_membrane);
-  if (const YamlCursor* value = map.find("dilatation")) {
-    material.dilatation = value->choice(kDilatations);
-    if (material.dilatation == Dilatation::kPatch && material.model != ElasticModel::kLinear &&
-        material.model != ElasticModel::kCorotational) {
-      value->fail("is \"patch\", which only the models linear and corotational know; remove the key");
-    }
-  }
+  if (const YamlCursor* value = map.find("model")) material.model = value->choice(kElasticModelNames);
+  if (const YamlCursor* value = map.find("dilatation")) material.dilatation = value->choice(kDilatations);
   material.youngs_modulus_pa = map.get("youngs_modulus_pa").number(kYoungRange);
-  material.poissons_ratio = map.get("poissons_ratio").number(kPoissonRange);
+  material.poissons_ratio = map.get("poissons_ratio").number(MaterialDescription::kPoissonsRatio);
   material.density_kg_per_m3 = map.get("density_kg_per_m3").number(kDensityRange);
   if (const YamlCursor* value = map.find("bending_stiffness_n_m")) {
     if (!is_membrane) value->fail("only a sheet or shell has a bending stiffness of its own; remove the key");
@@ -77,7 +86,7 @@ MaterialDescription parseMaterial(const YamlCursor& cursor, bool is_membrane) {
 }
 
 DampingDescription parseDamping(const YamlCursor& cursor) {
-  const YamlMap map = cursor.map(MapKind::kDamping);
+  const YamlMap map = cursor.map();
   DampingDescription damping;
   if (const YamlCursor* value = map.find("mass_per_s")) damping.mass_per_s = value->number(kMassDampingRange);
   if (const YamlCursor* value = map.find("stiffness_s")) damping.stiffness_s = value->number(kStiffnessDampingRange);

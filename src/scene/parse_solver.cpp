@@ -1,4 +1,4 @@
-#include "scene_sections.h"
+#include "scene/scene_sections.h"
 
 namespace tissue_contact {
 namespace {
@@ -8,37 +8,14 @@ constexpr int kMaxContactPasses = 100;
 // Below the spacing of doubles near 1 a residual can never fall.
 constexpr Range kToleranceRange{1e-16, 0.1};
 constexpr Range kTimeBudgetRange{0.0, 10.0, "s", "give seconds: 1 ms is 0.001; 0 sets no budget"};
-constexpr int kLeastConeSides = 4;
-constexpr int kMaxConeSides = 64;
-
-template <typename Value>
-constexpr std::pair<const char*, Value> named(Value value, const char* (*name)(Value)) {
-  return {name(value), value};
-}
-
-SolverMethod parseMethod(const YamlCursor& cursor) {
-  const std::pair<const char*, SolverMethod> methods[] = {named(SolverMethod::kPredictorCorrector, solverMethodName),
-                                                          named(SolverMethod::kReference, solverMethodName),
-                                                          named(SolverMethod::kCone4, solverMethodName),
-                                                          named(SolverMethod::kPolyhedral, solverMethodName),
-                                                          named(SolverMethod::kCondensedLcp, solverMethodName),
-                                                          named(SolverMethod::kImpulse, solverMethodName)};
-  return cursor.choice(methods);
-}
-
-RelaxationKind parseRelaxation(const YamlCursor& cursor) {
-  const std::pair<const char*, RelaxationKind> relaxations[] = {named(RelaxationKind::kGaussSeidel, relaxationName),
-                                                                named(RelaxationKind::kCholesky, relaxationName)};
-  return cursor.choice(relaxations);
-}
 
 }  // namespace
 
 SolverDescription parseSolver(const YamlCursor& cursor) {
-  const YamlMap map = cursor.map(MapKind::kSolver);
+  const YamlMap map = cursor.map();
   SolverDescription solver;
-  if (const YamlCursor* value = map.find("method")) solver.method = parseMethod(*value);
-  if (const YamlCursor* value = map.find("relaxation")) solver.relaxation = parseRelaxation(*value);
+  if (const YamlCursor* value = map.find("method")) solver.method = value->choice(kSolverMethodNames);
+  if (const YamlCursor* value = map.find("relaxation")) solver.relaxation = value->choice(kRelaxationNames);
   if (const YamlCursor* value = map.find("iterations")) solver.iterations = value->integer(1, kMaxIterations);
   if (const YamlCursor* value = map.find("contact_passes")) {
     solver.contact_passes = value->integer(1, kMaxContactPasses);
@@ -46,7 +23,7 @@ SolverDescription parseSolver(const YamlCursor& cursor) {
   if (const YamlCursor* value = map.find("tolerance")) solver.tolerance = value->number(kToleranceRange);
   if (const YamlCursor* value = map.find("time_budget_s")) solver.time_budget_s = value->number(kTimeBudgetRange);
   if (const YamlCursor* value = map.find("cone_sides")) {
-    solver.cone_sides = value->integer(kLeastConeSides, kMaxConeSides);
+    solver.cone_sides = value->integer(kMinConeSides, kMaxConeSides);
     if (solver.cone_sides % 2 != 0) {
       value->fail("is " + std::to_string(solver.cone_sides) +
                   "; it must be even, so that the cone resists both ways along each direction; give one more");

@@ -1,16 +1,13 @@
-#include <cmath>
-
-#include "scene_sections.h"
+#include "scene/scene_sections.h"
+#include "tissue_contact/core/entry_error.h"
+#include "tissue_contact/mesh/tet_mesh.h"
+#include "tissue_contact/tissue/tissue.h"
 
 namespace tissue_contact {
 namespace {
 
 constexpr int kMaxCellsPerAxis = 200;
-constexpr int kTetrahedraPerCell = 5;
-constexpr int kMaxTetrahedra = 2000000;
 constexpr int kMaxSheetCellsPerAxis = 1000;  // 2 triangles per cell: as many elements as a block may have
-// Beyond this the smallest cells of a block are slivers whose stiffness drowns the others in round-off.
-constexpr double kMaxCellRatio = 1e4;
 
 constexpr Range kSizeRange{1e-6, 10.0, "m", "give metres, not millimetres"};
 constexpr Range kThicknessRange{1e-6, 1.0, "m", "give metres: 2 mm is 0.002"};
@@ -20,50 +17,33 @@ constexpr std::pair<const char*, AxisGrading::FineAt> kFineAt[] = {{"minimum", A
                                                                    {"center", AxisGrading::FineAt::kCenter},
                                                                    {"maximum", AxisGrading::FineAt::kMaximum}};
 
-AxisGrading parseAxisGrading(const YamlCursor& cursor, int cells) {
-  const YamlMap map = cursor.map(MapKind::kAxisGrading);
+AxisGrading parseAxisGrading(const YamlCursor& cursor) {
+  const YamlMap map = cursor.map();
   AxisGrading grading;
   if (const YamlCursor* value = map.find("fine_at")) grading.fine_at = value->choice(kFineAt);
-  const YamlCursor& growth = map.get("growth");
-  grading.growth = growth.number(kGrowthRange);
-  const int steps = grading.fine_at == AxisGrading::FineAt::kCenter ? (cells - 1) / 2 : cells - 1;
-  const double ratio = std::pow(grading.growth, steps);
-  if (!(ratio <= kMaxCellRatio)) {
-    growth.fail("makes the largest of " + std::to_string(cells) + " cells " + std::to_string(ratio) +
-                " times as long as the smallest; at most 10000 is allowed; lower growth or cells");
-  }
+  grading.growth = map.get("growth").number(kGrowthRange);
   return grading;
 }
 
 BlockDescription parseBlock(const YamlCursor& cursor) {
-  const YamlMap map = cursor.map(MapKind::kBlock);
+  const YamlMap map = cursor.map();
   BlockDescription block;
   block.size_m = map.get("size_m").vector3(kSizeRange);
-  const YamlCursor& cells = map.get("cells");
-  const std::vector<YamlCursor> counts = cells.tuple(3);
-  int tetrahedra = kTetrahedraPerCell;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    block.cells[axis] = counts[axis].integer(1, kMaxCellsPerAxis);
-    tetrahedra *= block.cells[axis];  // at most 5 * 200^3, well inside an int
-  }
-  if (tetrahedra > kMaxTetrahedra) {
-    cells.fail("makes " + std::to_string(tetrahedra) + " tetrahedra (5 per cell); at most " +
-               std::to_string(kMaxTetrahedra) + " are allowed; use fewer cells or grading");
-  }
+  const std::vector<YamlCursor> counts = map.get("cells").tuple(3);
+  for (std::size_t axis = 0; axis < 3; ++axis) block.cells[axis] = counts[axis].integer(1, kMaxCellsPerAxis);
   if (const YamlCursor* value = map.find("grading")) {
-    const YamlMap axes = value->map(MapKind::kGrading);
+    const YamlMap axes = value->map();
     const std::array<const char*, 3> names = {"x", "y", "z"};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (const YamlCursor* given = axes.find(names[axis])) {
-        block.grading[axis] = parseAxisGrading(*given, block.cells[axis]);
-      }
+      if (const YamlCursor* given = axes.find(names[axis])) block.grading[axis] = parseAxisGrading(*given);
     }
   }
+  atEntry(cursor.path(), [&] { checkBlock(block); });
   return block;
 }
 
 MeshDescription parseMesh(const YamlCursor& cursor, const PathContext& paths) {
-  const YamlMap map = cursor.map(MapKind::kMesh);
+  const YamlMap map = cursor.map();
   MeshDescription mesh;
   mesh.file = parseFile(map.get("file"), paths, {".msh", ".vtk"});
   if (const YamlCursor* value = map.find("scale_m_per_unit")) mesh.scale_m_per_unit = value->number(kScaleRange);
@@ -74,7 +54,7 @@ MeshDescription parseMesh(const YamlCursor& cursor, const PathContext& paths) {
 }
 
 SheetDescription parseSheet(const YamlCursor& cursor) {
-  const YamlMap map = cursor.map(MapKind::kSheet);
+  const YamlMap map = cursor.map();
   const std::vector<YamlCursor> size = map.get("size_m").tuple(2);
   const std::vector<YamlCursor> cells = map.get("cells").tuple(2);
   SheetDescription sheet;
@@ -85,7 +65,7 @@ SheetDescription parseSheet(const YamlCursor& cursor) {
 }
 
 ShellDescription parseShell(const YamlCursor& cursor, const PathContext& paths) {
-  const YamlMap map = cursor.map(MapKind::kShell);
+  const YamlMap map = cursor.map();
   ShellDescription shell;
   shell.file = parseFile(map.get("file"), paths, {".stl", ".obj", ".dae"});
   if (const YamlCursor* value = map.find("scale_m_per_unit")) shell.scale_m_per_unit = value->number(kScaleRange);
@@ -105,20 +85,19 @@ decltype(TissueDescription::geometry) parseGeometry(const YamlMap& map, const Pa
 }  // namespace
 
 TissueDescription parseTissue(const YamlCursor& cursor, const PathContext& paths) {
-  const YamlMap map = cursor.map(MapKind::kTissue);
+  const YamlMap map = cursor.map();
   TissueDescription tissue;
   tissue.name = parseName(map.get("name"));
   tissue.geometry = parseGeometry(map, paths);
-  const bool is_membrane = std::holds_alternative<SheetDescription>(tissue.geometry) ||
-                           std::holds_alternative<ShellDescription>(tissue.geometry);
-  if (const YamlCursor* value = map.find("pose")) tissue.pose = parsePose(*value, MapKind::kPose);
-  tissue.material = parseMaterial(map.get("material"), is_membrane);
+  if (const YamlCursor* value = map.find("pose")) tissue.pose = parsePose(*value);
+  tissue.material = parseMaterial(map.get("material"), isMembrane(tissue));
   if (const YamlCursor* value = map.find("damping")) tissue.damping = parseDamping(*value);
   if (const YamlCursor* value = map.find("fibre_direction")) tissue.fibre_direction = parseDirection(*value);
   if (const YamlCursor* value = map.find("regions")) tissue.regions = parseTissueRegions(*value, tissue);
   if (const YamlCursor* value = map.find("fixed")) {
     for (const YamlCursor& region : value->list(0, kMostPlaces)) tissue.fixed.push_back(parseRegion(region));
   }
+  atEntry(cursor.path(), [&] { checkTissue(tissue); });
   return tissue;
 }
 

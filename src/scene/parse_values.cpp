@@ -2,8 +2,9 @@
 #include <cctype>
 #include <filesystem>
 
-#include "scene_sections.h"
-#include "tissue_contact/core/stand_in_file.h"
+#include "scene/scene_sections.h"
+#include "tissue_contact/core/read_file.h"
+#include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 namespace {
@@ -94,8 +95,6 @@ std::string parseFile(const YamlCursor& cursor, const PathContext& paths, const 
   } catch (const std::invalid_argument& error) {
     cursor.fail(error.what());
   }
-  std::string allowed;
-  for (const std::string& extension : extensions) allowed += (allowed.empty() ? "" : ", ") + extension;
   if (std::find(extensions.begin(), extensions.end(), lowerExtension(file)) == extensions.end()) {
     if (lowerExtension(file) == ".xacro") {
       const std::string urdf = uri.substr(0, uri.size() - std::string(".xacro").size());
@@ -103,21 +102,20 @@ std::string parseFile(const YamlCursor& cursor, const PathContext& paths, const 
                   (lowerExtension(urdf) == ".urdf" ? "" : ".urdf") +
                   ", or name none and load its output into the parameter robot_description");
     }
-    cursor.fail("file " + inQuotes(uri) + " has none of the allowed endings: " + allowed);
+    cursor.fail("file " + inQuotes(uri) + " has none of the allowed endings: " + joined(extensions));
   }
-  if (const std::string problem = standInProblem(file); !problem.empty()) {
-    cursor.fail("file \"" + file + "\" " + problem);
+  try {
+    requireRegularFile(file, "file");
+  } catch (const std::invalid_argument& error) {
+    const std::string problem = error.what();
+    const bool is_missing = problem.find("does not exist") != std::string::npos;
+    cursor.fail(problem + (is_missing ? "; relative paths start at the scene file" : ""));
   }
-  std::error_code error;
-  if (!fs::exists(file, error)) {
-    cursor.fail("file \"" + file + "\" does not exist; correct the path (relative paths start at the scene file)");
-  }
-  if (!fs::is_regular_file(file, error)) cursor.fail("\"" + file + "\" is not a file; give a file");
   return file;
 }
 
-PoseDescription parsePose(const YamlCursor& cursor, MapKind kind) {
-  const YamlMap map = cursor.map(kind);
+PoseDescription parsePose(const YamlCursor& cursor) {
+  const YamlMap map = cursor.map();
   map.atMostOne({"rpy_rad", "quaternion_xyzw"});
   PoseDescription pose;
   if (const YamlCursor* value = map.find("position_m")) pose.X.translation() = value->vector3(kPositionRange);

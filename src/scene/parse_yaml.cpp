@@ -1,8 +1,10 @@
 #include <yaml-cpp/depthguard.h>
+#include <yaml-cpp/eventhandler.h>
 
+#include <sstream>
 #include <stdexcept>
 
-#include "yaml_reader.h"
+#include "scene/yaml_reader.h"
 
 namespace tissue_contact {
 namespace {
@@ -30,9 +32,47 @@ void checkSize(const YAML::Node& node, int depth, int& values_left, const YamlCu
   }
 }
 
-std::vector<YAML::Node> parseDocuments(const std::string& yaml, const std::string& file) {
+/// Ends the parsing of a text that makes more values than are allowed, before any memory is taken for them.
+class ValueCount : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override { ++documents_, count(mark); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { count(mark); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { count(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string&) override {
+    count(mark);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    count(mark);
+  }
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    count(mark);
+  }
+  void OnMapEnd() override {}
+
+ private:
+  void count(const YAML::Mark& mark) {
+    if (documents_ > 1) throw YAML::ParserException(mark, "a second YAML document begins; remove the extra \"---\"");
+    if (++values_ > 2 * kMaxValues) {  // checkSize() names the place of fewer, which cost little memory
+      throw YAML::ParserException(mark, "the text holds more than " + std::to_string(kMaxValues) + " values");
+    }
+  }
+
+  int documents_ = 0;
+  int values_ = 0;
+};
+
+/// The only document of the text; null if there is none.
+/// YAML::LoadAll is not used: after a text such as ",|<" yaml-cpp 0.7 finds one more empty document for ever.
+YAML::Node parseDocument(const std::string& yaml, const std::string& file) {
   try {
-    return YAML::LoadAll(yaml);
+    ValueCount count;
+    std::istringstream text(yaml);
+    YAML::Parser parser(text);
+    while (parser.HandleNextDocument(count)) {
+    }
+    return YAML::Load(yaml);
   } catch (const YAML::DeepRecursion& error) {
     throw std::invalid_argument(file + ":" + std::to_string(error.mark.line + 1) +
                                 ": (YAML syntax): lists or maps are nested too deeply; at most " +
@@ -52,17 +92,14 @@ YamlCursor parseYaml(const std::string& yaml, const std::string& file) {
     throw std::invalid_argument(name + ":1: scene: has " + std::to_string(yaml.size()) + " bytes; at most " +
                                 std::to_string(kMaxSceneBytes) + " are allowed");
   }
-  const std::vector<YAML::Node> documents = parseDocuments(yaml, name);
-  if (documents.empty() || documents.front().IsNull()) {
+  const YAML::Node document = parseDocument(yaml, name);
+  if (document.IsNull()) {
     throw std::invalid_argument(name + ":1: scene: is empty; it must have at least the key \"tissues\"");
   }
-  const int line = documents.front().Mark().is_null() ? 1 : documents.front().Mark().line + 1;
-  YamlCursor root(documents.front(), name, "", line);
-  if (documents.size() > 1) {
-    root.fail("the file holds " + std::to_string(documents.size()) + " YAML documents; remove the extra \"---\"");
-  }
+  const int line = document.Mark().is_null() ? 1 : document.Mark().line + 1;
+  const YamlCursor root(document, name, "", line);
   int values_left = kMaxValues;
-  checkSize(documents.front(), 0, values_left, root);
+  checkSize(document, 0, values_left, root);
   return root;
 }
 

@@ -6,8 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "tissue_contact/scene/load_scene.h"
-#include "yaml_reader.h"
+#include "scene/yaml_reader.h"
+#include "tissue_contact/baselines/solver_description.h"
+#include "tissue_contact/core/placed_pose.h"
+#include "tissue_contact/core/resolve_path.h"
+#include "tissue_contact/instrument/instrument_description.h"
+#include "tissue_contact/mesh/region_description.h"
+#include "tissue_contact/simulation/scene.h"
+#include "tissue_contact/tissue/material_description.h"
+#include "tissue_contact/tissue/tissue_description.h"
 
 namespace tissue_contact {
 
@@ -24,11 +31,10 @@ constexpr Range kShapeSizeRange{1e-6, 100.0, "m", "give metres"};
 
 /// Lengths of lists, all far beyond what a scene needs: pairs of tissues and instruments, and all friction entries for each
 /// of them, are held as tables.
-constexpr std::size_t kMostBodies = 100;         ///< tissues; instruments
-constexpr std::size_t kMostTopics = 100;         ///< of an instrument
-constexpr std::size_t kMostContactLinks = 1000;  ///< of an instrument; shapes of a link
-constexpr std::size_t kMostPairs = 10'000;       ///< tissue pairs; friction entries
-constexpr std::size_t kMostPlaces = 1000;  ///< of all regions of a tissue; of its `fixed`: each looks at all elements
+constexpr std::size_t kMostBodies = 100;    ///< tissues; instruments
+constexpr std::size_t kMostTopics = 100;    ///< of an instrument
+constexpr std::size_t kMostPairs = 10'000;  ///< tissue pairs; friction entries
+constexpr std::size_t kMostPlaces = 1000;   ///< of all regions of a tissue; of its `fixed`: each looks at all elements
 
 /// A name that may become part of a ROS topic: [A-Za-z][A-Za-z0-9_]*, at most 64 characters.
 std::string parseName(const YamlCursor& cursor);
@@ -38,8 +44,7 @@ std::string parseRosName(const YamlCursor& cursor);
 std::string parseFrame(const YamlCursor& cursor);
 /// Absolute path of a regular file that exists and whose name ends in one of `extensions` (lower case, with the dot).
 std::string parseFile(const YamlCursor& cursor, const PathContext& paths, const std::vector<std::string>& extensions);
-/// `kind` is kPose or kShapePose (without tf_frame).
-PoseDescription parsePose(const YamlCursor& cursor, MapKind kind);
+PoseDescription parsePose(const YamlCursor& cursor);
 /// A direction of any length but 0; returned as a unit vector.
 Vector3 parseDirection(const YamlCursor& cursor);
 
@@ -51,13 +56,10 @@ DampingDescription parseDamping(const YamlCursor& cursor);
 std::vector<TissueRegion> parseTissueRegions(const YamlCursor& cursor, const TissueDescription& tissue);
 TissueDescription parseTissue(const YamlCursor& cursor, const PathContext& paths);
 InstrumentDescription parseInstrument(const YamlCursor& cursor, const PathContext& paths);
-/// One link of contact_links.
-ContactLinkDescription parseContactLink(const YamlCursor& cursor, const PathContext& paths);
 /// `scene` has its tissues.
 std::vector<TissuePair> parseTissuePairs(const YamlCursor& cursor, const Scene& scene);
 /// `scene` has its tissues, instruments and tissue pairs.
 std::vector<FrictionDescription> parseFrictionPairs(const YamlCursor& cursor, const Scene& scene);
-AdvisorDescription parseAdvisor(const YamlCursor& cursor);
 SolverDescription parseSolver(const YamlCursor& cursor);
 
 }  // namespace tissue_contact

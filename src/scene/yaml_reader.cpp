@@ -1,20 +1,18 @@
-#include "yaml_reader.h"
+#include "scene/yaml_reader.h"
 
 #include <algorithm>
 #include <cmath>
-#include <locale>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 
 #include "tissue_contact/core/nearest_word.h"
+#include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 namespace {
 
 constexpr std::size_t kMaxTextBytes = 4096;
-constexpr std::size_t kMaxShownBytes = 80;
 
 int lineOf(const YAML::Node& node, int otherwise) {
   const YAML::Mark mark = node.Mark();
@@ -28,62 +26,10 @@ std::string typeName(const YAML::Node& node) {
   return inQuotes(node.Scalar());
 }
 
-/// The number that the whole of `text` spells, independent of the process's locale.
-std::optional<double> toNumber(const std::string& text) {
-  std::istringstream stream(text);
-  stream.imbue(std::locale::classic());
-  double value = 0.0;
-  stream >> std::noskipws >> value;
-  if (stream.fail() || stream.peek() != std::istringstream::traits_type::eof()) return std::nullopt;
-  return value;
-}
-
-std::string toText(double value) {
-  std::ostringstream stream;
-  stream.imbue(std::locale::classic());
-  stream << value;
-  return stream.str();
-}
-
-std::string describe(const Range& range) {
-  const std::string unit = *range.unit != '\0' ? std::string(" ") + range.unit : "";
-  return (range.low_excluded ? "> " : ">= ") + toText(range.low) + " and " + (range.high_excluded ? "< " : "<= ") +
-         toText(range.high) + unit;
-}
-
-bool contains(const Range& range, double value) {
-  const bool above = range.low_excluded ? value > range.low : value >= range.low;
-  const bool below = range.high_excluded ? value < range.high : value <= range.high;
-  return above && below;
-}
-
 /// An explicit type (a quoted text or a !!tag) is never taken for a number or a switch.
 bool isPlain(const YAML::Node& node) { return node.Tag().empty() || node.Tag() == "?"; }
 
 }  // namespace
-
-std::string inQuotes(const std::string& text) {
-  std::string shown = text.substr(0, kMaxShownBytes);
-  // A cut inside a multi-byte character would make the whole message invalid UTF-8.
-  if (shown.size() < text.size()) {
-    while (!shown.empty() && (static_cast<unsigned char>(text[shown.size()]) & 0xC0U) == 0x80U) shown.pop_back();
-  }
-  for (char& c : shown) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
-  }
-  return "\"" + shown + (shown.size() < text.size() ? "...\"" : "\"");
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
-std::string suggestion(const std::string& word, const std::vector<std::string>& allowed) {
-  const std::string nearest = nearestWord(word, allowed);
-  return nearest.empty() ? "" : "did you mean " + inQuotes(nearest) + "? ";
-}
 
 YamlCursor::YamlCursor(const YAML::Node& node, std::string file, std::string path, int line)
     : node_(node), file_(std::move(file)), path_(std::move(path)), line_(line) {}
@@ -102,7 +48,7 @@ void YamlCursor::addLines(std::map<std::string, int>& lines) const {
   }
 }
 
-YamlMap YamlCursor::map(MapKind kind) const { return {*this, kind}; }
+YamlMap YamlCursor::map() const { return YamlMap(*this); }
 
 std::vector<std::pair<std::string, YamlCursor>> YamlCursor::entries() const {
   if (!node_.IsMap()) fail("is " + typeName(node_) + "; it must be a map (key: value)");
@@ -158,19 +104,19 @@ std::string YamlCursor::scalar(const std::string& wanted) const {
 }
 
 double YamlCursor::number(const Range& range) const {
-  const std::string wanted = "a number " + describe(range);
+  const std::string wanted = "a number " + range.text();
   const std::string fix = *range.fix != '\0' ? std::string("; ") + range.fix : "";
   const std::string value = scalar(wanted);
   if (!isPlain(node_)) fail("is the text " + inQuotes(value) + "; it must be " + wanted + " without quotes or tags");
-  const std::optional<double> parsed = toNumber(value);
-  if (!parsed || !contains(range, *parsed)) fail("is " + inQuotes(value) + "; it must be " + wanted + fix);
+  const std::optional<double> parsed = toDouble(value);
+  if (!parsed || !range.contains(*parsed)) fail("is " + inQuotes(value) + "; it must be " + wanted + fix);
   return *parsed;
 }
 
 int YamlCursor::integer(int low, int high) const {
   const double value = number({static_cast<double>(low), static_cast<double>(high)});
   if (value != std::floor(value)) {
-    fail("is " + toText(value) + "; it must be a whole number >= " + std::to_string(low) +
+    fail("is " + inQuotes(node_.Scalar()) + "; it must be a whole number >= " + std::to_string(low) +
          " and <= " + std::to_string(high));
   }
   return static_cast<int>(value);
@@ -211,11 +157,11 @@ std::size_t YamlCursor::indexOfWord(const std::vector<std::string>& allowed) con
   return static_cast<std::size_t>(found - allowed.begin());
 }
 
-YamlMap::YamlMap(const YamlCursor& cursor, MapKind kind)
-    : cursor_(cursor), keys_(mapKeys(kind)), entries_(cursor.entries()) {
+YamlMap::YamlMap(const YamlCursor& cursor) : cursor_(cursor), entries_(cursor.entries()) {
+  const std::vector<std::string>& keys = keysAt(cursor.path());
   for (const auto& [key, value] : entries_) {
-    if (std::find(keys_.keys.begin(), keys_.keys.end(), key) != keys_.keys.end()) continue;
-    value.fail("unknown key; " + suggestion(key, keys_.keys) + "allowed here: " + joined(keys_.keys));
+    if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
+    value.fail("unknown key; " + suggestion(key, keys) + "allowed here: " + joined(keys));
   }
 }
 

@@ -11,36 +11,22 @@
 #include <utility>
 #include <vector>
 
-#include "scene_keys.h"
+#include "tissue_contact/core/range.h"
 #include "tissue_contact/core/types.h"
 
 namespace tissue_contact {
 
-/// Allowed numbers. An excluded bound is not itself allowed.
-struct Range {
-  double low;
-  double high;
-  const char* unit = "";  ///< named in messages; empty for a dimensionless number
-  const char* fix = "";   ///< what to do about a value outside, or empty
-  bool low_excluded = false;
-  bool high_excluded = false;
-};
-
-/// `text` in quotes, shortened and with control characters replaced, fit for a one-line message.
-std::string inQuotes(const std::string& text);
-
-/// "a, b, c".
-std::string joined(const std::vector<std::string>& words);
-
-/// `did you mean "<the nearest of allowed>"? `, or "" when none is near. A word without its unit suffix counts as near.
-std::string suggestion(const std::string& word, const std::vector<std::string>& allowed);
-
 class YamlMap;
+
+/// Allowed keys of the map at a path such as "tissues[0].material"; "" is the whole file.
+/// @throws std::out_of_range where there is no map, or one with free keys (joint names).
+const std::vector<std::string>& keysAt(const std::string& path);
 
 /// One value of the file with the place it stands at. Cheap to copy; the yaml-cpp tree is shared.
 class YamlCursor {
  public:
-  /// @param path key path such as "tissues[0].name". @param line counted from 1.
+  /// @param path key path such as "tissues[0].name".
+  /// @param line counted from 1.
   YamlCursor(const YAML::Node& node, std::string file, std::string path, int line);
 
   [[noreturn]] void fail(const std::string& problem) const;
@@ -52,7 +38,8 @@ class YamlCursor {
   /// Adds the lines of this value and of all below it, by key path.
   void addLines(std::map<std::string, int>& lines) const;
 
-  YamlMap map(MapKind kind) const;
+  /// Fails unless it is a map with keysAt() its path alone.
+  YamlMap map() const;
   /// Entries of a map with free keys, in file order; keys given twice are refused.
   std::vector<std::pair<std::string, YamlCursor>> entries() const;
   /// Elements of a list of `minimum` to `maximum` elements.
@@ -87,10 +74,10 @@ class YamlCursor {
   int line_;
 };
 
-/// A map whose keys have been checked against the table of its kind.
+/// A map whose keys have been checked.
 class YamlMap {
  public:
-  YamlMap(const YamlCursor& cursor, MapKind kind);
+  explicit YamlMap(const YamlCursor& cursor);
 
   const YamlCursor& cursor() const { return cursor_; }
   /// Null when the key is not given. The pointer lives as long as this map.
@@ -104,7 +91,6 @@ class YamlMap {
 
  private:
   YamlCursor cursor_;
-  const SceneMapKeys& keys_;
   std::vector<std::pair<std::string, YamlCursor>> entries_;
 };
 

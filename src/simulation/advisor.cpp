@@ -1,4 +1,4 @@
-#include "tissue_contact/simulation/advisor.h"
+#include "simulation/advisor.h"
 
 #include <sstream>
 

@@ -1,4 +1,4 @@
-#include "tissue_contact/simulation/build_scene.h"
+#include "simulation/build_scene.h"
 
 #include <stdexcept>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "tissue_contact/simulation/contact_memory.h"
+#include "simulation/contact_memory.h"
 
 #include <algorithm>
 
@@ -20,21 +20,23 @@ double weightOf(const Contact& contact, int node) {
   return 0.0;
 }
 
-/// Both contacts are on the same feature.
-bool samePoint(const Contact& a, const Contact& b) {
+/// How far apart two points of the same feature are, as a share of its size.
+double distanceOf(const Contact& a, const Contact& b) {
+  double most = 0.0;
   for (const int node : a.key.feature) {
-    if (node >= 0 && std::abs(weightOf(a, node) - weightOf(b, node)) > ContactMemory::kSamePoint) return false;
+    if (node >= 0) most = std::max(most, std::abs(weightOf(a, node) - weightOf(b, node)));
   }
-  return true;
+  return most;
 }
+
+bool isOpen(const SolvedContact& contact) { return contact.state == ContactState::kOpen; }
 
 }  // namespace
 
-void ContactMemory::remember(const std::vector<Contact>& contacts, const std::vector<Inherited>& answers) {
+void ContactMemory::remember(const std::vector<SolvedContact>& contacts) {
   remembered_.clear();
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    if (answers[c].state == ContactState::kOpen) continue;  // an open contact has nothing to hand on
-    remembered_.push_back({contacts[c], answers[c], false});
+  for (const SolvedContact& contact : contacts) {
+    if (!isOpen(contact)) remembered_.push_back(contact);  // an open one has nothing to hand on
   }
 }
 
@@ -42,74 +44,95 @@ void ContactMemory::addKeptPoints(const ContactDetector& detector, const std::ve
                                   const std::vector<std::vector<Pose>>& X_WL, double margin_m,
                                   std::vector<Contact>& contacts) {
   kept_.clear();
-  for (std::size_t first = 0; first < remembered_.size();) {
-    const ContactKey feature = withSlot(remembered_[first].contact.key, 0);
-    std::size_t end = first;
-    std::array<bool, kKeptPoints + 1> used{};
-    for (; end < remembered_.size() && withSlot(remembered_[end].contact.key, 0) == feature; ++end) {
-      used[remembered_[end].contact.key.slot] = true;
-    }
-    if (feature.other_tissue >= 0) {  // tissue against tissue: the pair's own feature is its point
-      first = end;
-      continue;
-    }
+  for (std::size_t first = 0, end = 0; first < remembered_.size(); first = end) {
     Contact probe;
-    probe.key = feature;
+    probe.key = withSlot(remembered_[first].contact.key, 0);
+    while (end < remembered_.size() && withSlot(remembered_[end].contact.key, 0) == probe.key) ++end;
+    if (probe.key.other_tissue >= 0) continue;  // tissue against tissue: the pair's own feature is its point
     const auto fresh = std::lower_bound(contacts.begin(), contacts.end(), probe, keyBefore);
-    const bool has_fresh = fresh != contacts.end() && fresh->key == feature;
-    for (; first < end; ++first) {
-      Contact& old = remembered_[first].contact;
-      if (has_fresh && samePoint(old, *fresh)) {
-        old.key.slot = 0;  // the fresh contact continues it
-        continue;
-      }
-      if (old.key.slot == 0) {
-        const auto free = std::find(used.begin() + 1, used.end(), false);
-        if (free == used.end()) continue;
-        old.key.slot = static_cast<int>(free - used.begin());
-        *free = true;
-      }
-      Contact contact = old;
+    giveSlots(fresh != contacts.end() && fresh->key == probe.key ? &*fresh : nullptr, first, end);
+    for (std::size_t old = first; old < end; ++old) {
+      if (isOpen(remembered_[old]) || remembered_[old].contact.key.slot == 0) continue;
+      Contact contact = remembered_[old].contact;
       if (detector.measure(positions, X_WL, margin_m, contact)) kept_.push_back(contact);
     }
   }
   contacts.insert(contacts.end(), kept_.begin(), kept_.end());
   std::sort(contacts.begin(), contacts.end(), keyBefore);
+  remembered_.erase(std::remove_if(remembered_.begin(), remembered_.end(), isOpen), remembered_.end());
   std::sort(remembered_.begin(), remembered_.end(),
-            [](const Remembered& a, const Remembered& b) { return a.contact.key < b.contact.key; });
+            [](const SolvedContact& a, const SolvedContact& b) { return keyBefore(a.contact, b.contact); });
 }
 
-void ContactMemory::recall(const std::vector<Contact>& contacts, double reach_m, std::vector<Inherited>& inherited) {
-  inherited.assign(contacts.size(), Inherited());
+void ContactMemory::giveSlots(const Contact* fresh, std::size_t first, std::size_t end) {
+  std::array<bool, kKeptPoints + 1> used{};
+  std::size_t continued = end;
+  for (std::size_t old = first; old < end; ++old) {
+    const Contact& point = remembered_[old].contact;
+    if (fresh == nullptr || distanceOf(point, *fresh) > kSamePoint) {
+      used[point.key.slot] = true;
+      continue;
+    }
+    std::size_t farther = old;
+    if (continued == end || distanceOf(point, *fresh) < distanceOf(remembered_[continued].contact, *fresh)) {
+      std::swap(farther, continued);
+    }
+    if (farther < end) remembered_[farther].state = ContactState::kOpen;
+  }
+  for (std::size_t old = first; old < end; ++old) {
+    int& slot = remembered_[old].contact.key.slot;
+    if (old == continued) {
+      slot = 0;
+    } else if (slot == 0) {
+      const auto free = std::find(used.begin() + 1, used.end(), false);
+      if (free == used.end()) {  // in slot 0 the fresh contact would take its history for its own
+        if (fresh != nullptr) remembered_[old].state = ContactState::kOpen;
+      } else {
+        slot = static_cast<int>(free - used.begin());
+      }
+    }
+  }
+}
+
+void ContactMemory::recall(const std::vector<Contact>& contacts, double reach_m,
+                           std::vector<SolvedContact>& inherited) {
+  inherited.resize(contacts.size());
+  continued_.assign(remembered_.size(), false);
   unmatched_.clear();
-  for (Remembered& old : remembered_) old.taken = false;
-  auto old = remembered_.begin();
+  std::size_t old = 0;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    while (old != remembered_.end() && old->contact.key < contacts[c].key) ++old;
-    if (old != remembered_.end() && old->contact.key == contacts[c].key) {
-      inherited[c] = old->answer;
-      old->taken = true;
+    inherited[c] = SolvedContact();
+    inherited[c].contact = contacts[c];
+    while (old < remembered_.size() && keyBefore(remembered_[old].contact, contacts[c])) ++old;
+    if (old < remembered_.size() && remembered_[old].contact.key == contacts[c].key) {
+      inherit(old, inherited[c]);
     } else {
       unmatched_.push_back(c);
     }
   }
-  for (const std::size_t c : unmatched_) recallNearest(contacts[c], reach_m, inherited[c]);
+  for (const std::size_t c : unmatched_) inheritNearest(reach_m, inherited[c]);
 }
 
-void ContactMemory::recallNearest(const Contact& contact, double reach_m, Inherited& inherited) {
-  Remembered* nearest = nullptr;
+void ContactMemory::inherit(std::size_t old, SolvedContact& contact) {
+  continued_[old] = true;
+  contact.state = remembered_[old].state;
+  contact.force_on_tissue_n = remembered_[old].force_on_tissue_n;
+  contact.slip_W = remembered_[old].slip_W;
+}
+
+void ContactMemory::inheritNearest(double reach_m, SolvedContact& contact) {
+  std::size_t nearest = remembered_.size();
   double best = reach_m * reach_m;
-  for (Remembered& old : remembered_) {
-    if (old.taken || !sameShapes(old.contact.key, contact.key)) continue;
-    const double squared = (old.contact.p_WC - contact.p_WC).squaredNorm();
+  for (std::size_t old = 0; old < remembered_.size(); ++old) {
+    const Contact& before = remembered_[old].contact;
+    if (continued_[old] || !sameShapes(before.key, contact.contact.key)) continue;
+    const double squared = (before.p_WC - contact.contact.p_WC).squaredNorm();
     if (squared < best) {
       best = squared;
-      nearest = &old;
+      nearest = old;
     }
   }
-  if (nearest == nullptr) return;
-  nearest->taken = true;
-  inherited = nearest->answer;
+  if (nearest < remembered_.size()) inherit(nearest, contact);
 }
 
 }  // namespace tissue_contact

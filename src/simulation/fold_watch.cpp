@@ -1,4 +1,4 @@
-#include "tissue_contact/simulation/fold_watch.h"
+#include "simulation/fold_watch.h"
 
 namespace tissue_contact {
 

@@ -1,4 +1,4 @@
-#include "tissue_contact/simulation/friction_table.h"
+#include "simulation/friction_table.h"
 
 #include <algorithm>
 #include <numeric>
@@ -121,22 +121,7 @@ void FrictionTable::add(const FrictionDescription& description, const Scene& sce
   const int region = description.region.empty() ? -1
                                                 : indexOf(described.regions, description.region,
                                                           "region of tissue '" + described.name + "'", nameOfRegion);
-  if (description.law.axis == FrictionLawDescription::Axis::kFibre && tissues[tissue].surfaceFibres().empty()) {
-    throw std::invalid_argument("friction on tissue '" + described.name +
-                                "' follows its fibres, but it has no fibre_direction; give it one");
-  }
-  using Kind = FrictionLawDescription::Kind;
-  if (description.instrument.empty() && description.law.axis == FrictionLawDescription::Axis::kLink) {
-    throw std::invalid_argument("friction between tissues '" + description.tissue + "' and '" +
-                                description.other_tissue + "' has the axis of a link; only fibres have one here");
-  }
-  if (description.instrument.empty() &&
-      (description.law.kind == Kind::kTable || description.law.kind == Kind::kTensor)) {
-    // The same two points may meet as a contact of either tissue; only laws that axis 1 mirrors are the same in both.
-    throw std::invalid_argument(
-        "friction between tissues '" + description.tissue + "' and '" + description.other_tissue +
-        "': a table or tensor works for instruments only; use isotropic, orthotropic or asymmetric");
-  }
+  requireLawForPair(description, !tissues[tissue].surfaceFibres().empty());
   const int index = static_cast<int>(entries_.size());
   Entry& entry = entries_.emplace_back();
   entry.numbers = scene.advisor.general_friction ? directional(description.law) : description.law;

@@ -1,4 +1,4 @@
-#include "tissue_contact/simulation/instrument_motion.h"
+#include "simulation/instrument_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -99,7 +99,7 @@ double InstrumentMotion::longestTravelOver(double steps) {
   X_WL_before_ = X_WL_;
   for (int k = 1; k <= static_cast<int>(steps); ++k) {
     moveTo(k / steps);
-    longest = std::max(longest, longestTravelPerExtent());
+    longest = std::max(longest, longestTravel(true));
     finishStep();
   }
   X_WL_ = X_WL_before_;
@@ -127,26 +127,13 @@ Vector3 InstrumentMotion::pointVelocity(int instrument, int contact_link, const 
   return (X_WL_end_[instrument][link] * (start.inverse() * p_W) - p_W) / dt_s;
 }
 
-double InstrumentMotion::longestTravel() const {
-  double longest = 0.0;
-  for (std::size_t i = 0; i < states_.size(); ++i) {
-    for (const MovingLink& link : states_[i].links) {
-      for (const MovingShape& shape : link.shapes) {
-        longest = std::max(longest,
-                           travel(shape.center, shape.bounding_radius, X_WL_[i][link.link], X_WL_end_[i][link.link]));
-      }
-    }
-  }
-  return longest;
-}
-
-double InstrumentMotion::longestTravelPerExtent() const {
+double InstrumentMotion::longestTravel(bool per_half_extent) const {
   double longest = 0.0;
   for (std::size_t i = 0; i < states_.size(); ++i) {
     for (const MovingLink& link : states_[i].links) {
       for (const MovingShape& shape : link.shapes) {
         const double moved = travel(shape.center, shape.bounding_radius, X_WL_[i][link.link], X_WL_end_[i][link.link]);
-        longest = std::max(longest, moved / shape.smallest_half_extent);
+        longest = std::max(longest, per_half_extent ? moved / shape.smallest_half_extent : moved);
       }
     }
   }

@@ -6,7 +6,6 @@
 #include <cassert>
 #include <cmath>
 #include <iterator>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -101,27 +100,6 @@ void JointStatePlayer::place(int topic, JointStateSample sample) {
     default:
       refuseByClock(ruling, topic, sample.stamp_ns, was_late);
   }
-}
-
-/// Keeps the joints that the topic's instruments know, each once: what waits is no larger than they are.
-void JointStatePlayer::keepKnown(const Topic& topic, JointStateSample& sample) const {
-  constexpr std::size_t kUsual = 100;  // names; so many may be there twice
-  const auto is_known = [&](const std::string& name) {
-    return std::any_of(topic.listeners.begin(), topic.listeners.end(), [&](const Listener& listener) {
-      return simulator_.instruments()[static_cast<std::size_t>(listener.instrument)].jointOfRecordedName(name) >= 0;
-    });
-  };
-  if (sample.names.size() <= kUsual && std::all_of(sample.names.begin(), sample.names.end(), is_known)) return;
-  JointStateSample known{sample.stamp_ns, {}, {}};
-  std::set<std::string> seen;
-  for (std::size_t k = sample.names.size(); k-- > 0;) {  // of one name the last position counts
-    if (!is_known(sample.names[k]) || !seen.insert(sample.names[k]).second) continue;
-    known.names.push_back(std::move(sample.names[k]));
-    known.positions.push_back(sample.positions[k]);
-  }
-  std::reverse(known.names.begin(), known.names.end());
-  std::reverse(known.positions.begin(), known.positions.end());
-  sample = std::move(known);
 }
 
 void JointStatePlayer::accept(int topic, int epoch, JointStateSample sample) {

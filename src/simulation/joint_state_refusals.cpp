@@ -1,11 +1,14 @@
 /// @file
-/// Room `simulation`: which joint states JointStatePlayer refuses, and to which loop of time it counts the others.
+/// Room `simulation`: which joint states JointStatePlayer refuses, what it keeps of the others, and to which loop of
+/// time it counts them.
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 #include <sstream>
 #include <utility>
 
-#include "tissue_contact/core/printable.h"
+#include "tissue_contact/core/text.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 
 namespace tissue_contact {
@@ -14,20 +17,10 @@ namespace {
 /// The last moment that a ROS stamp can name, 2106-02-07: 32 bits of seconds and less than a second of nanoseconds.
 constexpr std::int64_t kLastStamp_ns = 4294967295999999999;
 
-std::string stampText(std::int64_t stamp_ns) {
-  std::ostringstream text;
-  const std::int64_t ns_per_s = 1000000000;
-  text << stamp_ns / ns_per_s << '.';
-  text.width(9);
-  text.fill('0');
-  text << std::abs(stamp_ns % ns_per_s) << " s";
-  return text.str();
-}
-
 std::string twoClocksText(std::int64_t stamp_ns, std::int64_t followed_ns) {
   std::ostringstream text;
   text << "far off the stamps that this topic follows, now at " << stampText(followed_ns)
-       << ", and not confirmed by those after it (off by " << 1e-9 * static_cast<double>(stamp_ns - followed_ns)
+       << " s, and not confirmed by those after it (off by " << 1e-9 * static_cast<double>(stamp_ns - followed_ns)
        << " s); let one publisher alone send this topic, and set the clocks of all computers by one (NTP)";
   return text.str();
 }
@@ -61,7 +54,7 @@ void JointStatePlayer::refuse(Verdict verdict, int topic, std::int64_t stamp_ns,
   refused.verdict = verdict;
   refused.topic = topic;
   refused.stamp_ns = stamp_ns;
-  refused.detail = topics_[static_cast<std::size_t>(topic)] + " at " + stampText(stamp_ns) + ": " + detail;
+  refused.detail = topics_[static_cast<std::size_t>(topic)] + " at " + stampText(stamp_ns) + " s: " + detail;
   refused_.push_back(std::move(refused));
 }
 
@@ -72,7 +65,7 @@ Verdict JointStatePlayer::judgeContent(const JointStateSample& sample, const Top
     return Verdict::kBadStamp;
   }
   if (sample.stamp_ns > kLastStamp_ns) {
-    detail = "stamp out of range; ROS time ends at " + stampText(kLastStamp_ns) + ", with nsecs < 1e9";
+    detail = "stamp out of range; ROS time ends at " + stampText(kLastStamp_ns) + " s, with nsecs < 1e9";
     return Verdict::kBadStamp;
   }
   if (sample.names.size() != sample.positions.size()) {
@@ -105,6 +98,27 @@ Verdict JointStatePlayer::judgeJoints(const JointStateSample& sample, const Topi
   return Verdict::kNoKnownJoint;
 }
 
+/// Keeps the joints that the topic's instruments know, each once: what waits is no larger than they are.
+void JointStatePlayer::keepKnown(const Topic& topic, JointStateSample& sample) const {
+  constexpr std::size_t kUsual = 100;  // names; so many may be there twice
+  const auto is_known = [&](const std::string& name) {
+    return std::any_of(topic.listeners.begin(), topic.listeners.end(), [&](const Listener& listener) {
+      return simulator_.instruments()[static_cast<std::size_t>(listener.instrument)].jointOfRecordedName(name) >= 0;
+    });
+  };
+  if (sample.names.size() <= kUsual && std::all_of(sample.names.begin(), sample.names.end(), is_known)) return;
+  JointStateSample known{sample.stamp_ns, {}, {}};
+  std::set<std::string> seen;
+  for (std::size_t k = sample.names.size(); k-- > 0;) {  // of one name the last position counts
+    if (!is_known(sample.names[k]) || !seen.insert(sample.names[k]).second) continue;
+    known.names.push_back(std::move(sample.names[k]));
+    known.positions.push_back(sample.positions[k]);
+  }
+  std::reverse(known.names.begin(), known.names.end());
+  std::reverse(known.positions.begin(), known.positions.end());
+  sample = std::move(known);
+}
+
 /// Whether a sample of a topic that is a loop behind fits the newest.
 bool JointStatePlayer::joinsNewest(std::int64_t stamp_ns, const Topic& topic) const {
   if (!topic.last || topic.last->epoch >= newest_->epoch) return false;
@@ -120,7 +134,7 @@ void JointStatePlayer::refuseByClock(ClockRuling ruling, int topic, std::int64_t
   } else if (ruling == ClockRuling::kStray) {
     refuse(Verdict::kTwoClocks, topic, stamp_ns, twoClocksText(stamp_ns, last_ns));
   } else {
-    std::string detail = "the topic's last joint state is at " + stampText(last_ns);
+    std::string detail = "the topic's last joint state is at " + stampText(last_ns) + " s";
     if (was_late) {
       detail +=
           ", as for the one before; if a recording shorter than max_gap_s is played in a loop, let it give the time "
@@ -150,7 +164,7 @@ void JointStatePlayer::refuseLate() {
       if (!is_old_loop && (is_taken_later || !isPast(moment))) break;
       refuse(Verdict::kLate, static_cast<int>(t), moment.stamp_ns,
              is_old_loop ? "time went backwards on another topic but not on this one"
-                         : "the simulation is already at " + stampText(*time_ns_));
+                         : "the simulation is already at " + stampText(*time_ns_) + " s");
       topic.queue.pop_front();
       --waiting_;
     }

@@ -1,11 +1,11 @@
-#include "tissue_contact/simulation/load_watch.h"
+#include "simulation/load_watch.h"
 
 #include <algorithm>
 #include <sstream>
 
+#include "tissue_contact/mesh/tet_mesh.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
 #include "tissue_contact/simulation/simulator.h"
-#include "tissue_contact/tissue/sheet_mesh.h"
-#include "tissue_contact/tissue/tet_mesh.h"
 
 namespace tissue_contact {
 namespace {
@@ -52,15 +52,15 @@ LoadWatch::LoadWatch(const Scene& scene, const std::vector<Tissue>& tissues) {
   }
 }
 
-void LoadWatch::look(const std::vector<SolvedContact>& contacts, const std::vector<NodalVectors>& positions,
-                     ImplausibleLoad& load) {
+void LoadWatch::check(const std::vector<SolvedContact>& contacts, const std::vector<NodalVectors>& positions,
+                      ImplausibleLoad& load) {
   load = ImplausibleLoad();
   worst_volume_ = 0.0;
   for (std::size_t first = 0, end = 0; first < contacts.size(); first = end) {
     const ContactKey& key = contacts[first].contact.key;
     Body& body = bodies_[key.tissue];
     const NodalVectors& x = positions[key.tissue];
-    ++looks_;
+    ++checks_;
     double force = 0.0;
     double area = 0.0;
     std::size_t strongest = first;
@@ -72,10 +72,10 @@ void LoadWatch::look(const std::vector<SolvedContact>& contacts, const std::vect
       if (contact.force_on_tissue_n.norm() > contacts[strongest].force_on_tissue_n.norm()) strongest = end;
       for (int i = 0; i < 3; ++i) {
         const int node = contact.contact.nodes[i];
-        if (contact.contact.weights[i] == 0.0 || body.node_seen[node] == looks_) continue;
-        body.node_seen[node] = looks_;
+        if (contact.contact.weights[i] == 0.0 || body.node_seen[node] == checks_) continue;
+        body.node_seen[node] = checks_;
         area += body.node_area[node];
-        lookAtElements(body, node, x, key.instrument, key.tissue, load);
+        checkElements(body, node, x, key.instrument, key.tissue, load);
       }
     }
     if (!(area > 0.0)) continue;
@@ -94,13 +94,13 @@ void LoadWatch::look(const std::vector<SolvedContact>& contacts, const std::vect
   }
 }
 
-void LoadWatch::lookAtElements(Body& body, int node, const NodalVectors& x, int instrument, int tissue,
-                               ImplausibleLoad& load) {
+void LoadWatch::checkElements(Body& body, int node, const NodalVectors& x, int instrument, int tissue,
+                              ImplausibleLoad& load) {
   const std::vector<Tetrahedron>& elements = body.tissue->tetrahedra();
   for (int i = body.first_of_node[node]; i < body.first_of_node[node + 1]; ++i) {
     const int e = body.elements_of_node[i];
-    if (body.element_seen[e] == looks_) continue;
-    body.element_seen[e] = looks_;
+    if (body.element_seen[e] == checks_) continue;
+    body.element_seen[e] = checks_;
     const double volume = signedVolume(x, elements[e]) / signedVolume(body.tissue->restPositions(), elements[e]);
     if (!(volume < kInsideOut)) continue;
     ++load.inverted_elements;

@@ -8,19 +8,14 @@
 #include <utility>
 
 #include "tissue_contact/core/entry_error.h"
-#include "tissue_contact/tissue/tet_mesh.h"
+#include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
 namespace {
 
-bool isMembrane(const TissueDescription& tissue) {
-  return std::holds_alternative<SheetDescription>(tissue.geometry) ||
-         std::holds_alternative<ShellDescription>(tissue.geometry);
-}
-
-/// Largest resident size while a tissue is built and stepped, over its elements: 3960 bytes on a sheet of 180 000 triangles,
-/// 1440 on a block of 320 000 tetrahedra. A quarter to a third is added for what a scene may hold besides: a damping matrix
-/// where regions differ in damping, regions, fibres, tissue pairs.
+/// Largest resident size while a tissue is built and stepped, over its elements: 3960 bytes on a sheet of 180 000
+/// triangles, 1440 on a block of 320 000 tetrahedra. A quarter to a third is added for what a scene may hold besides: a
+/// damping matrix where regions differ in damping, regions, fibres, tissue pairs.
 std::size_t bytesOf(const TissueDescription& tissue, std::size_t elements) {
   constexpr std::size_t kPerTriangle = 5200;     // bending couples twelve nodes; both sides are surface
   constexpr std::size_t kPerTetrahedron = 2000;  // corotational with patches; other models take less

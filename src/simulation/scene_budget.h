@@ -1,6 +1,6 @@
 /// @file
-/// Room `simulation`, private: what the tissues and instruments of a scene may take together. Sizes in as soon as they are
-/// known, before anything is built from them; an EntryError with the figures and the fix out.
+/// Room `simulation`, private: what the tissues and instruments of a scene may take together. Sizes in as soon as they
+/// are known, before anything is built from them; an EntryError with the figures and the fix out.
 #pragma once
 
 #include <cstddef>
@@ -9,36 +9,33 @@
 #include <vector>
 
 #include "tissue_contact/instrument/instrument.h"
-#include "tissue_contact/scene/scene.h"
+#include "tissue_contact/simulation/scene.h"
+#include "tissue_contact/tissue/tissue_description.h"
 
 namespace tissue_contact {
 
 class SceneBudget {
  public:
-  /// Tetrahedra and triangles of all tissues. A step over so many takes seconds.
-  static constexpr std::size_t kMostElements = 2'000'000;
   /// Estimate for all tissues, bytes: what a common workstation can spare.
   static constexpr std::size_t kMostBytes = std::size_t{4} << 30U;
   /// Estimate for the factors of all tissues, bytes; the time to compute them grows with the square of it, and is some
   /// minutes here.
   static constexpr std::size_t kMostFactorBytes = std::size_t{2} << 30U;
-  /// Shapes of all instruments: each is compared with every other of its instrument in each step.
-  static constexpr std::size_t kMostShapes = 1000;
-  /// Triangles of all mesh shapes, bounds memory and the time to prepare them.
-  static constexpr std::size_t kMostShapeTriangles = 2'000'000;
   /// Shapes that are meshes: each holds a grid of 4 MB.
   static constexpr std::size_t kMostMeshShapes = 200;
 
   explicit SceneBudget(const Scene& scene) : scene_(scene) {}
 
-  /// Adds every tissue whose size the scene itself tells: blocks and sheets. @throws EntryError "tissues[i]".
+  /// Adds every tissue whose size the scene itself tells: blocks and sheets.
+  /// @throws EntryError "tissues[i]".
   void addGenerated();
-  /// Adds a tissue. @throws EntryError, without the tissue's own entry, when the scene becomes too large by it.
+  /// Adds a tissue.
+  /// @throws EntryError, without the tissue's own entry, when the scene becomes too large by it.
   void add(const TissueDescription& tissue, std::size_t nodes, std::size_t elements);
-  /// Adds an instrument's shapes. @throws EntryError, without the instrument's own entry.
+  /// Adds an instrument's shapes.
+  /// @throws EntryError, without the instrument's own entry.
   void add(const Instrument& instrument);
 
-  std::size_t elements() const { return elements_; }
   std::size_t factorBytes() const { return factor_bytes_; }
 
  private:
@@ -60,7 +57,8 @@ class BuildProgress {
  public:
   explicit BuildProgress(std::function<void(const std::string&)> say) : say_(std::move(say)) {}
 
-  /// A tissue is about to be built. @param ordinal "1 of 2".
+  /// A tissue is about to be built.
+  /// @param ordinal "1 of 2".
   void beginTissue(const TissueDescription& tissue, const std::string& ordinal, std::size_t nodes,
                    std::size_t elements);
   /// Something else about all tissues is about to be done.

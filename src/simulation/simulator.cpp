@@ -2,12 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <optional>
 #include <stdexcept>
 
-#include "simulation/simulator_implementation.h"
+#include "simulation/advisor.h"
+#include "simulation/build_scene.h"
+#include "simulation/fold_watch.h"
+#include "simulation/friction_table.h"
+#include "simulation/instrument_motion.h"
+#include "simulation/load_watch.h"
+#include "simulation/moving_tissue.h"
+#include "simulation/step_contacts.h"
+#include "tissue_contact/baselines/make_contact_solver.h"
+#include "tissue_contact/contact/tissue_pair_detector.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/entry_error.h"
-#include "tissue_contact/simulation/advisor.h"
 
 namespace tissue_contact {
 namespace {
@@ -18,27 +28,6 @@ constexpr double kMarginPerEdge = 0.01;
 
 /// Tissues are looked for this many edges from each other at most: pairs of features grow with the square of it.
 constexpr double kMostPairEdges = 2.0;
-
-double sumOfEdges(const Tissue& tissue) {
-  const NodalVectors& x = tissue.restPositions();
-  double sum = 0.0;
-  for (const Triangle& t : tissue.surface()) sum += (x.col(t[0]) - x.col(t[1])).norm();
-  return sum;
-}
-
-double meanSurfaceEdge(const Tissue& tissue) {
-  return sumOfEdges(tissue) / static_cast<double>(tissue.surface().size());
-}
-
-double meanSurfaceEdge(const std::vector<Tissue>& tissues) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const Tissue& tissue : tissues) {
-    sum += sumOfEdges(tissue);
-    count += static_cast<double>(tissue.surface().size());
-  }
-  return count > 0.0 ? sum / count : 0.0;
-}
 
 std::vector<TissueSurface> surfacesOf(const std::vector<Tissue>& tissues) {
   std::vector<TissueSurface> surfaces;
@@ -56,48 +45,81 @@ std::vector<NodalVectors> restPositionsOf(const std::vector<Tissue>& tissues) {
 
 }  // namespace
 
+struct Simulator::Implementation {
+  Implementation(const Scene& description, const SceneEnvironment& environment);
+  Implementation(const Implementation&) = delete;  // members refer to each other
+  Implementation& operator=(const Implementation&) = delete;
+  void reset();
+  void step(double dt);
+  void restTissues();
+  void detectContacts(double dt);
+  void wakeTouched();
+  void assemble(double dt);
+  void solve(double dt);
+  bool wakeHeld(double dt, int repeats);
+  void moveTissues(double dt);
+  void recordContacts();
+  void sumWrenches();
+
+  const Scene scene;
+  const std::vector<Instrument> instruments;
+  const std::vector<Tissue> tissues;
+  const FrictionTable friction;
+  const double mean_edge;  ///< of all tissue surfaces, m
+
+  InstrumentMotion motion;
+  std::vector<NodalVectors> x;  ///< per tissue, m
+  ContactProblem problem;
+  ContactSolution solution;         ///< v is the tissues' velocity
+  std::deque<MovingTissue> moving;  ///< per tissue, each with its own of the three above; they never change their place
+  ContactDetector detector;
+  std::optional<TissuePairDetector> pair_detector;  ///< only where tissues touch each other
+  FoldWatch folds;
+  std::vector<Contact> found;  ///< scratch: by the detectors
+  StepContacts contacts;
+  std::unique_ptr<ContactSolver> solver;
+  std::vector<int> touched_nodes;  ///< scratch
+  std::vector<Wrench> wrenches;    ///< per instrument
+  LoadWatch load_watch;
+  StepReport report;
+  long step_count = 0;
+  double last_dt = 0.0;  ///< of the step before, s
+  std::function<void()> observer;
+};
+
 Simulator::Implementation::Implementation(const Scene& description, const SceneEnvironment& environment)
     : scene(description),
       instruments(buildInstruments(scene, environment)),
       tissues(buildTissues(scene, environment)),
       friction(scene, instruments, tissues),
-      mean_edge(meanSurfaceEdge(tissues)),
+      mean_edge(meanSurfaceEdge(tissues.data(), tissues.size())),
       motion(instruments),
-      detector(instruments, surfacesOf(tissues), restPositionsOf(tissues), environment.meshes),
+      x(tissues.size()),
+      detector(instruments, shareSurfaces(surfacesOf(tissues), restPositionsOf(tissues)), environment.meshes),
+      contacts(tissues, motion, friction, mean_edge),
       solver(atEntry("solver", [&] { return makeContactSolver(scene.solver, environment.clock); })),
+      wrenches(instruments.size()),
       load_watch(scene, tissues) {
   requireMethodForLaws(scene);
   atEntry("step.max_step_s", [&] { requirePositive("step.max_step_s", scene.step.max_step_s, "s"); });
   atEntry("advisor.sleep_error", [&] { requireNonNegative("advisor.sleep_error", scene.advisor.sleep_error); });
   if (!scene.tissue_pairs.empty()) {
     const std::vector<TouchingTissues> pairs = buildTissuePairs(scene);
-    pair_detector.emplace(pairs, surfacesOf(tissues), restPositionsOf(tissues));
+    pair_detector.emplace(pairs, detector.surfaces());
     if (scene.advisor.skip_folds) folds = FoldWatch(pairs, tissues);
   }
-  elastic_states.resize(tissues.size());
-  loads = restPositionsOf(tissues);  // for their sizes
+  solution.v.resize(tissues.size());
   problem.bodies.resize(tissues.size());
-  makeElasticStates();
-  if (advisedSleep(scene)) {
-    for (std::size_t t = 0; t < tissues.size(); ++t) {
-      sleep.emplace_back(tissues[t].fixed(), problem.bodies[t], meanSurfaceEdge(tissues[t]),
-                         advisedSleepByParts(scene));
-    }
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    moving.emplace_back(scene, tissues[t], x[t], solution.v[t], problem.bodies[t]);
   }
-  reset();
 }
 
 void Simulator::Implementation::reset() {
   motion.reset();
-  x = restPositionsOf(tissues);
-  solution.v.resize(tissues.size());
-  for (std::size_t t = 0; t < tissues.size(); ++t) {
-    solution.v[t].setZero(3, tissues[t].nodeCount());
-  }
-  makeElasticStates();
-  memory.clear();
+  for (MovingTissue& tissue : moving) tissue.reset();
+  solver->reset();
   contacts.clear();
-  solved.clear();
   wrenches.assign(instruments.size(), Wrench());
   report = StepReport();
   step_count = 0;
@@ -106,18 +128,28 @@ void Simulator::Implementation::reset() {
 
 /// One implicit step: the rooms in order.
 void Simulator::Implementation::step(double dt) {
-  restTissues(last_dt);
+  restTissues();
   detectContacts(dt);
   wakeTouched();
-  assembleTissues(dt);
-  assembleContacts(dt);
-  solveContacts(dt);
+  assemble(dt);
+  solve(dt);
   moveTissues(dt);
   motion.finishStep();
   ++step_count;
-  recordContacts(dt);
+  recordContacts();
   last_dt = dt;
   if (observer) observer();
+}
+
+/// Lets tissues sleep on what the step before has left.
+void Simulator::Implementation::restTissues() {
+  if (!(last_dt > 0.0)) return;
+  for (std::size_t t = 0; t < moving.size(); ++t) {
+    if (!moving[t].isTimeToSleep(last_dt)) continue;
+    const int tissue = static_cast<int>(t);
+    contacts.touchedNodes(tissue, touched_nodes);
+    moving[t].fallAsleep(contacts.weakestNetForce(tissue, solution.impulses, last_dt), touched_nodes);
+  }
 }
 
 void Simulator::Implementation::detectContacts(double dt) {
@@ -129,14 +161,94 @@ void Simulator::Implementation::detectContacts(double dt) {
   // Beyond so many elements nothing touches in one step; the bound also keeps an overflow of the speeds out.
   constexpr double kMostEdges = 1e6;
   margin = std::min(margin, kMostEdges * mean_edge);
-  detector.detect(x, motion.startPoses(), margin, contacts);
+  detector.detect(x, motion.startPoses(), margin, found);
   report.pinched_contacts = detector.pinchedContacts();
   if (pair_detector) {
     const double pair_margin = std::min(margin + kMarginFactor * tissue_travel, kMostPairEdges * mean_edge);
-    pair_detector->detect(x, pair_margin, folds.apart(x, margin), contacts);
-    std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) { return a.key < b.key; });
+    pair_detector->detect(x, pair_margin, folds.apart(x, margin), found);
+    std::sort(found.begin(), found.end(), [](const Contact& a, const Contact& b) { return a.key < b.key; });
   }
-  memory.addKeptPoints(detector, x, motion.startPoses(), margin, contacts);
+  contacts.begin(detector, x, margin, found);
+}
+
+/// Nodes that contacts act on wake before anything is computed with them.
+void Simulator::Implementation::wakeTouched() {
+  for (std::size_t t = 0; t < moving.size(); ++t) {
+    if (moving[t].sleepers() == 0) continue;
+    contacts.touchedNodes(static_cast<int>(t), touched_nodes);
+    moving[t].wake(touched_nodes);
+  }
+}
+
+void Simulator::Implementation::assemble(double dt) {
+  problem.dt_s = dt;
+  for (MovingTissue& tissue : moving) tissue.assemble(dt);
+  contacts.assemble(x, dt, last_dt, problem.contacts, solution);
+}
+
+/// Solves the step, again where it shows that sleeping nodes must move.
+void Simulator::Implementation::solve(double dt) {
+  report.iterations = 0;
+  for (int repeats = 0;; ++repeats) {
+    const SolverReport solver_report = solver->solve(problem, solution);
+    report.iterations += solver_report.iterations;
+    report.stop = solver_report.stop;
+    report.residuals = solver_report.residuals;
+    if (!wakeHeld(dt, repeats)) return;
+  }
+}
+
+/// @return whether some nodes woke, with which the step is to be solved again.
+bool Simulator::Implementation::wakeHeld(double dt, int repeats) {
+  bool any = false;
+  report.sleeping_nodes = 0;
+  report.held_force_n = 0.0;
+  for (std::size_t t = 0; t < moving.size(); ++t) {
+    if (!moving[t].canSleep()) continue;
+    const auto pressing_n = contacts.weakestNetForce(static_cast<int>(t), solution.impulses, dt);
+    if (moving[t].wakeHeld(pressing_n, dt, repeats)) any = true;
+    report.sleeping_nodes += moving[t].sleepers();
+    report.held_force_n += moving[t].heldForce();
+  }
+  return any;
+}
+
+void Simulator::Implementation::moveTissues(double dt) {
+  const auto is_finite = [](const Vector3& impulse) { return impulse.allFinite(); };
+  if (std::all_of(moving.begin(), moving.end(), [](const MovingTissue& tissue) { return tissue.isFinite(); }) &&
+      std::all_of(solution.impulses.begin(), solution.impulses.end(), is_finite)) {
+    for (MovingTissue& tissue : moving) tissue.move(dt);
+    return;
+  }
+  report.discarded = true;
+  report.stop = StopReason::kIterations;
+  report.residuals = Residuals();
+  report.sleeping_nodes = 0;
+  report.held_force_n = 0.0;
+  for (MovingTissue& tissue : moving) tissue.stop();
+  solver->reset();
+  std::fill(solution.impulses.begin(), solution.impulses.end(), Vector3(0.0, 0.0, 0.0));
+  std::fill(solution.states.begin(), solution.states.end(), ContactState::kOpen);
+}
+
+void Simulator::Implementation::recordContacts() {
+  contacts.record(x, problem, solution);
+  report.open_contacts = contacts.count(ContactState::kOpen);
+  report.static_contacts = contacts.count(ContactState::kStatic);
+  report.kinetic_contacts = contacts.count(ContactState::kKinetic);
+}
+
+void Simulator::Implementation::sumWrenches() {
+  wrenches.assign(instruments.size(), Wrench());
+  for (const SolvedContact& solved : contacts.solved()) {
+    const ContactKey& key = solved.contact.key;
+    if (key.instrument < 0) continue;
+    const Pose& X_WTip = motion.startPoses()[key.instrument][instruments[key.instrument].tipLink()];
+    const Vector3 force_W = -solved.force_on_tissue_n;
+    Wrench& wrench = wrenches[key.instrument];
+    wrench.force += X_WTip.linear().transpose() * force_W;
+    wrench.torque += X_WTip.linear().transpose() * (solved.contact.p_WC - X_WTip.translation()).cross(force_W);
+  }
 }
 
 std::unique_ptr<Simulator::Implementation> Simulator::build(const Scene& scene, const SceneEnvironment& environment) {
@@ -188,10 +300,13 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
   for (std::size_t i = 0; i < joint_positions.size(); ++i) {
     requireJointPositions(static_cast<int>(i), joint_positions[i]);
   }
+  const double longest_s = limits.longest_step_s > 0.0 ? limits.longest_step_s : all.scene.step.max_step_s;
+  if (!(duration_s <= InstrumentMotion::kMostSteps * longest_s)) {
+    throwBadValue("duration", duration_s, "s", "at most a billion steps of " + std::to_string(longest_s) + " s");
+  }
   StepReport& report = all.report;
   report.discarded = false;
   report.interrupted = false;
-  const double longest_s = limits.longest_step_s > 0.0 ? limits.longest_step_s : all.scene.step.max_step_s;
   const int steps = all.motion.begin(duration_s, longest_s, joint_positions, limits.most_steps);
   report.jumped = all.motion.jumped();
   const double dt = duration_s / steps;
@@ -202,7 +317,7 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
   }
   report.advanced_s = report.interrupted ? report.substeps * dt : duration_s;
   all.sumWrenches();
-  all.load_watch.look(all.solved, all.x, report.implausible_load);
+  all.load_watch.check(all.contacts.solved(), all.x, report.implausible_load);
 }
 
 void Simulator::setSolverDeadline(double clock_s, double prompt_s) {
@@ -219,7 +334,7 @@ const TriangleMesh* Simulator::actingSurface(int instrument, int contact_link, i
 }
 const NodalVectors& Simulator::positions(int tissue) const { return implementation_->x.at(tissue); }
 const NodalVectors& Simulator::velocities(int tissue) const { return implementation_->solution.v.at(tissue); }
-const std::vector<SolvedContact>& Simulator::contacts() const { return implementation_->solved; }
+const std::vector<SolvedContact>& Simulator::contacts() const { return implementation_->contacts.solved(); }
 const StepReport& Simulator::report() const { return implementation_->report; }
 long Simulator::stepCount() const { return implementation_->step_count; }
 void Simulator::lowerClosestApproach(Approach& closest) {
@@ -228,6 +343,5 @@ void Simulator::lowerClosestApproach(Approach& closest) {
 const ContactProblem& Simulator::lastProblem() const { return implementation_->problem; }
 const ContactSolution& Simulator::lastSolution() const { return implementation_->solution; }
 void Simulator::setStepObserver(std::function<void()> observer) { implementation_->observer = std::move(observer); }
-ContactSolver::Memory Simulator::solverMemory() const { return implementation_->solver->memory(); }
 
 }  // namespace tissue_contact

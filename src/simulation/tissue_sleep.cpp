@@ -1,4 +1,4 @@
-#include "tissue_contact/simulation/tissue_sleep.h"
+#include "simulation/tissue_sleep.h"
 
 #include <algorithm>
 #include <limits>
@@ -30,9 +30,9 @@ TissueSleep::TissueSleep(const std::vector<bool>& fixed, const BodySystem& body,
 void TissueSleep::wakeAll() {
   still_ = fixed_;
   sleepers_.clear();
-  still_looks_.assign(fixed_.size(), 0);
+  still_checks_.assign(fixed_.size(), 0);
   anchors_.setConstant(3, static_cast<Eigen::Index>(fixed_.size()), std::numeric_limits<double>::quiet_NaN());
-  since_look_ = 0.0;
+  since_check_ = 0.0;
   held_force_ = 0.0;
 }
 
@@ -66,7 +66,7 @@ bool TissueSleep::wakeHeld(const NodalVectors& loads, const NodalVectors& v, dou
   held_.resize(sleepers_.size());
   for (std::size_t s = 0; s < sleepers_.size(); ++s) {
     const int node = sleepers_[s];
-    held_[s] = shore_[s] ? heldBy(node, loads, v, dt).norm() : loads.col(node).norm();
+    held_[s] = beside_awake_[s] ? heldBy(node, loads, v, dt).norm() : loads.col(node).norm();
   }
   held_force_ = std::accumulate(held_.begin(), held_.end(), 0.0);
   if (held_force_ <= allowed_n) return false;
@@ -88,28 +88,28 @@ bool TissueSleep::wakeHeld(const NodalVectors& loads, const NodalVectors& v, dou
 void TissueSleep::listSleepers() {
   const BlockMatrix& K = *body_.K;
   sleepers_.clear();
-  shore_.clear();
+  beside_awake_.clear();
   for (std::size_t i = 0; i < fixed_.size(); ++i) {
     if (fixed_[i] || !still_[i]) continue;
     sleepers_.push_back(static_cast<int>(i));
     const auto begin = K.columns.begin() + K.row_start[i];
     const auto end = K.columns.begin() + K.row_start[i + 1];
-    shore_.push_back(std::any_of(begin, end, [this](int other) { return !still_[other]; }));
+    beside_awake_.push_back(std::any_of(begin, end, [this](int other) { return !still_[other]; }));
   }
 }
 
-bool TissueSleep::looks(double dt) {
+bool TissueSleep::isTimeToCheck(double dt) {
   if (allAsleep()) return false;
-  since_look_ += dt;
-  if (since_look_ < kLookTime) return false;
-  since_look_ = 0.0;
+  since_check_ += dt;
+  if (since_check_ < kCheckTime) return false;
+  since_check_ = 0.0;
   return true;
 }
 
 bool TissueSleep::rest(const NodalVectors& x, const NodalVectors& loads, double allowed_n,
                        const std::vector<int>& touched) {
   if (free_nodes_ == static_cast<int>(fixed_.size())) return false;
-  look(x);
+  countStillTime(x);
   if (!by_parts_ && !touched.empty()) return false;
   findReady(loads, allowed_n, touched);
   if (touched.empty()) {
@@ -127,14 +127,14 @@ bool TissueSleep::rest(const NodalVectors& x, const NodalVectors& loads, double 
 }
 
 /// Who has been still, and for how long.
-void TissueSleep::look(const NodalVectors& x) {
+void TissueSleep::countStillTime(const NodalVectors& x) {
   constexpr unsigned char kMost = 255;
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
-    unsigned char& looks = still_looks_[i];
+    unsigned char& checks = still_checks_[i];
     if ((x.col(i) - anchors_.col(i)).squaredNorm() <= radius_ * radius_) {
-      if (looks < kMost) ++looks;
+      if (checks < kMost) ++checks;
     } else {
-      looks = 0;
+      checks = 0;
       anchors_.col(i) = x.col(i);
     }
   }
@@ -148,11 +148,11 @@ void TissueSleep::findReady(const NodalVectors& loads, double allowed_n, const s
     near_[node] = true;
     for (int k = K.row_start[node]; k < K.row_start[node + 1]; ++k) near_[K.columns[k]] = true;
   }
-  constexpr double kLooks = kStillTime / kLookTime;
+  constexpr double kChecks = kStillTime / kCheckTime;
   const double share = touched.empty() ? allowed_n : kMargin * allowed_n / free_nodes_;
   ready_.clear();
   for (std::size_t i = 0; i < fixed_.size(); ++i) {
-    if (still_[i] || near_[i] || still_looks_[i] < kLooks) continue;
+    if (still_[i] || near_[i] || still_checks_[i] < kChecks) continue;
     if (loads.col(static_cast<Eigen::Index>(i)).norm() <= share) ready_.push_back(static_cast<int>(i));
   }
 }

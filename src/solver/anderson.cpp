@@ -48,10 +48,4 @@ void AndersonMixing::mix(int known) {
   for (int k = 0; k < known; ++k) next_ -= weights[k] * g_changes_.col(k);
 }
 
-std::size_t AndersonMixing::bytes() const {
-  const Eigen::Index values = residual_changes_.size() + g_changes_.size() + residual_.size() + last_residual_.size() +
-                              last_g_.size() + next_.size();
-  return sizeof(double) * static_cast<std::size_t>(values);
-}
-
 }  // namespace tissue_contact

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 
 #include "tissue_contact/core/types.h"
 
@@ -23,15 +22,13 @@ class AndersonMixing {
   explicit AndersonMixing(int depth);
 
   /// Allocates only when x has another size than at the restart before. Between restarts it keeps its size.
-  /// @param x where the map was evaluated. @param g what it gave.
+  /// @param x where the map was evaluated.
+  /// @param g what it gave.
   /// @return where to go on, valid until the next call; g itself at first and after the residual has grown.
   const VectorX& next(const VectorX& x, const VectorX& g);
 
   /// Begins anew, with another map.
   void restart() { steps_ = 0; }
-
-  /// Held now.
-  std::size_t bytes() const;
 
  private:
   using Products = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostSteps, kMostSteps>;

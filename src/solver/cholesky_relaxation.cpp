@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "solver/factored_body.h"
+#include "solver/momentum_defect.h"
 #include "solver/relaxation.h"
 
 namespace tissue_contact {
@@ -30,9 +31,10 @@ class CholeskyRelaxation : public Relaxation {
   void prepare(const ContactProblem& problem, ContactSolution& solution) override;
   double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                ContactSolution& solution) override;
+  void beginPasses(const ContactSolution& solution) override;
+  double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
   void finish(const ContactProblem& problem, ContactSolution& solution) override;
   void reset() override { bodies_.clear(); }
-  ContactSolver::Memory memory() const override;
 
  private:
   /// A contact's nodes as indices into the touched nodes of their bodies.
@@ -45,10 +47,8 @@ class CholeskyRelaxation : public Relaxation {
   double relaxOnce(const ContactProblem& problem, ContactSolution& solution, double before);
   double relaxSafely(const ContactProblem& problem, ContactSolution& solution);
   void prepareContact(const ContactProblem& problem, std::size_t contact, ContactSolution& solution);
-  void beginPasses(const ContactSolution& solution) override;
-  double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
   Vector3 trackedVelocity(const ContactRow& row, const Local& local) const;
-  void addImpulse(const ContactRow& row, const Local& local, const Vector3& impulse_W);
+  void press(const ContactRow& row, const Local& local, const Vector3& impulse_W);
 
   std::deque<FactoredBody> bodies_;     ///< a factor cannot be moved
   std::vector<NodalVectors> impulses_;  ///< J'lambda per body
@@ -59,7 +59,6 @@ class CholeskyRelaxation : public Relaxation {
   double loads_ = 0.0;               ///< |b|, N s
   double left_ = 0.0;                ///< defect that the last relaxation of this step left, N s
   bool fresh_ = false;               ///< all factors are of this step: to renew them would change nothing
-  long renewals_ = 0;                ///< factors renewed in mid-step
 };
 
 void CholeskyRelaxation::prepare(const ContactProblem& problem, ContactSolution& solution) {
@@ -83,11 +82,7 @@ void CholeskyRelaxation::prepare(const ContactProblem& problem, ContactSolution&
   }
   loads_ = std::sqrt(loads_);
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
-    const ContactRow& row = problem.contacts[c];
-    const Vector3 impulse_W = row.R_WC * solution.impulses[c];
-    for (int a = 0; a < row.node_count; ++a) {
-      impulses_[row.nodes[a].body].col(row.nodes[a].node) += row.nodes[a].weight * impulse_W;
-    }
+    addImpulse(problem.contacts[c], problem.contacts[c].R_WC * solution.impulses[c], impulses_);
   }
   // The first relaxation comes before the compliances, which would be lost with a factor that proves useless.
   left_ = std::numeric_limits<double>::infinity();
@@ -100,7 +95,8 @@ void CholeskyRelaxation::prepare(const ContactProblem& problem, ContactSolution&
 
 /// Relaxes; where an old factor makes things worse or hardly better, or leaves more than the relaxation before the last
 /// contact passes, it is renewed at once and the relaxation done again with A itself. A part of the answer that the factor
-/// drives apart may be small at first, so every relaxation is watched. @return the defect left, N s.
+/// drives apart may be small at first, so every relaxation is watched.
+/// @return the defect left, N s.
 double CholeskyRelaxation::relaxSafely(const ContactProblem& problem, ContactSolution& solution) {
   const double before = normOf(defect_);
   saved_ = solution.v;
@@ -113,7 +109,6 @@ double CholeskyRelaxation::relaxSafely(const ContactProblem& problem, ContactSol
     if (!problem.bodies[k].asleep) bodies_[k].renew(problem.bodies[k]);
   }
   fresh_ = true;
-  ++renewals_;
   left_ = relaxOnce(problem, solution, computeDefect(problem, solution));
   return left_;
 }
@@ -145,7 +140,8 @@ double CholeskyRelaxation::computeDefect(const ContactProblem& problem, const Co
   return std::sqrt(sum);
 }
 
-/// v += P^-1 defect. @return the defect it leaves.
+/// v += P^-1 defect.
+/// @return the defect it leaves, N s.
 double CholeskyRelaxation::relaxOnce(const ContactProblem& problem, ContactSolution& solution, double before) {
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     if (!problem.bodies[k].asleep) bodies_[k].relax(defect_[k], solution.v[k]);
@@ -160,9 +156,9 @@ double CholeskyRelaxation::relaxOnce(const ContactProblem& problem, ContactSolut
 double CholeskyRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& /*corrector*/,
                                  ContactSolution& solution) {
   if (iteration == 0) return normOf(defect_);  // prepare() has relaxed already
-  const long renewals = renewals_;
+  const bool was_fresh = fresh_;
   const double left = relaxSafely(problem, solution);
-  if (renewals != renewals_) {  // the compliances went with the old factor
+  if (fresh_ != was_fresh) {  // the compliances went with the old factor
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) prepareContact(problem, c, solution);
   }
   return left;
@@ -178,7 +174,7 @@ Vector3 CholeskyRelaxation::trackedVelocity(const ContactRow& row, const Local& 
   return row.R_WC.transpose() * tissue - row.u_tool;
 }
 
-void CholeskyRelaxation::addImpulse(const ContactRow& row, const Local& local, const Vector3& impulse_W) {
+void CholeskyRelaxation::press(const ContactRow& row, const Local& local, const Vector3& impulse_W) {
   for (int a = 0; a < row.node_count; ++a) {
     if (local.index[a] < 0) continue;
     const RowNode& at = row.nodes[a];
@@ -198,7 +194,7 @@ double CholeskyRelaxation::contactPass(const ContactProblem& problem, ContactCor
     const ContactRow& row = problem.contacts[c];
     const Vector3 delta = corrector.correct(problem, c, local.W, trackedVelocity(row, local), solution);
     if (delta.isZero(0.0)) continue;
-    addImpulse(row, local, row.R_WC * delta);
+    press(row, local, row.R_WC * delta);
     change += delta.squaredNorm();
   }
   return std::sqrt(change);
@@ -210,16 +206,6 @@ void CholeskyRelaxation::beginPasses(const ContactSolution& solution) {
 
 void CholeskyRelaxation::finish(const ContactProblem& problem, ContactSolution& solution) {
   relaxSafely(problem, solution);
-}
-
-ContactSolver::Memory CholeskyRelaxation::memory() const {
-  ContactSolver::Memory memory;
-  memory.per_contacts = contacts_.capacity() * sizeof(Local);
-  for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    memory.per_nodes += bodies_[k].factorBytes() + 2 * impulses_[k].size() * sizeof(double);
-    memory.per_contacts += bodies_[k].complianceBytes() + tracked_[k].size() * sizeof(double);
-  }
-  return memory;
 }
 
 }  // namespace

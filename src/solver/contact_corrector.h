@@ -1,37 +1,61 @@
 /// @file
-/// Room `solver`, private: the answer of one contact given its local operator and the velocity it would have without its
-/// own impulse: friction history, the guard against cycling, and the choice of corrector.
+/// Room `solver`, private: solves one contact, given its local operator and its velocity, and remembers what matters for
+/// that within a step: how often the contact has changed between sticking and sliding. Serves every iteration that goes
+/// from contact to contact: the method's, on J P^-1 J', and the baselines', on the Delassus matrix.
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <utility>
 #include <vector>
 
-#include "solver/rival_contact.h"
 #include "tissue_contact/solver/contact_problem.h"
 
 namespace tissue_contact {
 
+/// A way to solve one contact other than solveCoulombContact(), which see for W, q and law.
+/// kinetic_limit: the contact sticks only if kinetic friction can hold it.
+/// previous_sliding: tangential velocity of the contact in the warm start, m/s.
+using ContactRival = std::function<ContactAnswer(const Matrix3& W, const Vector3& q, const CoulombLaw& law,
+                                                 bool kinetic_limit, const Vector2& previous_sliding)>;
+
 class ContactCorrector {
  public:
-  /// Changes between static and kinetic a contact may make in one step before it is held to the kinetic limit.
-  static constexpr int kMaxFlips = 4;
+  /// @param rival takes the place of solveCoulombContact(); empty: nothing does.
+  explicit ContactCorrector(ContactRival rival = nullptr) : rival_(std::move(rival)) {}
 
-  ContactCorrector(SolverMethod method, int cone_sides) : method_(method), cone_sides_(cone_sides) {}
+  /// Begins a step.
+  /// @param sliding tangential velocity of a contact in the warm start, m/s; asked for rivals only.
+  void prepare(std::size_t contacts, const std::function<Vector2(std::size_t)>& sliding);
 
-  /// Begins a step. `solution` holds the warm start.
-  void prepare(const ContactProblem& problem, const ContactSolution& solution);
+  /// Solves u = W r + q for one contact; q contains what closes the gap.
+  /// @param before the contact's state so far.
+  ContactAnswer solve(std::size_t contact, const Matrix3& W, const Vector3& q, const CoulombLaw& law, bool was_sliding,
+                      ContactState before) {
+    unsigned char& flips = flips_[contact];
+    const bool kinetic_limit = was_sliding || flips > kMaxFlips;
+    const ContactAnswer answer = rival_ ? rival_(W, q, law, kinetic_limit, previous_sliding_[contact])
+                                        : solveCoulombContact(W, q, law, kinetic_limit);
+    const bool both_touch = answer.state != ContactState::kOpen && before != ContactState::kOpen;
+    if (both_touch && answer.state != before && flips <= kMaxFlips) ++flips;
+    return answer;
+  }
 
-  /// @param W local operator J P^-1 J', 1/kg. @param u relative velocity with the present impulse, m/s.
-  /// Sets the contact's impulse and state in `solution`. @return the change of the impulse, contact frame, N s.
+  /// The same for a contact of a step, whose impulse and state are set.
+  /// @param W local operator J P^-1 J', 1/kg.
+  /// @param u relative velocity with the present impulse, m/s.
+  /// @return the change of the impulse, contact frame, N s.
   Vector3 correct(const ContactProblem& problem, std::size_t contact, const Matrix3& W, const Vector3& u,
                   ContactSolution& solution);
 
-  std::size_t bytes() const { return flips_.capacity() + previous_sliding_.capacity() * sizeof(Vector2); }
-
  private:
-  SolverMethod method_;
-  int cone_sides_;
+  /// Changes between sticking and sliding a contact may make in one step before it is held to the kinetic limit: with
+  /// mu_static > mu_kinetic both can be consistent, and the iteration would cycle between them.
+  static constexpr int kMaxFlips = 4;
+
+  ContactRival rival_;
   std::vector<unsigned char> flips_;       ///< per contact, this step
-  std::vector<Vector2> previous_sliding_;  ///< per contact, m/s; for the rivals alone
+  std::vector<Vector2> previous_sliding_;  ///< per contact, m/s; for rivals only
 };
 
 /// A contact that has a normal part only: both coefficients 0.

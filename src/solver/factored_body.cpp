@@ -98,9 +98,4 @@ void FactoredBody::addResponse(int touched, const Vector3& impulse_W, VectorX& v
     velocities += impulse_W[axis] * C_.col(3 * static_cast<Eigen::Index>(touched) + axis).head(rows);
 }
 
-std::size_t FactoredBody::factorBytes() const {
-  if (!valid_) return system_.bytes();
-  return system_.bytes() + factor_.matrixL().nestedExpression().nonZeros() * (sizeof(double) + sizeof(int));
-}
-
 }  // namespace tissue_contact

@@ -13,7 +13,8 @@ namespace tissue_contact {
 /// columns lack are in the new column. It lives as long as the factor.
 class FactoredBody {
  public:
-  /// Begins a step: renews the factor if it is stale or A has changed too much. @return whether it did.
+  /// Begins a step: renews the factor if it is stale or A has changed too much.
+  /// @return it did.
   bool prepare(const BodySystem& body);
   void renew(const BodySystem& body);  ///< factors A of this step; allocates
   void markStale() { stale_ = true; }  ///< renew at the next prepare()
@@ -31,9 +32,6 @@ class FactoredBody {
   /// Velocities of S, m/s; and what an impulse (N s, world axes) at one of them adds.
   void gatherTouched(const NodalVectors& v, VectorX& velocities) const;
   void addResponse(int touched, const Vector3& impulse_W, VectorX& velocities) const;
-
-  std::size_t factorBytes() const;
-  std::size_t complianceBytes() const { return C_.size() * sizeof(double) + touched_.capacity() * sizeof(int); }
 
  private:
   void forget();

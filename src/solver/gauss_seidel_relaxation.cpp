@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "solver/anderson.h"
+#include "solver/momentum_defect.h"
 #include "solver/relaxation.h"
 
 namespace tissue_contact {
@@ -19,7 +20,7 @@ void gather(const ContactProblem& problem, const std::vector<NodalVectors>& v, V
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     if (problem.bodies[k].asleep) continue;
-    all.segment(at, v[k].size()) = v[k].reshaped();
+    all.segment(at, v[k].size()) = Eigen::Map<const VectorX>(v[k].data(), v[k].size());
     at += v[k].size();
   }
 }
@@ -29,20 +30,15 @@ class GaussSeidelRelaxation : public Relaxation {
   void prepare(const ContactProblem& problem, ContactSolution& solution) override;
   double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                ContactSolution& solution) override;
-  void finish(const ContactProblem& /*problem*/, ContactSolution& /*solution*/) override {}
-  ContactSolver::Memory memory() const override;
+  double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
 
  private:
-  /// The local operator, contact frame, 1/kg; W(0, 0) = 0: no node of it can move.
-  using LocalOperator = Matrix3;
-
   void prepareBodies(const ContactProblem& problem);
   void prepareContacts(const ContactProblem& problem, ContactSolution& solution);
   void findNodeContacts(const ContactProblem& problem);
-  double sweep(const ContactProblem& problem, bool forward, std::vector<NodalVectors>& v) const;
-  double sweepHolding(const ContactProblem& problem, bool forward, ContactCorrector& corrector,
-                      ContactSolution& solution);
-  double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
+  template <class Hold>
+  double sweep(const BodySystem& body, std::size_t k, bool forward, NodalVectors& v, const Hold& hold) const;
+  bool project(const ContactProblem& problem, int contact, ContactCorrector& corrector, ContactSolution& solution);
   double correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution);
   void apply(const ContactRow& row, const Vector3& impulse_W, std::vector<NodalVectors>& v);
   void beginMixing(const ContactProblem& problem, const std::vector<NodalVectors>& v);
@@ -50,9 +46,9 @@ class GaussSeidelRelaxation : public Relaxation {
 
   std::vector<std::vector<Matrix3>> block_inverse_;  ///< P_i^-1 per body and node; 0 for fixed nodes
   std::vector<NodalVectors> contact_impulses_;       ///< J'lambda per body
-  std::vector<LocalOperator> W_;                     ///< per contact
-  std::vector<std::vector<int>> node_contact_;       ///< per body and node: the contact that alone holds it, else -1
-  bool holding_ = false;                             ///< some node_contact_ is not -1
+  std::vector<Matrix3> W_;                      ///< W_P per contact, contact frame, 1/kg; W(0, 0) = 0: it cannot move
+  std::vector<std::vector<int>> node_contact_;  ///< per body and node: the contact that alone holds it, else -1
+  bool holding_ = false;                        ///< some node_contact_ is a contact
   AndersonMixing mixing_{kMixedPairs};
   VectorX begun_;    ///< velocities where a pair of sweeps began, of the bodies awake, m/s
   VectorX reached_;  ///< and where it led
@@ -99,9 +95,8 @@ void GaussSeidelRelaxation::prepareContacts(const ContactProblem& problem, Conta
       const Vector3 n = row.R_WC.col(0);
       const Vector3 response = W_W * n;
       W_[c](0, 0) = n.dot(response);
-      solution.impulses[c]
-          .tail<2>()
-          .setZero();  // the frame has turned since: no friction may be left in the warm start
+      // The frame has turned since: no friction may be left in the warm start.
+      solution.impulses[c].tail<2>().setZero();
     } else {
       W_[c] = row.R_WC.transpose() * W_W * row.R_WC;
     }
@@ -110,99 +105,77 @@ void GaussSeidelRelaxation::prepareContacts(const ContactProblem& problem, Conta
       solution.states[c] = ContactState::kOpen;
       continue;
     }
-    const Vector3 impulse_W = row.R_WC * solution.impulses[c];
-    for (int a = 0; a < row.node_count; ++a) {
-      contact_impulses_[row.nodes[a].body].col(row.nodes[a].node) += row.nodes[a].weight * impulse_W;
-    }
+    addImpulse(row, row.R_WC * solution.impulses[c], contact_impulses_);
   }
 }
 
 /// Nodes with one contact, which acts on no other node: those the sweep can hold.
 void GaussSeidelRelaxation::findNodeContacts(const ContactProblem& problem) {
+  constexpr int kNone = -1;
   constexpr int kShared = -2;
-  if (holding_) {
-    for (std::vector<int>& contacts : node_contact_) std::fill(contacts.begin(), contacts.end(), -1);
-  }
+  const auto single = [&](std::size_t c) {
+    const ContactRow& row = problem.contacts[c];
+    return row.node_count == 1 && !isFrictionless(row.law) && W_[c](0, 0) > 0.0;
+  };
   holding_ = false;
-  node_contact_.resize(problem.bodies.size());
-  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
-    const ContactRow& row = problem.contacts[c];
-    if (row.node_count == 1 && !isFrictionless(row.law) && W_[c](0, 0) > 0.0) holding_ = true;
-  }
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) holding_ = holding_ || single(c);
   if (!holding_) return;
-  for (std::size_t k = 0; k < problem.bodies.size(); ++k) node_contact_[k].assign(problem.bodies[k].K->rows(), -1);
+  node_contact_.resize(problem.bodies.size());
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k) node_contact_[k].assign(problem.bodies[k].K->rows(), kNone);
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     const ContactRow& row = problem.contacts[c];
-    const bool single = row.node_count == 1 && !isFrictionless(row.law) && W_[c](0, 0) > 0.0;
     for (int a = 0; a < row.node_count; ++a) {
       int& holder = node_contact_[row.nodes[a].body][row.nodes[a].node];
-      holder = holder == -1 && single ? static_cast<int>(c) : kShared;
+      holder = holder == kNone && single(c) ? static_cast<int>(c) : kShared;
     }
   }
 }
 
-/// Gauss-Seidel step of node i with the impulses held. @return its squared defect before it, (N s)^2. Compiled for each
-/// case, so that a body without a damping matrix does not ask for one node by node.
+/// Gauss-Seidel step of node i with the impulses held.
+/// @return its squared defect before it, (N s)^2.
 template <bool kDamped>
 [[gnu::always_inline]] inline double relaxNode(const BodySystem& body, const Matrix3& block_inverse,
                                                const NodalVectors& impulses, int i, NodalVectors& v) {
   const Vector3 v_i = v.col(i);
-  const Vector3 elastic = body.K->offDiagonalProduct(i, v) + body.K->diagonal[i] * v_i;
-  Vector3 defect = body.b.col(i) + impulses.col(i) - body.mass[i] * v_i - body.stiffness_scale * elastic;
-  if (kDamped) defect -= body.damping_scale * (body.D->offDiagonalProduct(i, v) + body.D->diagonal[i] * v_i);
+  const Vector3 defect = nodeDefect<kDamped>(body, impulses, i, v);
   v.col(i) = v_i + block_inverse * defect;
   return defect.squaredNorm();
 }
 
-template <bool kDamped>
+/// Every free node of a body.
+/// @param hold called with each node after its step; true: its contact holds it, so that its defect does not count.
+/// @return |defects met|^2, (N s)^2.
+template <bool kDamped, class Hold>
 double sweepBody(const BodySystem& body, const std::vector<Matrix3>& block_inverse, const NodalVectors& impulses,
-                 bool forward, NodalVectors& v) {
+                 bool forward, NodalVectors& v, const Hold& hold) {
   double change = 0.0;
   const int nodes = body.K->rows();
   for (int step = 0; step < nodes; ++step) {
     const int i = forward ? step : nodes - 1 - step;
-    if (!(*body.fixed)[i]) change += relaxNode<kDamped>(body, block_inverse[i], impulses, i, v);
+    if ((*body.fixed)[i]) continue;
+    const double node_change = relaxNode<kDamped>(body, block_inverse[i], impulses, i, v);
+    if (!hold(i)) change += node_change;
   }
   return change;
 }
 
-double GaussSeidelRelaxation::sweep(const ContactProblem& problem, bool forward, std::vector<NodalVectors>& v) const {
-  double change = 0.0;
-  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    const BodySystem& body = problem.bodies[k];
-    if (body.asleep) continue;
-    change += body.D == nullptr ? sweepBody<false>(body, block_inverse_[k], contact_impulses_[k], forward, v[k])
-                                : sweepBody<true>(body, block_inverse_[k], contact_impulses_[k], forward, v[k]);
-  }
-  return std::sqrt(change);
+template <class Hold>
+double GaussSeidelRelaxation::sweep(const BodySystem& body, std::size_t k, bool forward, NodalVectors& v,
+                                    const Hold& hold) const {
+  return body.D == nullptr ? sweepBody<false>(body, block_inverse_[k], contact_impulses_[k], forward, v, hold)
+                           : sweepBody<true>(body, block_inverse_[k], contact_impulses_[k], forward, v, hold);
 }
 
-/// As sweep(), and a node whose own contact is static is projected at once: its tangential velocity becomes the tool's,
-/// its impulse the reaction. A reaction that leaves the limit releases the node.
-double GaussSeidelRelaxation::sweepHolding(const ContactProblem& problem, bool forward, ContactCorrector& corrector,
-                                           ContactSolution& solution) {
-  double change = 0.0;
-  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    const BodySystem& body = problem.bodies[k];
-    if (body.asleep) continue;
-    const int nodes = body.K->rows();
-    for (int step = 0; step < nodes; ++step) {
-      const int i = forward ? step : nodes - 1 - step;
-      if ((*body.fixed)[i]) continue;
-      const int c = node_contact_[k][i];
-      const double node_change =
-          body.D == nullptr ? relaxNode<false>(body, block_inverse_[k][i], contact_impulses_[k], i, solution.v[k])
-                            : relaxNode<true>(body, block_inverse_[k][i], contact_impulses_[k], i, solution.v[k]);
-      if (c < 0 || solution.states[c] != ContactState::kStatic) {
-        change += node_change;
-        continue;
-      }
-      const ContactRow& row = problem.contacts[c];
-      const Vector3 delta = corrector.correct(problem, c, W_[c], relativeVelocity(row, solution.v), solution);
-      apply(row, row.R_WC * delta, solution.v);
-    }
-  }
-  return std::sqrt(change);
+/// A node whose own contact is static is projected at once: its tangential velocity becomes the tool's, its impulse the
+/// reaction. A reaction that leaves the limit releases the node.
+/// @return it was projected.
+bool GaussSeidelRelaxation::project(const ContactProblem& problem, int contact, ContactCorrector& corrector,
+                                    ContactSolution& solution) {
+  if (contact < 0 || solution.states[contact] != ContactState::kStatic) return false;
+  const ContactRow& row = problem.contacts[contact];
+  const Vector3 u = relativeVelocity(row, solution.v);
+  apply(row, row.R_WC * corrector.correct(problem, contact, W_[contact], u, solution), solution.v);
+  return true;
 }
 
 double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
@@ -210,7 +183,15 @@ double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration
   const bool forward = iteration % 2 == 0;
   if (iteration == kPlainIterations) beginMixing(problem, solution.v);
   if (forward && iteration > kPlainIterations) mix(problem, solution.v);
-  return holding_ ? sweepHolding(problem, forward, corrector, solution) : sweep(problem, forward, solution.v);
+  double change = 0.0;
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
+    const BodySystem& body = problem.bodies[k];
+    if (body.asleep) continue;
+    const auto never = [](int) { return false; };
+    const auto hold = [&](int i) { return project(problem, node_contact_[k][i], corrector, solution); };
+    change += holding_ ? sweep(body, k, forward, solution.v[k], hold) : sweep(body, k, forward, solution.v[k], never);
+  }
+  return std::sqrt(change);
 }
 
 void GaussSeidelRelaxation::beginMixing(const ContactProblem& problem, const std::vector<NodalVectors>& v) {
@@ -231,7 +212,7 @@ void GaussSeidelRelaxation::mix(const ContactProblem& problem, std::vector<Nodal
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     if (problem.bodies[k].asleep) continue;
-    v[k].reshaped() = begun_.segment(at, v[k].size());
+    Eigen::Map<VectorX>(v[k].data(), v[k].size()) = begun_.segment(at, v[k].size());
     at += v[k].size();
   }
 }
@@ -246,16 +227,13 @@ void GaussSeidelRelaxation::apply(const ContactRow& row, const Vector3& impulse_
   }
 }
 
-/// The answer of a frictionless contact: nothing tangential is computed. @return the change of its impulse, N s.
+/// Solves a frictionless contact: nothing tangential is computed.
+/// @return the change of its impulse, N s.
 double GaussSeidelRelaxation::correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution) {
   const Vector3 n = row.R_WC.col(0);
-  Vector3 tissue = Vector3::Zero();
-  for (int a = 0; a < row.node_count; ++a) {
-    const RowNode& at = row.nodes[a];
-    tissue += at.weight * solution.v[at.body].col(at.node);
-  }
+  const double u_n = n.dot(tissueVelocity(row, solution.v)) - row.u_tool[0];
   Vector3& impulse = solution.impulses[contact];
-  const double wanted = impulse[0] - (n.dot(tissue) - row.u_tool[0] - row.required_u_n) / W_[contact](0, 0);
+  const double wanted = impulse[0] - (u_n - row.required_u_n) / W_[contact](0, 0);
   const double normal = wanted > 0.0 ? wanted : 0.0;
   const double change = normal - impulse[0];
   impulse = Vector3(normal, 0.0, 0.0);
@@ -280,16 +258,6 @@ double GaussSeidelRelaxation::contactPass(const ContactProblem& problem, Contact
     change += delta.squaredNorm();
   }
   return std::sqrt(change);
-}
-
-ContactSolver::Memory GaussSeidelRelaxation::memory() const {
-  ContactSolver::Memory memory;
-  for (const std::vector<Matrix3>& blocks : block_inverse_) memory.per_nodes += blocks.capacity() * sizeof(Matrix3);
-  for (const NodalVectors& p : contact_impulses_) memory.per_nodes += p.size() * sizeof(double);
-  for (const std::vector<int>& holders : node_contact_) memory.per_nodes += holders.capacity() * sizeof(int);
-  memory.per_nodes += mixing_.bytes() + (begun_.size() + reached_.size()) * sizeof(double);
-  memory.per_contacts = W_.capacity() * sizeof(LocalOperator);
-  return memory;
 }
 
 }  // namespace

@@ -4,15 +4,11 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "solver/contact_corrector.h"
-#include "tissue_contact/solver/contact_solver.h"
+#include "tissue_contact/solver/contact_problem.h"
 
 namespace tissue_contact {
-
-/// Of all contacts together, N s.
-double impulseNorm(const std::vector<Vector3>& impulses);
 
 class Relaxation {
  public:
@@ -21,26 +17,22 @@ class Relaxation {
   /// Begins a step. Contacts on nodes that cannot move lose their impulse.
   virtual void prepare(const ContactProblem& problem, ContactSolution& solution) = 0;
 
-  /// Relaxes v with the impulses held (MICA's projections aside). @return |A v - b - J'lambda| met on the way, N s.
+  /// Relaxes v with the impulses held (MICA's projections aside).
+  /// @return |A v - b - J'lambda| met on the way, N s.
   virtual double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                        ContactSolution& solution) = 0;
 
-  /// At most `passes` passes over the contacts, fewer once one changes the impulses by no more than `tolerance` of them.
-  /// @return |change of the impulses| of the first pass, N s.
-  double correctContacts(const ContactProblem& problem, int passes, double tolerance, ContactCorrector& corrector,
-                         ContactSolution& solution);
+  /// Called before the passes of an iteration, with v relaxed.
+  virtual void beginPasses(const ContactSolution& /*solution*/) {}
+
+  /// Corrects every contact once.
+  /// @return |change of the impulses|, N s.
+  virtual double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) = 0;
 
   /// Ends a step: brings v in line with the impulses.
-  virtual void finish(const ContactProblem& problem, ContactSolution& solution) = 0;
+  virtual void finish(const ContactProblem& /*problem*/, ContactSolution& /*solution*/) {}
 
   virtual void reset() {}
-  virtual ContactSolver::Memory memory() const = 0;
-
- private:
-  /// Called before the passes, with v relaxed.
-  virtual void beginPasses(const ContactSolution& /*solution*/) {}
-  /// Every contact once. @return |change of the impulses|, N s.
-  virtual double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) = 0;
 };
 
 /// P = block diagonal of A; one sweep per relaxation, alternating direction. From the seventh iteration of a step on,

@@ -2,16 +2,11 @@
 
 #include <cmath>
 
-#include "solver/sparse_system.h"
-#include "tissue_contact/friction/friction_law.h"
+#include "solver/momentum_defect.h"
+#include "solver/residual_measures.h"
 
 namespace tissue_contact {
 namespace {
-
-/// std::max would drop a NaN: a worst value that is not a number must stay visible.
-void worsen(double& worst, double value) {
-  if (!(value <= worst)) worst = value;
-}
 
 /// What weight gives the nodes of all bodies that are awake in one step, N s. While tissue creeps back to rest, |b| falls
 /// to the errors of the steps before: over it alone, an unbalanced force of a hundred-millionth of a newton reads like
@@ -28,7 +23,9 @@ double weightImpulse(const ContactProblem& problem) {
 /// Over all bodies.
 void momentumResidual(const ContactProblem& problem, const ContactSolution& solution,
                       std::vector<NodalVectors>& contact_impulses, Residuals& residuals) {
+  contact_impulses.resize(problem.bodies.size());
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
+    contact_impulses[k].resize(3, problem.bodies[k].K->rows());
     if (!problem.bodies[k].asleep) contact_impulses[k].setZero();
   }
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
@@ -52,24 +49,28 @@ void momentumResidual(const ContactProblem& problem, const ContactSolution& solu
   residuals.momentum = residuals.momentum_defect_n_s / scale;
 }
 
-/// How far friction is beyond what the contact's law allows, N; negative inside.
-double coneViolation(const ContactRow& row, ContactState state, const Vector3& force) {
-  const bool kinetic = state != ContactState::kStatic || row.was_sliding;
-  const Vector2 friction = force.tail<2>();
-  if (row.law.anisotropic == nullptr) {
-    return friction.norm() - (kinetic ? row.law.mu_kinetic : row.law.mu_static) * force[0];
-  }
-  if (friction.isZero(0.0)) return 0.0;
-  return friction.norm() * (1.0 - force[0] / frictionUse(row.law, friction, kinetic));
-}
-
 /// Angle between the friction force and the one its law asks for at this sliding, rad.
 double kineticAngle(const CoulombLaw& law, const Vector2& friction, const Vector2& sliding) {
-  const Vector2 asked = law.anisotropic == nullptr ? Vector2(-sliding) : kineticFriction(law, sliding.normalized());
-  return std::abs(std::atan2(friction.x() * asked.y() - friction.y() * asked.x(), friction.dot(asked)));
+  return angleBetween(friction,
+                      law.anisotropic == nullptr ? Vector2(-sliding) : kineticFriction(law, sliding.normalized()));
 }
 
 }  // namespace
+
+double bodyDefect(const BodySystem& body, const NodalVectors& v, const NodalVectors& impulses, NodalVectors& defect) {
+  double sum = 0.0;
+  for (int i = 0; i < body.K->rows(); ++i) {
+    if ((*body.fixed)[i]) {
+      defect.col(i).setZero();
+      continue;
+    }
+    const Vector3 d =
+        body.D == nullptr ? nodeDefect<false>(body, impulses, i, v) : nodeDefect<true>(body, impulses, i, v);
+    defect.col(i) = d;
+    sum += d.squaredNorm();
+  }
+  return sum;
+}
 
 double loadScale(const ContactProblem& problem) {
   constexpr double kStill = 1e-9;  // m/s
@@ -98,7 +99,7 @@ Residuals computeResiduals(const ContactProblem& problem, const ContactSolution&
     if (state == ContactState::kOpen) continue;
     const Vector2 friction = force.tail<2>();
     const Vector2 sliding = u.tail<2>();
-    worsen(worst.cone_violation_n, coneViolation(row, state, force));
+    worsen(worst.cone_violation_n, frictionExcess(row.law, force, state != ContactState::kStatic || row.was_sliding));
     if (state == ContactState::kStatic) {
       worsen(worst.static_slip_m_per_s, sliding.norm());
     } else if (friction.norm() > 0.0 && sliding.norm() > 0.0) {

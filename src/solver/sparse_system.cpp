@@ -56,28 +56,4 @@ void SparseSystem::scatterAdd(const VectorX& rows, NodalVectors& nodal) const {
   }
 }
 
-std::size_t SparseSystem::bytes() const {
-  return first_row_.capacity() * sizeof(int) + A_.nonZeros() * (sizeof(double) + sizeof(int));
-}
-
-double bodyDefect(const BodySystem& body, const NodalVectors& v, const NodalVectors& contact_impulses,
-                  NodalVectors& defect) {
-  double sum = 0.0;
-  for (int i = 0; i < body.K->rows(); ++i) {
-    if ((*body.fixed)[i]) {
-      defect.col(i).setZero();
-      continue;
-    }
-    const Vector3 v_i = v.col(i);
-    Vector3 d = body.b.col(i) + contact_impulses.col(i) - body.mass[i] * v_i -
-                body.stiffness_scale * (body.K->offDiagonalProduct(i, v) + body.K->diagonal[i] * v_i);
-    if (body.D != nullptr) {
-      d -= body.damping_scale * (body.D->offDiagonalProduct(i, v) + body.D->diagonal[i] * v_i);
-    }
-    defect.col(i) = d;
-    sum += d.squaredNorm();
-  }
-  return sum;
-}
-
 }  // namespace tissue_contact

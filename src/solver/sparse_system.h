@@ -24,15 +24,9 @@ class SparseSystem {
   void gather(const NodalVectors& nodal, VectorX& rows) const;
   void scatterAdd(const VectorX& rows, NodalVectors& nodal) const;
 
-  std::size_t bytes() const;
-
  private:
   std::vector<int> first_row_;
   Eigen::SparseMatrix<double> A_;
 };
-
-/// defect = b + contact_impulses - A v, zero at fixed nodes. @return its squared norm, (N s)^2.
-double bodyDefect(const BodySystem& body, const NodalVectors& v, const NodalVectors& contact_impulses,
-                  NodalVectors& defect);
 
 }  // namespace tissue_contact

@@ -1,4 +1,4 @@
-#include "element_kernel.h"
+#include "tissue/element_kernel.h"
 
 #include <algorithm>
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "lanes.h"
+#include "tissue/lanes.h"
 #include "tissue_contact/core/types.h"
 
 namespace tissue_contact {

@@ -1,6 +1,7 @@
 #include "tissue_contact/tissue/element_materials.h"
 
 #include "tissue_contact/core/check.h"
+#include "tissue_contact/core/name_table.h"
 
 namespace tissue_contact {
 
@@ -18,24 +19,10 @@ LameParameters planeStressParameters(const MaterialDescription& material) {
 
 void checkMaterial(const MaterialDescription& material, const std::string& owner) {
   requirePositive(owner + "youngs_modulus_pa", material.youngs_modulus_pa, "Pa");
-  requireInside(owner + "poissons_ratio", material.poissons_ratio, -1.0, 0.5);
+  MaterialDescription::kPoissonsRatio.require(owner + "poissons_ratio", material.poissons_ratio);
   requireFinite(owner + "bending_stiffness_n_m", material.bending_stiffness_n_m, "N m");
 }
 
-const char* elasticModelName(ElasticModel model) {
-  switch (model) {
-    case ElasticModel::kLinear:
-      return "linear";
-    case ElasticModel::kCorotational:
-      return "corotational";
-    case ElasticModel::kNeoHookean:
-      return "neo_hookean";
-    case ElasticModel::kMassSpring:
-      return "mass_spring";
-    case ElasticModel::kMembrane:
-      return "membrane";
-  }
-  return "unknown";
-}
+const char* elasticModelName(ElasticModel model) { return nameOf(model, kElasticModelNames, "elastic model"); }
 
 }  // namespace tissue_contact

@@ -1,9 +1,11 @@
-#include "element_patches.h"
+#include "tissue/element_patches.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
 #include <utility>
+
+#include "mesh/face_table.h"
 
 namespace tissue_contact {
 namespace {
@@ -12,26 +14,14 @@ constexpr std::size_t kPatchSize = 5;
 
 /// Up to four neighbours of each tetrahedron, -1 at the boundary.
 std::vector<std::array<int, 4>> neighboursThroughFaces(const std::vector<Tetrahedron>& tetrahedra) {
-  std::vector<std::pair<std::array<int, 3>, std::pair<int, int>>> faces;  // nodes ascending; (tetrahedron, local face)
-  faces.reserve(4 * tetrahedra.size());
-  for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
-    for (int f = 0; f < 4; ++f) {
-      std::array<int, 3> nodes;
-      for (int i = 0, k = 0; i < 4; ++i) {
-        if (i != f) nodes[k++] = tetrahedra[e][i];
-      }
-      std::sort(nodes.begin(), nodes.end());
-      faces.push_back({nodes, {static_cast<int>(e), f}});
-    }
-  }
-  std::sort(faces.begin(), faces.end());
+  const std::vector<FaceUse> faces = sortedFaces(tetrahedra);
   std::vector<std::array<int, 4>> neighbours(tetrahedra.size(), {-1, -1, -1, -1});
   for (std::size_t i = 0; i + 1 < faces.size(); ++i) {
-    if (faces[i].first != faces[i + 1].first) continue;
-    const auto [a, side_of_a] = faces[i].second;
-    const auto [b, side_of_b] = faces[i + 1].second;
-    neighbours[a][side_of_a] = b;
-    neighbours[b][side_of_b] = a;
+    const FaceUse& a = faces[i];
+    const FaceUse& b = faces[i + 1];
+    if (a.nodes != b.nodes) continue;
+    neighbours[a.tetrahedron][a.opposite] = static_cast<int>(b.tetrahedron);
+    neighbours[b.tetrahedron][b.opposite] = static_cast<int>(a.tetrahedron);
   }
   return neighbours;
 }

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "tissue_contact/tissue/mass_spring.h"
-#include "tissue_contact/tissue/mean_dilatation.h"
-#include "tissue_contact/tissue/neo_hookean.h"
+#include "tissue/mass_spring.h"
+#include "tissue/mean_dilatation.h"
+#include "tissue/neo_hookean.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 namespace tissue_contact {
@@ -31,8 +31,7 @@ std::unique_ptr<const Elasticity> makeVolumeElasticity(const NodalVectors& rest,
                                                        const std::vector<int>& patch_of) {
   const MaterialDescription& first = materials.materials.at(0);
   if (first.dilatation == Dilatation::kPatch && !hasPatches(first.model)) {
-    throw std::invalid_argument("dilatation 'patch' is for models linear and corotational, not " +
-                                std::string(elasticModelName(first.model)));
+    throw std::invalid_argument("dilatation over patches is for the linear and corotational models only");
   }
   switch (first.model) {
     case ElasticModel::kLinear:

@@ -1,8 +1,8 @@
-#include "tissue_contact/tissue/mass_spring.h"
+#include "tissue/mass_spring.h"
 
 #include <algorithm>
 
-#include "spring_stiffness.h"
+#include "tissue/spring_stiffness.h"
 
 namespace tissue_contact {
 namespace {

@@ -1,4 +1,4 @@
-#include "tissue_contact/tissue/mean_dilatation.h"
+#include "tissue/mean_dilatation.h"
 
 #include <algorithm>
 #include <map>
@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "rotation_state.h"
-#include "tet_elements.h"
+#include "tissue/rotation_state.h"
+#include "tissue/tet_elements.h"
 
 namespace tissue_contact {
 
@@ -98,9 +98,7 @@ MeanDilatation::MeanDilatation(const NodalVectors& rest, const std::vector<Tetra
     first += patch.nodes.size();
     most_nodes_ = std::max(most_nodes_, patch.nodes.size());
     for (const int a : patch.nodes) {
-      for (const int b : patch.nodes) {
-        patch.slots.push_back(a == b ? (fixed[a] ? -1 : a) : tets().pattern.find(a, b));
-      }
+      for (const int b : patch.nodes) patch.slots.push_back(slotOf(tets().pattern, fixed, a, b));
     }
   }
 }
@@ -150,10 +148,7 @@ void MeanDilatation::addStiffness(const Patch& patch, const Vector3* gradients, 
       const int slot = patch.slots[i * count + j];
       if (slot < 0) continue;
       const Matrix3 block = (scale * gradients[i]) * gradients[j].transpose();
-      (i == j ? state.stiffness.diagonal : state.stiffness.values)[slot] += block;
-      if (tets().damps) {
-        (i == j ? state.damping.diagonal : state.damping.values)[slot] += patch.damping_s * block;
-      }
+      addBlock(i == j, slot, block, patch.damping_s, state.stiffness, state.damping);
     }
   }
 }

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "block_slots.h"
-#include "plate_bending.h"
+#include "tissue/block_slots.h"
+#include "tissue/plate_bending.h"
 #include "tissue_contact/core/check.h"
-#include "tissue_contact/tissue/sheet_mesh.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
 
 namespace tissue_contact {
 
@@ -100,14 +100,12 @@ void addStiffness(const MembraneTriangle& triangle, const Stretch& stretch, Elas
   const Matrix3 across = stretch.normal * stretch.normal.transpose();
   const Matrix3 in_plane = Matrix3::Identity() - across;
   const Matrix3 tension = V * triangle.gradients.transpose() * tensionAcross(stretch) * triangle.gradients;
-  const bool damps = state.damping.rows() > 0;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = i; j < 3; ++j) {
       if (triangle.slots[i][j] < 0) continue;
       const Matrix3 block = (lambda * c.col(i)) * c.col(j).transpose() + (crossed * c.col(j)) * c.col(i).transpose() +
                             straight * c.col(i).dot(c.col(j)) * in_plane + tension(i, j) * across;
-      addBlock(triangle.slots, i, j, block, state.stiffness);
-      if (damps) addBlock(triangle.slots, i, j, triangle.damping_s * block, state.damping);
+      addBlock(triangle.slots, i, j, block, triangle.damping_s, state.stiffness, state.damping);
     }
   }
 }

@@ -1,12 +1,12 @@
-#include "tissue_contact/tissue/neo_hookean.h"
+#include "tissue/neo_hookean.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
-#include "neo_hookean_kernel.h"
-#include "tet_elements.h"
+#include "tissue/neo_hookean_kernel.h"
+#include "tissue/tet_elements.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 namespace tissue_contact {
@@ -71,7 +71,6 @@ void addStiffness(const TetElement& element, const Matrix3& F, double sign, Elas
   const SpectralTangent tangent = spectralTangent(F, element.lame);
   const Eigen::Matrix<double, 3, 4> b = tangent.V.transpose() * shapeGradients(element.rest_inverse);
   const double volume = sign * element.volume;
-  const bool damps = state.damping.rows() > 0;
   for (int n = 0; n < 4; ++n) {
     for (int m = n; m < 4; ++m) {
       if (element.slots[n][m] < 0) continue;
@@ -85,8 +84,7 @@ void addStiffness(const TetElement& element, const Matrix3& F, double sign, Elas
         inner(j, i) = tangent.stretch(i, j) * b(j, n) * b(i, m) + tangent.crossed(i, j) * b(i, n) * b(j, m);
       }
       const Matrix3 block = volume * tangent.U * inner * tangent.U.transpose();
-      addBlock(element.slots, n, m, block, state.stiffness);
-      if (damps) addBlock(element.slots, n, m, element.damping_s * block, state.damping);
+      addBlock(element.slots, n, m, block, element.damping_s, state.stiffness, state.damping);
     }
   }
 }

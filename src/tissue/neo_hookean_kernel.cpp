@@ -1,4 +1,4 @@
-#include "neo_hookean_kernel.h"
+#include "tissue/neo_hookean_kernel.h"
 
 namespace tissue_contact {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "lanes.h"
+#include "tissue/lanes.h"
 
 namespace tissue_contact {
 

@@ -1,18 +1,32 @@
-#include "placed_mesh.h"
+#include "tissue/placed_mesh.h"
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
-#include "element_patches.h"
-#include "region.h"
+#include "mesh/region.h"
+#include "tissue/element_patches.h"
 #include "tissue_contact/core/entry_error.h"
+#include "tissue_contact/mesh/tet_mesh.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
 #include "tissue_contact/tissue/element_materials.h"
-#include "tissue_contact/tissue/sheet_mesh.h"
-#include "tissue_contact/tissue/tet_mesh.h"
 
 namespace tissue_contact {
 namespace {
+
+/// For each point (3 x n, m, in T) the last region that holds it, -1 if none does.
+std::vector<int> regionsOfPoints(const NodalVectors& points, const std::vector<TissueRegion>& regions,
+                                 double rounding) {
+  std::vector<int> found(static_cast<std::size_t>(points.cols()), -1);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Vector3 x = points.col(static_cast<Eigen::Index>(i));
+    for (std::size_t r = regions.size(); r-- > 0 && found[i] < 0;) {  // the last one counts
+      if (anyHolds(regions[r].where, x, rounding)) found[i] = static_cast<int>(r);
+    }
+  }
+  return found;
+}
 
 void tellSize(const NodalVectors& positions, std::size_t elements, const MeshSizeCheck& on_size) {
   if (on_size) on_size(static_cast<std::size_t>(positions.cols()), elements);
@@ -26,15 +40,15 @@ void setVolume(TetMesh mesh, const std::string& source, const MeshSizeCheck& on_
   placed.tetrahedra = std::move(mesh.tetrahedra);
 }
 
-void setSheet(SheetMesh mesh, double thickness, const std::string& source, const MeshSizeCheck& on_size,
+void setSheet(TriangleMesh mesh, double thickness, const std::string& source, const MeshSizeCheck& on_size,
               PlacedMesh& placed) {
-  tellSize(mesh.positions, mesh.triangles.size(), on_size);
+  tellSize(mesh.vertices, mesh.triangles.size(), on_size);
   if (!(thickness > 0.0) || !std::isfinite(thickness)) {
     throw EntryError("thickness_m",
                      source + ": thickness_m is " + std::to_string(thickness) + " m; it must be finite and > 0");
   }
   checkSheetMesh(mesh, source);
-  placed.rest = std::move(mesh.positions);
+  placed.rest = std::move(mesh.vertices);
   placed.surface = std::move(mesh.triangles);
   placed.thickness = thickness;
 }
@@ -52,7 +66,7 @@ void setGeometry(const TissueDescription& description, const std::string& source
     atEntry("sheet", [&] { setSheet(makeSheetMesh(*sheet), sheet->thickness_m, source, on_size, placed); });
   } else {
     const auto& shell = std::get<ShellDescription>(description.geometry);
-    SheetMesh read = atEntry("shell.file", [&] { return loadShellMesh(shell); });
+    TriangleMesh read = atEntry("shell.file", [&] { return loadShellMesh(shell); });
     atEntry("shell", [&] { setSheet(std::move(read), shell.thickness_m, inFile(shell.file), on_size, placed); });
   }
 }

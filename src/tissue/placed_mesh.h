@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tissue_contact/core/types.h"
-#include "tissue_contact/scene/scene.h"
 #include "tissue_contact/tissue/tissue.h"
+#include "tissue_contact/tissue/tissue_description.h"
 
 namespace tissue_contact {
 

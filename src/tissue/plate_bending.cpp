@@ -1,9 +1,10 @@
-#include "plate_bending.h"
+#include "tissue/plate_bending.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tissue_contact/tissue/sheet_mesh.h"
+#include "tissue/block_slots.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
 
 namespace tissue_contact {
 namespace {
@@ -107,14 +108,11 @@ void PlateBending::connect(const std::vector<bool>& fixed, BlockMatrix& constant
   for (const Patch& patch : patches_) {
     Slots slots{};
     for (int i = 0; i < patch.count; ++i) {
-      const int node = patch.nodes[i];
       for (int j = 0; j < patch.count; ++j) {
-        slots[i][j] = i == j ? (fixed[node] ? -1 : node) : constant_stiffness.find(node, patch.nodes[j]);
+        slots[i][j] = slotOf(constant_stiffness, fixed, patch.nodes[i], patch.nodes[j]);
         if (!flat_ || slots[i][j] < 0) continue;
         const Matrix3 block = patch.weights.col(i).dot(patch.tensor * patch.weights.col(j)) * Matrix3::Identity();
-        (i == j ? constant_stiffness.diagonal : constant_stiffness.values)[slots[i][j]] += block;
-        if (constant_damping.rows() == 0) continue;
-        (i == j ? constant_damping.diagonal : constant_damping.values)[slots[i][j]] += patch.damping_s * block;
+        addBlock(i == j, slots[i][j], block, patch.damping_s, constant_stiffness, constant_damping);
       }
     }
     if (!flat_) slots_.push_back(slots);
@@ -165,7 +163,6 @@ void PlateBending::addCurved(std::size_t index, const Folds& folds, Elasticity::
     for (std::size_t i = 0; i < 4; ++i) gradients[patch.hinge_nodes[h][i]] += column * by_node[i].transpose();
   }
   const Vector3 moment = patch.tensor * curvature;
-  const bool damps = state.damping.rows() > 0;
   for (int i = 0; i < patch.count; ++i) {
     forces.col(patch.nodes[i]) -= gradients[i].transpose() * moment;
     const Matrix3 left = gradients[i].transpose() * patch.tensor;
@@ -173,8 +170,7 @@ void PlateBending::addCurved(std::size_t index, const Folds& folds, Elasticity::
       const int slot = slots_[index][i][j];
       if (slot < 0) continue;
       const Matrix3 block = left * gradients[j];
-      (i == j ? state.stiffness.diagonal : state.stiffness.values)[slot] += block;
-      if (damps) (i == j ? state.damping.diagonal : state.damping.values)[slot] += patch.damping_s * block;
+      addBlock(i == j, slot, block, patch.damping_s, state.stiffness, state.damping);
     }
   }
 }

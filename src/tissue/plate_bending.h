@@ -13,7 +13,7 @@
 
 #include <vector>
 
-#include "plate_stencil.h"
+#include "tissue/plate_stencil.h"
 #include "tissue_contact/core/block_matrix.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/tissue/elasticity.h"
@@ -37,7 +37,8 @@ class PlateBending {
   /// Nodes that bend together, for the pattern of the stiffness. None if nothing resists bending.
   std::vector<std::vector<int>> patches() const;
 
-  /// To be called once, before the rest. @param constant part of K and (if it has rows) D that never changes: added to.
+  /// To be called once, before the rest.
+  /// @param constant part of K and (if it has rows) D that never changes: added to.
   void connect(const std::vector<bool>& fixed, BlockMatrix& constant_stiffness, BlockMatrix& constant_damping);
 
   Folds makeFolds() const;

@@ -1,9 +1,11 @@
-#include "plate_stencil.h"
+#include "tissue/plate_stencil.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
-#include "triangle_edges.h"
+#include "mesh/edge_table.h"
 
 namespace tissue_contact {
 namespace {
@@ -64,31 +66,30 @@ Hinge makeHinge(const NodalVectors& rest, const std::vector<Triangle>& triangles
                 const EdgeUse& second) {
   const Triangle& t = triangles[first.triangle];
   Hinge hinge;
-  hinge.nodes = {t[first.edge], t[(first.edge + 1) % 3], t[(first.edge + 2) % 3],
-                 triangles[second.triangle][(second.edge + 2) % 3]};
+  hinge.nodes = {t[first.side], t[(first.side + 1) % 3], t[(first.side + 2) % 3],
+                 triangles[second.triangle][(second.side + 2) % 3]};
   const auto x = [&](std::size_t i) { return Vector3(rest.col(hinge.nodes[i])); };
   const Foot c = footOf(x(0), x(1), x(2));
   const Foot d = footOf(x(0), x(1), x(3));
   hinge.jump = {-(1.0 - c.at) / c.height - (1.0 - d.at) / d.height, -c.at / c.height - d.at / d.height, 1.0 / c.height,
                 1.0 / d.height};
-  hinge.triangles = {first.triangle, second.triangle};
   return hinge;
 }
 
 std::vector<Hinge> makeHinges(const NodalVectors& rest, const std::vector<Triangle>& triangles,
                               std::vector<FlatTriangle>& flats) {
   std::vector<Hinge> hinges;
-  const std::vector<EdgeUse> uses = sortedEdges(triangles);
-  for (std::size_t i = 0; i + 1 < uses.size(); ++i) {
-    if (uses[i].nodes != uses[i + 1].nodes) continue;
-    for (const std::size_t side : {0, 1}) {
-      const EdgeUse& use = uses[i + side];
-      const EdgeUse& other = uses[i + 1 - side];
-      flats[use.triangle].hinges[use.edge] = static_cast<int>(hinges.size());
-      flats[use.triangle].neighbours[use.edge] = static_cast<int>(other.triangle);
-      flats[use.triangle].their_edge[use.edge] = static_cast<int>(other.edge);
+  const EdgeTable table(triangles);
+  for (const EdgeTable::Edge& edge : table) {
+    const EdgeTable::Uses uses = table.usesOf(edge);
+    if (uses.size() != 2) continue;
+    for (const int i : {0, 1}) {
+      FlatTriangle& flat = flats[uses[i].triangle];
+      flat.hinges[uses[i].side] = static_cast<int>(hinges.size());
+      flat.neighbours[uses[i].side] = uses[1 - i].triangle;
+      flat.their_edge[uses[i].side] = uses[1 - i].side;
     }
-    hinges.push_back(makeHinge(rest, triangles, uses[i], uses[i + 1]));
+    hinges.push_back(makeHinge(rest, triangles, uses[0], uses[1]));
   }
   return hinges;
 }

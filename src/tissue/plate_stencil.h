@@ -28,7 +28,6 @@ namespace tissue_contact {
 struct Hinge {
   std::array<int, 4> nodes;    ///< a, b, c, d
   std::array<double, 4> jump;  ///< slope jump = sum jump_i z_i of out-of-plane positions, 1/m; unfolded rest shape
-  std::array<std::size_t, 2> triangles;
 };
 
 /// Curvature (xx, yy, 2 xy in the triangle's frame, 1/m) = sum over hinges of column * fold.
@@ -44,7 +43,8 @@ struct PlateStencils {
   std::vector<CurvatureStencil> triangles;
 };
 
-/// @param triangles checked by checkSheetMesh. @param poissons_ratio per triangle; it matters at free borders.
+/// @param triangles checked by checkSheetMesh.
+/// @param poissons_ratio per triangle; it matters at free borders.
 PlateStencils makePlateStencils(const NodalVectors& rest, const std::vector<Triangle>& triangles,
                                 const std::vector<double>& poissons_ratio);
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "element_kernel.h"
-#include "tet_elements.h"
+#include "tissue/element_kernel.h"
+#include "tissue/tet_elements.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 namespace tissue_contact {
@@ -18,7 +18,7 @@ struct TetElasticity::RotationState : State {
   TetElements::Held held;
   int blend = kBlendUpdates;  ///< of kBlendUpdates parts: how much of each rotation counts
   int blend_to = kBlendUpdates;
-  int updates = 0;            ///< since rotations were last looked at
+  int updates = 0;            ///< since rotations were last measured
   int calm = 0;               ///< updates for which no element has been turned far
   double turn_squared = 0.0;  ///< largest at the last update, while linear; rad^2
 };

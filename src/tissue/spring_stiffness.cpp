@@ -1,9 +1,9 @@
-#include "spring_stiffness.h"
+#include "tissue/spring_stiffness.h"
 
 #include <Eigen/QR>
 #include <algorithm>
 
-#include "tissue_contact/tissue/tet_mesh.h"
+#include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
 namespace {

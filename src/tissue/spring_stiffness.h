@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "block_slots.h"
+#include "tissue/block_slots.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/tissue/element_materials.h"
 

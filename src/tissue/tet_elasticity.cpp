@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "element_kernel.h"
-#include "rotation_state.h"
-#include "tet_elements.h"
+#include "tissue/element_kernel.h"
+#include "tissue/rotation_state.h"
+#include "tissue/tet_elements.h"
 
 namespace tissue_contact {
 namespace {
@@ -93,11 +93,9 @@ void TetElasticity::prepare(RotationState& state) const {
   state.turned.assign(tets_->batches.size(), 0);
   state.held = tets_->nothingHeld();
   tets_->prepare(state);
-  const auto add = tets_->damps ? addStiffness<true> : addStiffness<false>;
-  for (const TetElement& element : tets_->elements) add(element, Quaternion::Identity(), 1.0, state);
+  for (const TetElement& element : tets_->elements) addStiffness(element, Quaternion::Identity(), 1.0, state);
 }
 
-template <bool kDamps>
 void TetElasticity::addStiffness(const TetElement& element, const Quaternion& rotation, double sign, State& state) {
   const Eigen::Matrix<double, 3, 4> c = rotation.toRotationMatrix() * shapeGradients(element.rest_inverse);
   const double lambda = sign * element.volume * element.lame.lambda;
@@ -107,8 +105,7 @@ void TetElasticity::addStiffness(const TetElement& element, const Quaternion& ro
       if (element.slots[i][j] < 0) continue;
       Matrix3 block = (lambda * c.col(i)) * c.col(j).transpose() + (mu * c.col(j)) * c.col(i).transpose();
       block.diagonal().array() += mu * c.col(i).dot(c.col(j));
-      addBlock(element.slots, i, j, block, state.stiffness);
-      if (kDamps) addBlock(element.slots, i, j, element.damping_s * block, state.damping);
+      addBlock(element.slots, i, j, block, element.damping_s, state.stiffness, state.damping);
     }
   }
 }
@@ -118,12 +115,11 @@ void TetElasticity::refreshStiffness(std::size_t batch, RotationState& state) co
     const RotationBatch& q = rotations[batch];
     return Quaternion(q[0][lane], q[1][lane], q[2][lane], q[3][lane]).normalized();
   };
-  const auto add = tets_->damps ? addStiffness<true> : addStiffness<false>;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::size_t e = batch * kLanes + lane;
     if ((state.turned[batch] >> lane & 1) == 0 || e >= tets_->elements.size()) continue;
-    add(tets_->elements[e], rotation(state.tangent_rotations, lane), -1.0, state);
-    add(tets_->elements[e], rotation(state.rotations, lane), 1.0, state);
+    addStiffness(tets_->elements[e], rotation(state.tangent_rotations, lane), -1.0, state);
+    addStiffness(tets_->elements[e], rotation(state.rotations, lane), 1.0, state);
     for (std::size_t i = 0; i < 4; ++i) state.tangent_rotations[batch][i][lane] = state.rotations[batch][i][lane];
   }
 }

@@ -1,16 +1,12 @@
-#include "tet_elements.h"
+#include "tissue/tet_elements.h"
 
 #include <Eigen/LU>
 #include <utility>
 
+#include "tissue_contact/mesh/tet_mesh.h"
+
 namespace tissue_contact {
 namespace {
-
-Matrix3 edges(const NodalVectors& x, const Tetrahedron& tet) {
-  Matrix3 D;
-  for (int i = 0; i < 3; ++i) D.col(i) = x.col(tet[i + 1]) - x.col(tet[0]);
-  return D;
-}
 
 std::vector<ElementBatch> makeBatches(const std::vector<TetElement>& elements) {
   std::vector<ElementBatch> batches((elements.size() + kLanes - 1) / kLanes);
@@ -46,7 +42,7 @@ TetElements::TetElements(const NodalVectors& rest, const std::vector<Tetrahedron
   elements.reserve(tetrahedra.size());
   bool same = true;
   for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
-    const Matrix3 D = edges(rest, tetrahedra[e]);
+    const Matrix3 D = edgeMatrix(rest, tetrahedra[e]);
     elements.push_back({tetrahedra[e], D.inverse(), D.determinant() / 6.0, lame(materials.of(e)),
                         materials.dampingOf(e), findSlots(pattern, tetrahedra[e], fixed)});
     const LameParameters& first = elements.front().lame;
@@ -89,7 +85,7 @@ Eigen::Matrix<double, 3, 4> shapeGradients(const Matrix3& rest_inverse) {
 }
 
 Matrix3 deformationGradient(const TetElement& element, const NodalVectors& x) {
-  return edges(x, element.nodes) * element.rest_inverse;
+  return edgeMatrix(x, element.nodes) * element.rest_inverse;
 }
 
 }  // namespace tissue_contact

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "block_slots.h"
-#include "lanes.h"
+#include "tissue/block_slots.h"
+#include "tissue/lanes.h"
 #include "tissue_contact/core/block_matrix.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/tissue/elasticity.h"
@@ -26,8 +26,9 @@ struct TetElement {
 struct TetElements {
   using Lame = LameParameters (*)(const MaterialDescription&);
 
-  /// @param lame the model's elastic parameters from a material. @param couplings zero matrix with at least the blocks of
-  /// the tetrahedra. @throws std::invalid_argument for a material out of range.
+  /// @param lame the model's elastic parameters from a material.
+  /// @param couplings zero matrix with at least the blocks of the tetrahedra.
+  /// @throws std::invalid_argument for a material out of range.
   TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
               const ElementMaterials& materials, Lame lame, BlockMatrix couplings);
   TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,

@@ -3,25 +3,32 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "placed_mesh.h"
+#include "tissue/placed_mesh.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/entry_error.h"
+#include "tissue_contact/mesh/tet_mesh.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
 #include "tissue_contact/tissue/make_elasticity.h"
 #include "tissue_contact/tissue/membrane.h"
-#include "tissue_contact/tissue/sheet_mesh.h"
-#include "tissue_contact/tissue/tet_mesh.h"
 
 namespace tissue_contact {
 namespace {
 
-void checkModel(const TissueDescription& description, bool is_volume) {
-  const ElasticModel model = description.material.model;
-  if ((model == ElasticModel::kMembrane) == is_volume) {
-    const std::string fits = is_volume
-                                 ? "'; a block or mesh is a volume and takes linear, corotational, neo_hookean or "
-                                   "mass_spring: change the model, or give a sheet or shell"
-                                 : "'; a sheet or shell takes membrane: change the model, or give a block or mesh";
-    throw EntryError("material.model", tissueLabel(description) + ": model is '" + elasticModelName(model) + fits);
+void checkModel(const TissueDescription& description) {
+  const MaterialDescription& material = description.material;
+  if ((material.model == ElasticModel::kMembrane) != isMembrane(description)) {
+    const std::string fits = isMembrane(description) ? "'; a sheet or shell must be a membrane; remove the key"
+                                                     : "'; a block or mesh is a volume, no membrane; give linear, "
+                                                       "corotational, neo_hookean or mass_spring";
+    throw EntryError("material.model",
+                     tissueLabel(description) + ": model is '" + elasticModelName(material.model) + fits);
+  }
+  if (material.dilatation == Dilatation::kPatch && material.model != ElasticModel::kLinear &&
+      material.model != ElasticModel::kCorotational) {
+    throw EntryError("material.dilatation",
+                     tissueLabel(description) +
+                         ": dilatation is 'patch', which only the models linear and corotational "
+                         "know; remove the key");
   }
   for (std::size_t r = 0; r < description.regions.size(); ++r) {
     const TissueRegion& region = description.regions[r];
@@ -30,10 +37,10 @@ void checkModel(const TissueDescription& description, bool is_volume) {
       throw EntryError(entry + ".dilatation", tissueLabel(description) + ", region '" + region.name +
                                                   "': dilatation is not that of the tissue; give all regions the same");
     }
-    if (region.material.model == model) continue;
+    if (region.material.model == material.model) continue;
     throw EntryError(entry + ".model", tissueLabel(description) + ", region '" + region.name + "': model is '" +
                                            elasticModelName(region.material.model) +
-                                           "'; it must be that of the tissue, '" + elasticModelName(model) +
+                                           "'; it must be that of the tissue, '" + elasticModelName(material.model) +
                                            "': give parts of different models as tissues of their own");
   }
 }
@@ -44,8 +51,10 @@ void checkNumbers(const MaterialDescription& material, double damping_stiffness_
   requireNonNegative(owner + "damping stiffness_s", damping_stiffness_s, "s");
 }
 
-void checkDescription(const TissueDescription& description, bool is_volume) {
-  checkModel(description, is_volume);
+}  // namespace
+
+void checkTissue(const TissueDescription& description) {
+  checkModel(description);
   atEntry("material", [&] {
     checkNumbers(description.material, description.damping.stiffness_s, tissueLabel(description) + ": ");
   });
@@ -60,6 +69,8 @@ void checkDescription(const TissueDescription& description, bool is_volume) {
     });
   }
 }
+
+namespace {
 
 /// The tissue's own material first, then its regions'.
 ElementMaterials elementMaterials(const TissueDescription& description, const PlacedMesh& placed) {
@@ -105,7 +116,7 @@ Tissue::Tissue(const TissueDescription& description, const Pose& X_WT, const Mes
 
 Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
     : name_(description.name), damping_(description.damping), thickness_(placed.thickness) {
-  checkDescription(description, placed.isVolume());
+  checkTissue(description);
   ElementMaterials materials = elementMaterials(description, placed);
   damping_.stiffness_s = takeUniformDamping(placed.elementCount(), materials);
   masses_ = lumpedMasses(placed, materials);

@@ -13,10 +13,10 @@
 #include <stdexcept>
 
 #include "tissue/element_patches.h"
+#include "tissue_contact/mesh/tet_mesh.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
 #include "tissue_contact/tissue/make_elasticity.h"
 #include "tissue_contact/tissue/membrane.h"
-#include "tissue_contact/tissue/sheet_mesh.h"
-#include "tissue_contact/tissue/tet_mesh.h"
 #include "validation/elasticity_helpers.h"
 
 namespace {
@@ -78,13 +78,13 @@ constexpr double kThickness = 2e-3;
 
 /// @param curvature of the rest shape, a saddle, 1/m
 Body makeSheet(const ElementMaterials& materials, int fixed_nodes, double curvature) {
-  SheetMesh mesh = makeSheetMesh({Vector2(0.04, 0.03), {4, 3}, kThickness});
-  for (Eigen::Index i = 0; i < mesh.positions.cols(); ++i) {
-    mesh.positions(2, i) = curvature * (std::pow(mesh.positions(0, i), 2) - 0.5 * std::pow(mesh.positions(1, i), 2));
+  TriangleMesh mesh = makeSheetMesh({Vector2(0.04, 0.03), {4, 3}, kThickness});
+  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) {
+    mesh.vertices(2, i) = curvature * (std::pow(mesh.vertices(0, i), 2) - 0.5 * std::pow(mesh.vertices(1, i), 2));
   }
-  auto elasticity = std::make_unique<Membrane>(mesh.positions, mesh.triangles,
-                                               firstFixed(fixed_nodes, mesh.positions.cols()), kThickness, materials);
-  return {std::move(mesh.positions), std::move(elasticity)};
+  auto elasticity = std::make_unique<Membrane>(mesh.vertices, mesh.triangles,
+                                               firstFixed(fixed_nodes, mesh.vertices.cols()), kThickness, materials);
+  return {std::move(mesh.vertices), std::move(elasticity)};
 }
 Body makeFlat(const ElementMaterials& materials, int fixed_nodes) { return makeSheet(materials, fixed_nodes, 0.0); }
 Body makeCurved(const ElementMaterials& materials, int fixed_nodes) { return makeSheet(materials, fixed_nodes, 15.0); }

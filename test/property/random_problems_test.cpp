@@ -1,6 +1,6 @@
 /// @file
 /// Random symmetric positive definite contact problems: the answer exists; who finds it, and whether what is found
-/// obeys the laws. bench/random_problems.cpp is the large version.
+/// obeys the laws. benchmark/drivers/random_problems.cpp is the large version.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -15,14 +15,6 @@ struct SizeClass {
   int problems;
 };
 constexpr SizeClass kClasses[] = {{1, 400}, {3, 300}, {10, 150}, {30, 40}, {100, 4}};
-
-SolverDescription solver(SolverMethod method, double tolerance) {
-  SolverDescription description;
-  description.method = method;
-  description.tolerance = tolerance;
-  description.iterations = 2000;
-  return description;
-}
 
 /// 0 to 1.5.
 double frictionOf(unsigned seed) {

@@ -1,10 +1,6 @@
 #!/usr/bin/python3
 """Joint states that cannot be used: no wrench, a count, a warning; the next good one goes on as if they had not come."""
-import os
-import shutil
 import sys
-import tempfile
-import unittest
 
 import rosbag
 import rospy
@@ -27,7 +23,7 @@ def all_bits_set():
     return stamp
 
 
-class BadJointStates(unittest.TestCase):
+class BadJointStates(harness.TestCase):
     def test_are_refused_counted_and_forgotten(self):
         wrenches = harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)
         diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
@@ -74,12 +70,10 @@ class BadJointStates(unittest.TestCase):
         self.assertLess(len(warnings), bad)  # throttled
 
     def test_a_recorded_stamp_past_the_end_of_time_is_refused_by_replay(self):
-        directory = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, directory)
         samples = harness.press(20)
         tables = []
         for name, more in [("clean", []), ("bad", [(all_bits_set(), (0.0, 0.0, 0.0))])]:
-            bag = os.path.join(directory, name + ".bag")
+            bag = self.path(name + ".bag")
             with rosbag.Bag(bag, "w") as out:
                 for i, (stamp, positions) in enumerate(samples[:10] + more + samples[10:]):
                     message = JointState(name=["x", "y", "z"], position=list(positions))

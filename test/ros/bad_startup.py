@@ -1,11 +1,8 @@
 #!/usr/bin/python3
 """Every start-up that cannot work ends with one fatal message that names the fault, and an exit code other than 0."""
 import os
-import shutil
 import signal
 import sys
-import tempfile
-import unittest
 
 import rosgraph
 import rospy
@@ -19,22 +16,12 @@ MESH_URDF = """<robot name="m"><link name="base"/><link name="tip"><collision><g
 <child link="tip"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"""
 
 
-class BadStartup(unittest.TestCase):
+class BadStartup(harness.TestCase):
     def setUp(self):
-        self.directory = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.directory)
-        with open(harness.SCENE, encoding="utf-8") as stream:
-            self.scene = stream.read()
-
-    def write(self, name, text):
-        path = os.path.join(self.directory, name)
-        with open(path, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        return path
+        super().setUp()
 
     def changed(self, old, new):
-        self.assertEqual(self.scene.count(old), 1, old)
-        return self.write("scene.yaml", self.scene.replace(old, new))
+        return self.changed_scene({old: new})
 
     def with_urdf(self, text):
         self.write("robot.urdf", text)
@@ -64,7 +51,7 @@ class BadStartup(unittest.TestCase):
         self.assert_refused(["_scene:=3"], "/tissue_contact/scene")
 
     def test_scene_file_missing(self):
-        self.assert_scene_refused(os.path.join(self.directory, "none.yaml"), "/tissue_contact/scene")
+        self.assert_scene_refused(self.path("none.yaml"), "/tissue_contact/scene")
 
     def test_typo_in_a_key(self):
         self.assert_scene_refused(self.changed("youngs_modulus_pa", "young_modulus_pa"), "young_modulus_pa", "scene.yaml:5")
@@ -166,7 +153,7 @@ class BadStartup(unittest.TestCase):
         for name, value in [("robot_description", "<unused/>"), ("diagnostic_period", 1.0), ("tf_timeout_s", 1.0),
                             ("markers/force_arrow_m_per_n", 0.1), ("markers/displacement_full_scale_m", 0.01)]:
             rospy.set_param("/tissue_contact/" + name, value)
-        arguments = ["__log:=" + os.path.join(self.directory, "log"), "chatter:=elsewhere", "/tissue_contact/status:=/s"]
+        arguments = ["__log:=" + self.path("log"), "chatter:=elsewhere", "/tissue_contact/status:=/s"]
         with harness.node(path, *arguments):
             harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)  # waits for the publisher
 

@@ -6,8 +6,6 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
-import unittest
 
 import rosbag
 import rosgraph
@@ -17,11 +15,7 @@ import rostest
 import harness
 
 
-class Demo(unittest.TestCase):
-    def setUp(self):
-        self.directory = tempfile.mkdtemp(suffix=" of demo")
-        self.addCleanup(shutil.rmtree, self.directory)
-
+class Demo(harness.TestCase):
     def launch(self, *arguments):
         """What scripts/demo ends with: roslaunch on a master of its own. Returns the exit code and all it printed."""
         environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
@@ -41,7 +35,7 @@ class Demo(unittest.TestCase):
             self.assertGreater(len(data), 10000, name)
 
     def test_demo(self):
-        plots = os.path.join(self.directory, "plots")
+        plots = self.path("plots")
         code, output = self.launch("demo.launch", "output:=" + plots)
         self.assertEqual(code, 0, output)
         self.assertNotIn("has died", output)  # it ended well, so it must not read like a failure
@@ -54,7 +48,7 @@ class Demo(unittest.TestCase):
         self.assertGreater(max(float(depth) for _, _, _, _, depth in lines), 1.0, output)
 
     def test_bare_roslaunch_ends_well_too(self):
-        plots = os.path.join(self.directory, "plots")
+        plots = self.path("plots")
         done = subprocess.run(["roslaunch", "tissue_contact", "demo.launch", "rviz:=false", "output:=" + plots, "rate:=3"],
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               universal_newlines=True, timeout=2 * harness.DEADLINE_S, check=False)
@@ -63,37 +57,30 @@ class Demo(unittest.TestCase):
         self.assert_pictures(["probe_force.png", "probe_friction.png"])
 
     def test_psm_launch_takes_any_bag_and_scene(self):
-        bag = os.path.join(self.directory, "my press.bag")  # with blanks, as people name their files
+        bag = self.path("my press.bag")  # with blanks, as people name their files
         harness.write_bag(bag, harness.press(50))
-        scene = shutil.copy(harness.SCENE, os.path.join(self.directory, "my scene.yaml"))
-        plots = os.path.join(self.directory, "plots")
+        scene = shutil.copy(harness.SCENE, self.path("my scene.yaml"))
+        plots = self.path("plots")
         code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + scene, "output:=" + plots)
         self.assertEqual(code, 0, output)
         self.assert_pictures(["probe_force.png", "probe_friction.png"])
 
     def scene_without_urdf(self):
-        with open(harness.SCENE, encoding="utf-8") as stream:
-            text = stream.read()
-        line = "    urdf: package://tissue_contact/urdf/probe.urdf\n"
-        self.assertEqual(text.count(line), 1)
-        path = os.path.join(self.directory, "no urdf.yaml")
-        with open(path, "w", encoding="utf-8") as stream:
-            stream.write(text.replace(line, ""))
-        return path
+        return self.changed_scene({"    urdf: package://tissue_contact/urdf/probe.urdf\n": ""}, name="no urdf.yaml")
 
     def test_model_goes_to_a_scene_that_names_none(self):
-        bag = os.path.join(self.directory, "press.bag")
+        bag = self.path("press.bag")
         harness.write_bag(bag, harness.press(20))
         code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + self.scene_without_urdf(),
                                    "model:=package://tissue_contact/urdf/probe.urdf",
-                                   "output:=" + os.path.join(self.directory, "plots"))
+                                   "output:=" + self.path("plots"))
         self.assertEqual(code, 0, output)
         self.assert_pictures(["probe_force.png", "probe_friction.png"])
 
     def test_model_that_cannot_be_used_is_said_without_a_trace(self):
-        bag = os.path.join(self.directory, "press.bag")
+        bag = self.path("press.bag")
         harness.write_bag(bag, harness.press(5))
-        xacro = os.path.join(self.directory, "robot.urdf.xacro")
+        xacro = self.path("robot.urdf.xacro")
         with open(xacro, "w", encoding="utf-8") as stream:
             stream.write("<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:nonsense/></robot>")
         cases = [(harness.SCENE, "package://tissue_contact/urdf/probe.urdf", "without the key urdf of 'probe'"),
@@ -101,28 +88,28 @@ class Demo(unittest.TestCase):
                  (self.scene_without_urdf(), "none.urdf", "none.urdf does not exist")]
         for scene, model, words in cases:
             code, output = self.launch("play_bag.launch", "bag:=" + bag, "scene:=" + scene, "model:=" + model,
-                                       "output:=" + os.path.join(self.directory, "plots"))
+                                       "output:=" + self.path("plots"))
             self.assertEqual(code, 1, output)
             self.assertIn(words, output)
             self.assertIn("read_model.py: ", output)
             self.assertNotIn("Traceback", output)
 
     def test_bag_without_the_topic_ends_with_its_name(self):
-        bag = os.path.join(self.directory, "other.bag")
+        bag = self.path("other.bag")
         harness.write_bag(bag, harness.press(5), topic="/other/joint_states")
         code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + harness.SCENE,
-                                   "output:=" + os.path.join(self.directory, "plots"))
+                                   "output:=" + self.path("plots"))
         self.assertEqual(code, 1, output)
         self.assertIn("has no message on " + harness.TOPIC, output)
         self.assertIn("/other/joint_states", output)
         self.assert_pictures([])
 
     def test_node_that_does_not_start_is_a_failure_even_beside_older_plots(self):
-        plots = os.path.join(self.directory, "plots")
+        plots = self.path("plots")
         os.mkdir(plots)
         with open(os.path.join(plots, "probe_force.png"), "wb"):
             pass
-        bag = os.path.join(self.directory, "press.bag")
+        bag = self.path("press.bag")
         harness.write_bag(bag, harness.press(5))
         code, output = self.launch("psm_bag.launch", "bag:=" + bag, "scene:=no_such_scene.yaml", "output:=" + plots)
         self.assertEqual(code, 1, output)
@@ -132,18 +119,18 @@ class Demo(unittest.TestCase):
         self.assertEqual(code, 1, output)
 
     def test_the_master_of_others_is_left_alone(self):
-        bag = os.path.join(self.directory, "press.bag")
+        bag = self.path("press.bag")
         harness.write_bag(bag, harness.press(20))
         master = rosgraph.Master(rospy.get_name())
         before = (master.getParam("/run_id"), sorted(rospy.get_param_names()), master.getSystemState())
         code, output = self.launch("psm_bag.launch", "bag:=" + bag,
                                    "scene:=package://tissue_contact/test/ros/press.yaml",
-                                   "output:=" + os.path.join(self.directory, "plots"))
+                                   "output:=" + self.path("plots"))
         self.assertEqual(code, 0, output)
         self.assertEqual((master.getParam("/run_id"), sorted(rospy.get_param_names()), master.getSystemState()), before)
 
     def test_recording_is_what_its_script_makes(self):
-        bags = [os.path.join(self.directory, name) for name in ["first.bag", "second.bag"]]
+        bags = [self.path(name) for name in ["first.bag", "second.bag"]]
         for bag in bags:
             subprocess.run([harness.program("make_demo_bag.py"), bag], check=True, stdout=subprocess.DEVNULL,
                            timeout=harness.DEADLINE_S)

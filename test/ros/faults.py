@@ -1,4 +1,5 @@
-"""Shared by the faults_*.py: what the node says it did with every joint state, and its end."""
+"""Shared by live.py, flood.py and the faults_*.py: what the node says it did with every joint state, and its end."""
+import math
 import re
 import signal
 import socket
@@ -6,7 +7,7 @@ import time
 
 import harness
 
-OK, WARN = 0, 1
+OK, WARN, ERROR = 0, 1, 2
 
 
 def values_of(status):
@@ -24,6 +25,19 @@ def figures(diagnostics):
     return values_of(status) if status else {}
 
 
+def all_told(diagnostics, sent):
+    """The counts, once they tell of every joint state that was sent and none waits."""
+    def complete(messages):
+        values = figures(messages[-1]) if messages else {}
+        return values.get("joint states: received") == str(sent) and values["joint states: waiting"] == "0"
+    return figures(diagnostics.wait(complete, "%d joint states received and played" % sent)[-1])
+
+
+def is_finite(wrench):
+    f, t = wrench.wrench.force, wrench.wrench.torque
+    return all(math.isfinite(x) for x in [f.x, f.y, f.z, t.x, t.y, t.z])
+
+
 def free_port():
     with socket.socket() as probe:
         probe.bind(("localhost", 0))
@@ -31,7 +45,7 @@ def free_port():
 
 
 def counts_at_the_end(process, number=signal.SIGINT):
-    """Sends the signal; the node ends within a second, with exit code 0, and its counts add up. Returns them."""
+    """Sends the signal; the node ends within a second, with exit code 0, and its counts add up. Returns them and its lag."""
     start = time.monotonic()
     process.send_signal(number)
     code = process.wait(harness.DEADLINE_S)
@@ -39,11 +53,12 @@ def counts_at_the_end(process, number=signal.SIGINT):
     process.output.seek(0)
     output = process.output.read()
     assert code == 0, output
-    assert took < 1.0, "took %.2f s to end: %s" % (took, output)
+    assert took < harness.SLOWNESS, "took %.2f s to end: %s" % (took, output)
     lines = [line for line in output.splitlines() if line.startswith("joint states: ")]
     assert len(lines) == 1, output
     counts = {word: int(number) for number, word in
               re.findall(r"(\d+) (received|accepted|merged|dropped|refused|waiting|wrenches)", lines[0])}
     assert counts["received"] == sum(counts[part] for part in
                                      ["accepted", "merged", "dropped", "refused", "waiting"]), lines[0]
+    counts["lag"] = float(re.search(r"largest lag ([\d.e+-]+) s", lines[0]).group(1))
     return counts

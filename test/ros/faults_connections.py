@@ -1,14 +1,10 @@
 #!/usr/bin/python3
 """Publishers that die within a message, subscribers that do not read, two publishers on one topic: nothing is lost beyond
 what is counted, and memory stays bounded."""
-import math
 import os
-import shutil
 import socket
 import struct
 import sys
-import tempfile
-import unittest
 
 import rospy
 import rostest
@@ -36,27 +32,7 @@ def resident_mb(process):
         return int(stream.read().split()[1]) * os.sysconf("SC_PAGESIZE") / 1e6
 
 
-def is_finite(wrench):
-    f, t = wrench.wrench.force, wrench.wrench.torque
-    return all(math.isfinite(x) for x in [f.x, f.y, f.z, t.x, t.y, t.z])
-
-
-class FaultsConnections(unittest.TestCase):
-    def setUp(self):
-        self.directory = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.directory)
-
-    def scene(self, **replaced):
-        with open(harness.SCENE, encoding="utf-8") as stream:
-            text = stream.read()
-        for key, value in replaced.items():
-            self.assertIn(key, text)
-            text = text.replace(key, value)
-        file = os.path.join(self.directory, "scene.yaml")
-        with open(file, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        return file
-
+class FaultsConnections(harness.TestCase):
     def test_publisher_dies_within_a_message(self):
         samples = harness.press(60)
         length = len(tcpros.framed(joint_state(samples[0])))
@@ -86,13 +62,13 @@ class FaultsConnections(unittest.TestCase):
             self.assertLess(resident_mb(process) - before_mb, 50.0)
             counts = faults.counts_at_the_end(process)
         self.assertEqual([w.header.stamp for w in everything], [stamp for stamp, _ in samples])
-        self.assertTrue(all(map(is_finite, everything)))
+        self.assertTrue(all(map(faults.is_finite, everything)))
         self.assertEqual((counts["received"], counts["accepted"]), (len(samples), len(samples)))
 
     def test_subscribers_that_do_not_read(self):
         samples = harness.press(3000)
         # Every state gives a mesh and markers: a hundred megabytes, if they were kept.
-        scene = self.scene(**{"mesh_rate_hz: 20": "mesh_rate_hz: 100", "markers_rate_hz: 10": "markers_rate_hz: 100"})
+        scene = self.changed_scene({"mesh_rate_hz: 20": "mesh_rate_hz: 100", "markers_rate_hz: 10": "markers_rate_hz: 100"})
         with harness.node(scene) as process:
             wrenches = harness.Listener(NODE + "/probe/wrench", WrenchStamped)
             stalled = [tcpros.Subscriber(NODE, NODE + topic, message_type) for topic, message_type in
@@ -135,11 +111,7 @@ class FaultsConnections(unittest.TestCase):
                     pass
             other = tcpros.Publisher("/other", harness.TOPIC, JointState, send)
             sent = len(samples) + len(range(0, len(samples), 10))
-
-            def complete(messages):
-                values = faults.figures(messages[-1]) if messages else {}
-                return values.get("joint states: received") == str(sent) and values["joint states: waiting"] == "0"
-            values = faults.figures(diagnostics.wait(complete, "%d joint states" % sent)[-1])
+            values = faults.all_told(diagnostics, sent)
             counts = faults.counts_at_the_end(process)
             other.close()
         self.assertEqual(values["resets"], "0")
@@ -153,7 +125,7 @@ class FaultsConnections(unittest.TestCase):
         self.assertGreaterEqual(counts["accepted"], len(samples) // 2)
         late = ["joint states: too late", "joint states: duplicate stamp"]
         self.assertEqual(sum(int(values[key]) for key in late), counts["refused"])
-        self.assertTrue(all(map(is_finite, wrenches.messages)))
+        self.assertTrue(all(map(faults.is_finite, wrenches.messages)))
 
 
 if __name__ == "__main__":

@@ -2,12 +2,9 @@
 """Replay onto a disk that is full: an exit code, a message that names file and reason, and the target as it was."""
 import os
 import resource
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
-import unittest
 
 import rospy
 import rostest
@@ -23,13 +20,12 @@ def limit_file_size():
     resource.setrlimit(resource.RLIMIT_FSIZE, (LIMIT_BYTES, LIMIT_BYTES))
 
 
-class FaultsDisk(unittest.TestCase):
+class FaultsDisk(harness.TestCase):
     def setUp(self):
-        self.directory = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.directory)
-        self.bag = os.path.join(self.directory, "press.bag")
+        super().setUp()
+        self.bag = self.path("press.bag")
         harness.write_bag(self.bag, harness.press(300))
-        self.good = os.path.join(self.directory, "good.csv")
+        self.good = self.path("good.csv")
 
     def replay(self, csv_file, *more, before=None):
         command = [harness.program("tissue_contact_replay"), "--scene", harness.SCENE, "--bag", self.bag, "--csv", csv_file]
@@ -48,7 +44,7 @@ class FaultsDisk(unittest.TestCase):
         """By a limit on the size of files, which needs no rights."""
         self.assertEqual(self.replay(self.good).returncode, 0)
         self.assertGreater(os.path.getsize(self.good), LIMIT_BYTES)
-        directory = os.path.join(self.directory, "limited")
+        directory = self.path("limited")
         os.mkdir(directory)
         target = os.path.join(directory, "out.csv")
         with open(target, "w", encoding="ascii") as stream:
@@ -56,7 +52,7 @@ class FaultsDisk(unittest.TestCase):
         self.assert_refused(self.replay(target, before=limit_file_size), target, "File too large", ["out.csv"])
 
     def test_disk_full(self):
-        disk = os.path.join(self.directory, "disk")
+        disk = self.path("disk")
         os.mkdir(disk)
         if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", disk], stderr=subprocess.DEVNULL,
                           check=False).returncode:

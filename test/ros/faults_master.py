@@ -2,12 +2,9 @@
 """The ROS master is killed, restarted, stopped: the node goes on, and whoever comes later finds it. On a master of its
 own, since rostest's must not be killed."""
 import os
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
-import unittest
 
 import rosgraph
 import rospy
@@ -46,10 +43,9 @@ def registrations():
     return known | {master.lookupService(name) for kind, name in known if kind == 2}
 
 
-class FaultsMaster(unittest.TestCase):
+class FaultsMaster(harness.TestCase):
     def setUp(self):
-        self.directory = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.directory)
+        super().setUp()
         self.master = Master()
         self.addCleanup(self.master.kill)
 
@@ -61,7 +57,7 @@ class FaultsMaster(unittest.TestCase):
 
     def play(self, samples):
         """By a program that was not there before either."""
-        bag = os.path.join(self.directory, "more.bag")
+        bag = self.path("more.bag")
         harness.write_bag(bag, samples)
         command = [harness.program_of("rosbag", "play"), "--quiet", "--wait-for-subscribers", "--rate", "10", bag]
         subprocess.run(command, check=True, timeout=harness.DEADLINE_S, stdin=subprocess.DEVNULL)

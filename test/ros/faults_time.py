@@ -43,18 +43,7 @@ class Driver:
         self._thread.join()
 
 
-def is_finite(wrench):
-    f, t = wrench.wrench.force, wrench.wrench.torque
-    return all(math.isfinite(x) for x in [f.x, f.y, f.z, t.x, t.y, t.z])
-
-
 class FaultsTime(unittest.TestCase):
-    def all_told(self, diagnostics, sent):
-        def complete(messages):
-            values = faults.figures(messages[-1]) if messages else {}
-            return values.get("joint states: received") == str(sent) and values["joint states: waiting"] == "0"
-        return faults.figures(diagnostics.wait(complete, "%d joint states" % sent)[-1])
-
     def test_node_stopped_for_ten_seconds(self):
         with harness.node(harness.SCENE) as process:
             wrenches = harness.Listener(NODE + "/probe/wrench", WrenchStamped)
@@ -73,14 +62,14 @@ class FaultsTime(unittest.TestCase):
                 process.send_signal(signal.SIGCONT)
                 driver.stop()
             wrenches.wait_for_stamp(driver.last)
-            values = self.all_told(diagnostics, driver.sent)
+            values = faults.all_told(diagnostics, driver.sent)
             counts = faults.counts_at_the_end(process)
         self.assertEqual(values["policy"], "newest_state")
         self.assertEqual((counts["received"], counts["dropped"], counts["refused"]), (driver.sent, 0, 0))
         self.assertEqual(counts["accepted"] + counts["merged"], driver.sent)
         self.assertEqual(len(wrenches.messages), counts["wrenches"])
         self.assertEqual(values["joint states: missing by header.seq"], "0")
-        self.assertTrue(all(map(is_finite, wrenches.messages)))
+        self.assertTrue(all(map(faults.is_finite, wrenches.messages)))
 
     def test_clock_stepped(self):
         rospy.set_param("/use_sim_time", True)
@@ -100,11 +89,11 @@ class FaultsTime(unittest.TestCase):
                 source.send_all(block)
                 wrenches.wait_for_stamp(block[-1][0])
             sent = sum(map(len, blocks))
-            values = self.all_told(diagnostics, sent)
+            values = faults.all_told(diagnostics, sent)
             counts = faults.counts_at_the_end(process)
         self.assertEqual((counts["received"], counts["wrenches"]), (sent, counts["accepted"]))
         self.assertEqual(len(wrenches.messages), counts["wrenches"])
-        self.assertTrue(all(map(is_finite, wrenches.messages)))
+        self.assertTrue(all(map(faults.is_finite, wrenches.messages)))
         # Each step back starts the scene again, so what follows is what came first.
         by_stamp = {w.header.stamp: w.wrench.force.z for w in wrenches.messages}
         forces = [[by_stamp[stamp] for stamp, _ in block if stamp in by_stamp] for block in blocks]

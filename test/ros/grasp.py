@@ -4,12 +4,9 @@ launch file draws plots."""
 import glob
 import math
 import os
-import shutil
 import struct
 import subprocess
 import sys
-import tempfile
-import unittest
 
 import roslaunch.substitution_args
 import rospy
@@ -22,15 +19,11 @@ BAG = roslaunch.substitution_args.resolve_args("$(find tissue_contact)/config/gr
 JOINT_STATES = 4001  # 8 s at 500 Hz
 
 
-class Grasp(unittest.TestCase):
-    def setUp(self):
-        self.directory = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.directory)
-
+class Grasp(harness.TestCase):
     def test_same_bits_from_replay_and_node(self):
         digests = []
         for run in ["first", "second"]:
-            csv = os.path.join(self.directory, run + ".csv")
+            csv = self.path(run + ".csv")
             code, errors = harness.replay(SCENE, BAG, csv)
             self.assertEqual(code, 0, errors)
             rows = harness.read_csv(csv)
@@ -48,7 +41,7 @@ class Grasp(unittest.TestCase):
 
     def test_launch_file(self):
         environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
-        plots = os.path.join(self.directory, "plots")
+        plots = self.path("plots")
         done = subprocess.run([harness.program("run_launch.py"), "grasp.launch", "output:=" + plots, "rate:=2"],
                               env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, universal_newlines=True, timeout=2 * harness.DEADLINE_S,
@@ -58,14 +51,14 @@ class Grasp(unittest.TestCase):
         self.assertEqual(found, ["psm_force.png", "psm_friction.png"])
 
     def test_table_that_makes_no_recording(self):
-        table = os.path.join(self.directory, "path.csv")
+        table = self.path("path.csv")
         for text, complaint in [("time_s,jaw\n0,0\n0,1\n", "path.csv:3: time_s is 0, not after 0"),
                                 ("time_s,jaw\n0,0\n1,nan\n", "path.csv:3: 2 finite numbers are needed"),
                                 ("time_s,jaw\n0,0\n1\n", "path.csv:3: 2 finite numbers are needed"),
                                 ("jaw\n0\n1\n", "the first line must name time_s and joints")]:
             with open(table, "w", encoding="ascii") as stream:
                 stream.write(text)
-            bag = os.path.join(self.directory, "path.bag")
+            bag = self.path("path.bag")
             done = subprocess.run([harness.program("make_joint_bag.py"), table, bag, "--topic", "/joints"],
                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True,
                                   timeout=harness.DEADLINE_S, check=False)

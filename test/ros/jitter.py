@@ -5,10 +5,8 @@ On the demo, through the node and offline; on a real dVRK recording offline, ski
 (TISSUE_CONTACT_SHARED_DATA, default ../shared/data beside the package).
 """
 import os
-import shutil
 import struct
 import sys
-import tempfile
 import unittest
 
 import rosbag
@@ -52,13 +50,9 @@ def force(bits):
     return sum(value * value for value in struct.unpack("<6d", bits)[:3]) ** 0.5
 
 
-class Jitter(unittest.TestCase):
-    def setUp(self):
-        self.directory = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.directory)
-
+class Jitter(harness.TestCase):
     def make(self, source, topic, disturbed, **part):
-        bags = [os.path.join(self.directory, name + ".bag") for name in ["jittered", "without"]]
+        bags = [self.path(name + ".bag") for name in ["jittered", "without"]]
         for bag, change in zip(bags, [set_back, leave_out]):
             copy(source, bag, topic, disturbed, change, **part)
         return bags

@@ -2,11 +2,7 @@
 """An instrument that is suddenly a kilometre away, and back: placed, not swept; said in Status and CSV; all finite."""
 import csv
 import math
-import os
-import shutil
 import sys
-import tempfile
-import unittest
 
 import rospy
 import rostest
@@ -20,18 +16,11 @@ AWAY = 40  # joint states with the instrument away: after one while pressing
 BACK = 60
 
 
-class Jump(unittest.TestCase):
+class Jump(harness.TestCase):
     def setUp(self):
-        self.directory = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.directory)
-        with open(harness.SCENE, encoding="utf-8") as stream:
-            text = stream.read()
-        for topic in ["status_rate_hz: 10", "mesh_rate_hz: 20"]:  # a message for every joint state
-            self.assertEqual(text.count(topic), 1)
-            text = text.replace(topic, topic.split()[0] + " 100")
-        self.scene = os.path.join(self.directory, "scene.yaml")
-        with open(self.scene, "w", encoding="utf-8") as stream:
-            stream.write(text)
+        super().setUp()
+        # A message for every joint state.
+        self.scene = self.changed_scene({"status_rate_hz: 10": "status_rate_hz: 100", "mesh_rate_hz: 20": "mesh_rate_hz: 100"})
         self.samples = [(stamp, (position[0] + 1e3, position[1], position[2]) if AWAY <= i < BACK else position)
                         for i, (stamp, position) in enumerate(harness.press(100))]
 
@@ -41,8 +30,8 @@ class Jump(unittest.TestCase):
         self.assertEqual([v for v in values if not math.isfinite(v)], [])
 
     def test_replay(self):
-        bag = os.path.join(self.directory, "jump.bag")
-        out = os.path.join(self.directory, "jump.csv")
+        bag = self.path("jump.bag")
+        out = self.path("jump.csv")
         harness.write_bag(bag, self.samples)
         code, errors = harness.replay(self.scene, bag, out)
         self.assertEqual(code, 0, errors)

@@ -3,13 +3,10 @@
 neither; and the end by a signal in each."""
 import math
 import os
-import re
-import shutil
 import signal
 import statistics
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 import unittest
@@ -21,12 +18,9 @@ from geometry_msgs.msg import WrenchStamped
 from rosgraph_msgs.msg import Log
 from visualization_msgs.msg import MarkerArray
 
+import faults
 import harness
 from tissue_contact.msg import Status, TissueMesh
-
-OK, WARN, ERROR = 0, 1, 2
-COUNTS = re.compile(r"joint states: (\d+) received, (\d+) accepted, (\d+) merged, (\d+) dropped, (\d+) refused.*?, "
-                    r"(\d+) waiting; (\d+) wrenches published, (\d+) resets, largest lag ([\d.e+-]+) s")
 
 
 def press_at(time_s):
@@ -117,29 +111,13 @@ class RunDelay:
         return (after[0] if after else self._samples[-1][1]) - (before[-1] if before else self._samples[0][1])
 
 
-def values_of(diagnostics):
-    return {v.key: v.value for v in diagnostics.status[0].values}
-
-
 def quantile(values, share):
     return sorted(values)[min(len(values) - 1, int(share * len(values)))]
 
 
-class Live(unittest.TestCase):
-    def setUp(self):
-        self.directory = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.directory)
-
-    def scene(self, source="live.yaml", **replaced):
-        with open(os.path.join(os.path.dirname(harness.SCENE), source), encoding="utf-8") as stream:
-            text = stream.read()
-        for key, value in replaced.items():
-            self.assertIn(key, text)
-            text = text.replace(key, str(value))
-        file = os.path.join(self.directory, "scene.yaml")
-        with open(file, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        return file
+class Live(harness.TestCase):
+    def scene(self, **changes):
+        return self.changed_scene(changes, source="live.yaml")
 
     def step_cost(self):
         """Wall time of a step in contact on this machine, s: of a short recording, which is stepped through in full."""
@@ -152,28 +130,9 @@ class Live(unittest.TestCase):
         self.assertEqual({s.policy for s in last}, {Status.POLICY_EVERY_STATE})
         return statistics.median(s.step_time for s in last if s.kinetic_contacts + s.static_contacts > 0)
 
-    def assert_ends_within_a_second(self, process, number):
-        """Sends the signal; returns what the node counted at its end."""
-        start = time.monotonic()
-        process.send_signal(number)
-        code = process.wait(harness.DEADLINE_S)
-        took = time.monotonic() - start
-        process.output.seek(0)
-        output = process.output.read()
-        self.assertEqual(code, 0, output)
-        self.assertLess(took, harness.SLOWNESS, output)
-        found = COUNTS.search(output)
-        self.assertIsNotNone(found, output)
-        received, accepted, merged, dropped, refused, waiting, wrenches, _resets = map(int, found.groups()[:8])
-        self.assertEqual(received, accepted + merged + dropped + refused + waiting, found.group(0))
-        return {"received": received, "merged": merged, "wrenches": wrenches, "lag": float(found.group(9))}
-
     def assert_counts_add_up(self, diagnostics, sent):
         """Once all is played, diagnostics tell what became of every state that was sent."""
-        def complete(messages):
-            values = values_of(messages[-1]) if messages else {}
-            return values.get("joint states: received") == str(sent) and values["joint states: waiting"] == "0"
-        values = values_of(diagnostics.wait(complete, "%d joint states received and played" % sent)[-1])
+        values = faults.all_told(diagnostics, sent)
         parts = ["accepted", "merged", "dropped", "duplicate stamp", "bad stamp", "position not finite",
                  "names and positions differ in number", "no known joint", "too late", "two clocks"]
         self.assertEqual(sum(int(values["joint states: " + part]) for part in parts), sent, values)
@@ -220,7 +179,7 @@ class Live(unittest.TestCase):
             try:
                 answered = len(wrenches.messages)
                 wrenches.wait(lambda all: len(all) > answered + 20, "wrenches of the second drive")
-                seen["end"] = self.assert_ends_within_a_second(process, signal.SIGINT)
+                seen["end"] = faults.counts_at_the_end(process, signal.SIGINT)
             finally:
                 driver.stop()
             seen["log"] = [m.msg for m in log.messages if m.name == "/tissue_contact"]
@@ -258,7 +217,7 @@ class Live(unittest.TestCase):
         self.assertGreater(int(seen["values"]["intervals with lengthened steps"]), 0)
         for count in seen["bulky"]:
             self.assertGreater(count, 50)
-        self.assertGreaterEqual(max(d.status[0].level for d in seen["diagnostics"]), WARN)
+        self.assertGreaterEqual(max(d.status[0].level for d in seen["diagnostics"]), faults.WARN)
         said = [line for line in seen["log"] if "does not keep up" in line]
         self.assertEqual(len(said), 1, seen["log"])
         for words in ["ms", "steps per second", "mesh", "max_step_s", "time_budget_s"]:
@@ -274,14 +233,14 @@ class Live(unittest.TestCase):
             driver = Driver(500.0, press_at)
             try:
                 def far_behind(messages):
-                    return any(m.status[0].level == ERROR and "late by" in m.status[0].message for m in messages)
+                    return any(m.status[0].level == faults.ERROR and "late by" in m.status[0].message for m in messages)
                 told = diagnostics.wait(far_behind, "an error")
             finally:
                 driver.stop()
-            late = [(float(values_of(m)["lag_s"]), m.status[0].level) for m in told if "late by" in m.status[0].message]
-            self.assertEqual([level for lag, level in late], [ERROR if lag > 5.0 else WARN for lag, _ in late], late)
-            self.assertEqual({level for _, level in late}, {WARN, ERROR})
-            self.assert_ends_within_a_second(process, signal.SIGINT)
+            late = [(float(faults.figures(m)["lag_s"]), m.status[0].level) for m in told if "late by" in m.status[0].message]
+            self.assertEqual([level for lag, level in late], [faults.ERROR if lag > 5.0 else faults.WARN for lag, _ in late], late)
+            self.assertEqual({level for _, level in late}, {faults.WARN, faults.ERROR})
+            faults.counts_at_the_end(process, signal.SIGINT)
 
     @unittest.skipIf(harness.SLOWNESS > 1.0, "a slow build on a busy machine takes a driver's states for a recording's")
     def test_the_demo_at_430_hz_on_a_busy_machine(self):
@@ -303,16 +262,16 @@ class Live(unittest.TestCase):
         # stepping through every state, this lags by seconds after the 8 s. And whatever is over the bound is told.
         self.assertLess(quantile(seen["lags"][-40:], 0.5), 0.5)
         for message in seen["diagnostics"]:
-            if "lag_s" not in values_of(message):
+            if "lag_s" not in faults.figures(message):
                 continue  # the updater's own, at the start
-            lag = float(values_of(message)["lag_s"])
-            self.assertEqual(message.status[0].level > OK, lag > 0.02 or "lengthened" in message.status[0].message,
+            lag = float(faults.figures(message)["lag_s"])
+            self.assertEqual(message.status[0].level > faults.OK, lag > 0.02 or "lengthened" in message.status[0].message,
                              message)
 
     def test_both_policies_agree_where_the_machine_keeps_up(self):
         forces = {}
         for policy in ["every_state", "newest_state"]:
-            scene = self.scene("press.yaml", **{"max_step_s: 0.002": "max_step_s: 0.002, joint_states: " + policy})
+            scene = self.changed_scene({"max_step_s: 0.002": "max_step_s: 0.002, joint_states: " + policy})
             with harness.node(scene):
                 wrenches = harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)
                 source = harness.JointSource()
@@ -346,16 +305,16 @@ class Live(unittest.TestCase):
                 def hangs(messages):  # the same step for two seconds
                     if len(messages) < 3:
                         return False
-                    values = [values_of(m) for m in messages[-3:]]
+                    values = [faults.figures(m) for m in messages[-3:]]
                     return (values[-1]["joint states: waiting"] != "0" and values[0].get("steps") == values[-1]["steps"] and
-                            float(values[-1]["lag_s"]) > 2.0 and messages[-1].status[0].level >= WARN)
+                            float(values[-1]["lag_s"]) > 2.0 and messages[-1].status[0].level >= faults.WARN)
                 diagnostics.wait(hangs, "a step that lasts")
-                self.assertEqual(self.assert_ends_within_a_second(process, number)["received"], 100)
+                self.assertEqual(faults.counts_at_the_end(process, number)["received"], 100)
 
     def test_signals_end_a_node_without_work(self):
         with harness.node(harness.SCENE) as process:
             harness.Listener("/diagnostics", DiagnosticArray).wait(len, "a node that runs")
-            self.assertEqual(self.assert_ends_within_a_second(process, signal.SIGTERM)["received"], 0)
+            self.assertEqual(faults.counts_at_the_end(process, signal.SIGTERM)["received"], 0)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,7 @@
 #!/usr/bin/python3
 """A base placed by tf: the node waits for the frame, then stands where tf says; the URDF comes from a parameter."""
 import os
-import shutil
 import sys
-import tempfile
-import unittest
 
 import rospy
 import rostest
@@ -14,19 +11,12 @@ from tf2_msgs.msg import TFMessage
 import harness
 
 
-class PlacedByTf(unittest.TestCase):
+class PlacedByTf(harness.TestCase):
     def test_same_wrenches_as_placed_by_the_scene(self):
-        directory = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, directory)
-        with open(harness.SCENE, encoding="utf-8") as stream:
-            text = stream.read()
         with open(os.path.join(harness.PACKAGE, "urdf", "probe.urdf"), encoding="utf-8") as stream:
             rospy.set_param("/robot_description", stream.read())
-        text = text.replace("urdf: package://tissue_contact/urdf/probe.urdf",
-                            "robot_description: robot_description")
-        scene = os.path.join(directory, "scene.yaml")
-        with open(scene, "w", encoding="utf-8") as stream:
-            stream.write(text.replace("position_m: [0, 0, 0.026]", "tf_frame: stage"))
+        scene = self.changed_scene({"urdf: package://tissue_contact/urdf/probe.urdf": "robot_description: robot_description",
+                                    "position_m: [0, 0, 0.026]": "tf_frame: stage"})
 
         transform = TransformStamped()
         transform.header.frame_id = "world"
@@ -43,8 +33,8 @@ class PlacedByTf(unittest.TestCase):
             got = wrenches.wait_for_stamp(samples[-1][0])
         self.assertEqual(len(got), len(samples))
 
-        bag = os.path.join(directory, "press.bag")
-        csv = os.path.join(directory, "out.csv")
+        bag = self.path("press.bag")
+        csv = self.path("out.csv")
         harness.write_bag(bag, samples)
         code, errors = harness.replay(harness.SCENE, bag, csv)
         self.assertEqual(code, 0, errors)

@@ -1,10 +1,6 @@
 #!/usr/bin/python3
 """A bag gives the same bits at any playback rate, through the node and offline."""
-import os
-import shutil
 import sys
-import tempfile
-import unittest
 
 import rospy
 import rostest
@@ -12,18 +8,16 @@ import rostest
 import harness
 
 
-class PlaybackRates(unittest.TestCase):
+class PlaybackRates(harness.TestCase):
     def test_node_and_replay_agree_to_the_last_bit(self):
-        directory = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, directory)
-        bag = os.path.join(directory, "press.bag")
+        bag = self.path("press.bag")
         samples = harness.press(200, start_s=1644257420)
         harness.write_bag(bag, samples)
 
         digests = {}
         tables = []
         for run in ["first", "second"]:
-            csv = os.path.join(directory, run + ".csv")
+            csv = self.path(run + ".csv")
             code, errors = harness.replay(harness.SCENE, bag, csv)
             self.assertEqual(code, 0, errors)
             tables.append(harness.read_table(csv))

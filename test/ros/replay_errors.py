@@ -1,11 +1,8 @@
 #!/usr/bin/python3
 """Offline replay: what it refuses, what it says, and that it never leaves half a result behind."""
 import os
-import shutil
 import struct
 import sys
-import tempfile
-import unittest
 
 import rosbag
 import rospy
@@ -18,28 +15,16 @@ from tf2_msgs.msg import TFMessage
 import harness
 
 
-class ReplayErrors(unittest.TestCase):
+class ReplayErrors(harness.TestCase):
     def setUp(self):
-        self.directory = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.directory)
+        super().setUp()
         self.bag = self.path("press.bag")
         self.csv = self.path("out.csv")
         self.samples = harness.press(20)
         harness.write_bag(self.bag, self.samples)
 
-    def path(self, name):
-        return os.path.join(self.directory, name)
-
-    def write(self, name, text):
-        with open(self.path(name), "w", encoding="utf-8") as stream:
-            stream.write(text)
-        return self.path(name)
-
     def scene_with(self, old, new):
-        with open(harness.SCENE, encoding="utf-8") as stream:
-            text = stream.read()
-        self.assertEqual(text.count(old), 1, old)
-        return self.write("scene.yaml", text.replace(old, new))
+        return self.changed_scene({old: new})
 
     def assert_refused(self, scene, bag, *words, csv=None):
         self.write("out.csv", "what was there before")

@@ -3,10 +3,7 @@
 import csv
 import os
 import re
-import shutil
 import sys
-import tempfile
-import unittest
 
 import rospy
 import rostest
@@ -14,16 +11,12 @@ import rostest
 import harness
 
 
-class ReplayOutputs(unittest.TestCase):
+class ReplayOutputs(harness.TestCase):
     def setUp(self):
-        self.directory = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.directory)
+        super().setUp()
         self.bag = self.path("press.bag")
         self.samples = harness.press(40)
         harness.write_bag(self.bag, self.samples)
-
-    def path(self, name):
-        return os.path.join(self.directory, name)
 
     def read(self, name):
         with open(self.path(name), "rb") as stream:

@@ -11,10 +11,12 @@ from roscpp.srv import GetLoggers, SetLoggerLevel
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
+import faults
 import harness
 from tissue_contact.msg import ContactArray, ContactPoint, Status, TissueMesh, TissueTopology
 
 NODE = "/tissue_contact/"
+ACCEPTED = "joint states: accepted"
 RATES_HZ = {"block/mesh": 20, "contacts": 50, "status": 10}  # of test/ros/press.yaml
 
 
@@ -35,7 +37,7 @@ class Topics(unittest.TestCase):
         newest = rospy.Duration.from_sec(0.11)  # markers come every 0.1 s
         listeners["markers"].wait(lambda all: all and cls.last - all[-1].markers[0].header.stamp < newest, "the end")
         cls.transforms = tf.wait(lambda all: all and all[-1].transforms[0].header.stamp == cls.last, "the last transform")
-        cls.diagnostics = diagnostics.wait(lambda all: all and "200" in str(all[-1]), "200 joint states")[-1]
+        cls.diagnostics = diagnostics.wait(lambda all: all and faults.figures(all[-1]).get(ACCEPTED) == "200", "200 states")[-1]
         cls.listeners = listeners
 
     def stamps(self, name):
@@ -142,7 +144,7 @@ class Topics(unittest.TestCase):
         values = {v.key: v.value for v in status.values}
         if "late" not in status.message:  # two seconds of motion are sent at once: a slow machine lags
             self.assertEqual(status.level, 0, status)
-        self.assertEqual(values["joint states: accepted"], "200")
+        self.assertEqual(values[ACCEPTED], "200")
         self.assertEqual(values["resets"], "0")
 
 

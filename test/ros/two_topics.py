@@ -1,11 +1,7 @@
 #!/usr/bin/python3
 """Two topics, of two instruments or of an arm and its jaw: moments in the order of their stamps, whichever way they arrive;
 the bits of the replay."""
-import os
-import shutil
 import sys
-import tempfile
-import unittest
 
 import rosbag
 import rospy
@@ -26,22 +22,17 @@ friction:
 """
 
 
-class TwoTopics(unittest.TestCase):
+class TwoTopics(harness.TestCase):
     def setUp(self):
-        self.directory = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.directory)
-        with open(harness.SCENE, encoding="utf-8") as stream:
-            text = stream.read()
-        self.scene = os.path.join(self.directory, "scene.yaml")
-        with open(self.scene, "w", encoding="utf-8") as stream:
-            # Both probes have the same link names, which tf cannot hold.
-            stream.write(text.replace("friction:\n", SECOND_PROBE).replace("tf: true", "tf: false"))
+        super().setUp()
+        # Both probes have the same link names, which tf cannot hold.
+        self.scene = self.changed_scene({"friction:\n": SECOND_PROBE, "tf: true": "tf: false"})
         self.samples = harness.press(100)
         self.shift = rospy.Duration(0, 3000000)
 
     def write_bag(self, name, messages):
         """messages: (topic, stamp, names, positions), recorded in this order."""
-        bag = os.path.join(self.directory, name)
+        bag = self.path(name)
         with rosbag.Bag(bag, "w") as out:
             for i, (topic, stamp, names, positions) in enumerate(messages):
                 message = JointState(name=list(names), position=list(positions))
@@ -78,7 +69,7 @@ class TwoTopics(unittest.TestCase):
         arm, jaw = "/probe/measured_js", "/probe/jaw/measured_js"
         with open(harness.SCENE, encoding="utf-8") as stream:
             text = stream.read().replace("[%s]" % harness.TOPIC, "[%s, %s]" % (arm, jaw))
-        scene = os.path.join(self.directory, "jaw.yaml")
+        scene = self.path("jaw.yaml")
         with open(scene, "w", encoding="utf-8") as stream:
             stream.write(text)
         messages = []
@@ -108,14 +99,14 @@ class TwoTopics(unittest.TestCase):
                          [(stamp, bits) for stamp, _, bits in expected])
 
     def test_arrival_order_does_not_matter(self):
-        bag = os.path.join(self.directory, "two.bag")
+        bag = self.path("two.bag")
         with rosbag.Bag(bag, "w") as out:
             for stamp, positions in self.samples:
                 for topic, at in [(harness.TOPIC, stamp), ("/other/joint_states", stamp + self.shift)]:
                     message = JointState(name=["x", "y", "z"], position=list(positions))
                     message.header.stamp = at
                     out.write(topic, message, at)
-        csv = os.path.join(self.directory, "out.csv")
+        csv = self.path("out.csv")
         code, errors = harness.replay(self.scene, bag, csv)
         self.assertEqual(code, 0, errors)
         rows = harness.read_csv(csv)

@@ -6,20 +6,21 @@
 #include <random>
 #include <vector>
 
-#include "tissue_contact/solver/contact_solver.h"
+#include "tissue_contact/mesh/tet_mesh.h"
+#include "tissue_contact/solver/contact_problem.h"
+#include "tissue_contact/solver/solver_options.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
-#include "tissue_contact/tissue/tet_mesh.h"
 
 namespace tissue_contact {
 
-inline SolverDescription options(int iterations, int contact_passes, double tolerance,
-                                 RelaxationKind relaxation = RelaxationKind::kGaussSeidel) {
-  SolverDescription description;
-  description.iterations = iterations;
-  description.contact_passes = contact_passes;
-  description.tolerance = tolerance;
-  description.relaxation = relaxation;
-  return description;
+inline SolverOptions options(int iterations, int contact_passes, double tolerance,
+                             RelaxationKind relaxation = RelaxationKind::kGaussSeidel) {
+  SolverOptions chosen;
+  chosen.relaxation = relaxation;
+  chosen.iterations = iterations;
+  chosen.contact_passes = contact_passes;
+  chosen.tolerance = tolerance;
+  return chosen;
 }
 
 /// A block pressed and sheared through barycentric contacts on its upper face.

@@ -1,10 +1,11 @@
 /// @file
-/// Random contact problems with symmetric positive definite W, for tests and the solver table.
+/// Contact problems with random symmetric positive definite W, and descriptions of who solves them, for tests and the
+/// solver table.
 #pragma once
 
 #include <random>
 
-#include "tissue_contact/solver/delassus.h"
+#include "tissue_contact/baselines/delassus.h"
 
 namespace tissue_contact {
 
@@ -25,6 +26,14 @@ inline DelassusProblem randomContactProblem(int contacts, double mu, unsigned se
   for (CoulombLaw& law : problem.laws) law.mu_static = law.mu_kinetic = mu;
   problem.was_sliding.assign(contacts, false);
   return problem;
+}
+
+inline SolverDescription solver(SolverMethod method, double tolerance = 1e-10, int iterations = 3000) {
+  SolverDescription description;
+  description.method = method;
+  description.tolerance = tolerance;
+  description.iterations = iterations;
+  return description;
 }
 
 }  // namespace tissue_contact

@@ -1,5 +1,5 @@
 /// @file
-/// Test helper: a directory for the files of one test.
+/// Test helper: a directory for the files of one test or validation case.
 #pragma once
 
 #include <cstdlib>
@@ -30,10 +30,11 @@ class TemporaryDirectory {
   const std::filesystem::path& path() const { return path_; }
   std::string path(const std::string& name) const { return (path_ / name).string(); }
 
-  /// Writes a file and returns its path.
+  /// Writes a file and returns its path. @throws std::runtime_error naming the file when that fails.
   std::string write(const std::string& name, const std::string& content) const {
     std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << content;
+    std::ofstream file(path_ / name, std::ios::binary);
+    if (!(file << content).flush()) throw std::runtime_error("cannot write " + path(name));
     return path(name);
   }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "tissue_contact/solver/delassus.h"
+#include "tissue_contact/baselines/delassus.h"
 
 namespace tissue_contact {
 

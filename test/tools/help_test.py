@@ -37,10 +37,35 @@ class HelpTest(unittest.TestCase):
         for script in scripts:
             self.check(script)
 
+    def run_tool(self, name, *arguments):
+        program = [program for program in PROGRAMS if program.endswith("tissue_contact_" + name)][0]
+        return subprocess.run([program, *arguments], capture_output=True, text=True, timeout=60)
+
+    def test_unknown_arguments_are_named_with_the_nearest_known(self):
+        for name, wrong, near in [("replay", "--cvs", "--csv"), ("solve", "--solvr", "--solver"),
+                                  ("validate", "--jsn", "--json"), ("benchmark", "--qick", "--quick")]:
+            for arguments in [[wrong, "x"], [wrong + "=x"]]:
+                with self.subTest(arguments=arguments):
+                    done = self.run_tool(name, *arguments)
+                    self.assertIn(done.returncode, [1, 2])
+                    self.assertIn("unknown argument '" + arguments[0] + "'; did you mean \"" + near + "\"? known are ", done.stderr)
+        done = self.run_tool("node", "--scene=x.yaml")  # and does not wait for a master
+        self.assertEqual(done.returncode, 1, done)
+        self.assertIn("unknown argument '--scene=x.yaml'", done.stderr + done.stdout)
+        self.assertIn("_scene:=", done.stderr + done.stdout)
+
+    def test_both_forms_are_the_same_everywhere(self):
+        replay = ["--scene", "s", "--bag=b", "--csv", "c", "--dump-file=p"]
+        for name, before, key, bad in [("replay", replay, "--dump-step", "0"), ("solve", ["p.txt"], "--sides", "3"),
+                                       ("validate", [], "--case", "none"), ("benchmark", [], "--only", "none")]:
+            with self.subTest(tool=name):
+                first, second = self.run_tool(name, *before, key, bad), self.run_tool(name, *before, key + "=" + bad)
+                self.assertIn(first.returncode, [1, 2])
+                self.assertIn("'" + bad + "'", first.stderr)
+                self.assertEqual((first.returncode, first.stderr), (second.returncode, second.stderr))
+
     def test_node_names_what_it_needs(self):
-        node = [program for program in PROGRAMS if program.endswith("tissue_contact_node")][0]
-        text = subprocess.run([node, "__name:=other", "--help", "_scene:=x.yaml"], capture_output=True, text=True,
-                              timeout=60).stdout
+        text = self.run_tool("node", "__name:=other", "--help", "_scene:=x.yaml").stdout
         for word in ["~scene", "~tf_timeout_s", "~robot_description", "/wrench", "/diagnostics", "_scene:="]:
             self.assertIn(word, text)
 

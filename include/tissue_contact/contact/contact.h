@@ -24,16 +24,11 @@ struct ContactKey {
   int other_tissue = -1;  ///< tissue against tissue: the one in the instrument's place, else -1
   std::array<int, 3> other_feature = {-1, -1, -1};
 
-  friend bool operator<(const ContactKey& a, const ContactKey& b) {
-    return std::tie(a.tissue, a.instrument, a.link, a.shape, a.feature, a.corner, a.slot, a.other_tissue,
-                    a.other_feature) < std::tie(b.tissue, b.instrument, b.link, b.shape, b.feature, b.corner, b.slot,
-                                                b.other_tissue, b.other_feature);
+  auto tied() const {
+    return std::tie(tissue, instrument, link, shape, feature, corner, slot, other_tissue, other_feature);
   }
-  friend bool operator==(const ContactKey& a, const ContactKey& b) {
-    return std::tie(a.tissue, a.instrument, a.link, a.shape, a.feature, a.corner, a.slot, a.other_tissue,
-                    a.other_feature) == std::tie(b.tissue, b.instrument, b.link, b.shape, b.feature, b.corner, b.slot,
-                                                 b.other_tissue, b.other_feature);
-  }
+  friend bool operator<(const ContactKey& a, const ContactKey& b) { return a.tied() < b.tied(); }
+  friend bool operator==(const ContactKey& a, const ContactKey& b) { return a.tied() == b.tied(); }
 };
 
 /// Both contacts are of the same shape, or other tissue, on the same tissue.
@@ -49,11 +44,14 @@ struct Contact {
   std::array<int, 3> nodes = {0, 0, 0};  ///< tissue nodes of the surface triangle
   Vector3 weights = Vector3::Zero();     ///< barycentric, >= 0, sum 1: the tissue point is sum weights[i] * x[nodes[i]]
   Vector3 p_WC = Vector3::Zero();        ///< tissue point, m
-  Matrix3 R_WC =
-      Matrix3::Identity();  ///< columns (n, t1, t2); n is unit and points from the instrument INTO the tissue
-  double gap_m = 0.0;       ///< signed distance along n from shape to tissue point; < 0: penetrating
+  /// Columns (n, t1, t2); n is unit and points from the instrument INTO the tissue.
+  Matrix3 R_WC = Matrix3::Identity();
+  double gap_m = 0.0;                          ///< signed distance along n from shape to tissue point; < 0: penetrating
   std::array<int, 3> other_nodes = {0, 0, 0};  ///< tissue against tissue: nodes of the other surface point
   Vector3 other_weights = Vector3::Zero();     ///< and their barycentric weights
 };
+
+/// Any right-handed frame with the given unit normal as first column; a continuous function of n except at one point.
+Matrix3 contactFrame(const Vector3& n);
 
 }  // namespace tissue_contact

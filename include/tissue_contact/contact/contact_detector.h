@@ -11,16 +11,9 @@
 #include "tissue_contact/contact/mesh_preparation.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/instrument/instrument.h"
+#include "tissue_contact/mesh/tissue_surface.h"
 
 namespace tissue_contact {
-
-/// Surface of one tissue: triangles over its nodes.
-struct TissueSurface {
-  std::vector<Triangle> triangles;
-  std::vector<bool> fixed;  ///< per node; contacts whose weighted nodes are all fixed are dropped: nothing can move
-  /// > 0: an open sheet, touched from both sides, half the thickness before its triangles. 0: the boundary of a volume.
-  double thickness_m = 0.0;
-};
 
 /// How near a shape is to a tissue's surface.
 struct Approach {
@@ -33,28 +26,29 @@ struct Approach {
 
 class ContactDetector {
  public:
-  /// @param instruments must outlive the detector. @param surfaces one per tissue; @param positions one per tissue,
-  ///   m, world frame.
-  /// @throws std::invalid_argument when the sizes differ, a triangle refers to a missing node or twice to the same, a
-  ///   thickness is not finite or < 0, or a mesh shape has no mesh or no inside.
   /// Mesh shapes are prepared here, which takes some tenths of a second each unless they are in the cache.
-  ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
-                  const std::vector<NodalVectors>& positions, const MeshPreparation& preparation);
-  /// Without a cache of meshes, silently.
-  ContactDetector(const std::vector<Instrument>& instruments, std::vector<TissueSurface> surfaces,
-                  const std::vector<NodalVectors>& positions);
+  /// @param instruments must outlive the detector.
+  /// @param surfaces one per tissue.
+  /// @throws std::invalid_argument when a mesh shape has no mesh or no inside.
+  ContactDetector(const std::vector<Instrument>& instruments, SharedSurfaces surfaces,
+                  const MeshPreparation& preparation = {});
   ~ContactDetector();
   ContactDetector(ContactDetector&&) noexcept;
   ContactDetector& operator=(ContactDetector&&) noexcept;
 
-  /// Every surface feature nearer than `margin_m` to a shape, at these positions and poses, sorted by key.
-  /// @param margin_m >= 0. @param X_WL per instrument, per link of its model. @param contacts overwritten; capacity is
-  /// kept. Non-finite positions give no contact. Deterministic: depends on the arguments alone, not on earlier calls.
-  /// Not thread-safe (refits the trees it holds). @throws std::invalid_argument for sizes that differ from the
-  /// construction's and a margin that is not finite or < 0. Which of the near features count as contacts:
-  /// src/contact/narrow_phase.h.
+  /// Every surface feature nearer than `margin_m` to a shape, at these positions and poses, sorted by key. Which of them
+  /// count as contacts: src/contact/narrow_phase.h. Non-finite positions give no contact. Deterministic: depends on the
+  /// arguments alone, not on earlier calls. Not thread-safe (moves the surfaces).
+  /// @param positions one per tissue, m, world frame.
+  /// @param X_WL per instrument, per link of its model.
+  /// @param margin_m >= 0.
+  /// @param contacts overwritten; capacity is kept.
+  /// @throws std::invalid_argument for sizes that differ from the construction's and a margin not finite or < 0.
   void detect(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL, double margin_m,
               std::vector<Contact>& contacts);
+
+  /// For others that detect contacts on them.
+  const SharedSurfaces& surfaces() const;
 
   /// Contacts that the last detect() left out, because two shapes that touch each other press the point from opposed
   /// sides: there is no room for it.
@@ -65,8 +59,9 @@ class ContactDetector {
   const TriangleMesh* actingSurface(int instrument, int contact_link, int shape) const;
 
   /// Brings a contact found earlier up to date: the same material point (key, nodes, weights) against the same shape.
-  /// Sets its p_WC, R_WC and gap_m. @return false when it is no contact any more: farther than `margin_m`, or its
-  /// surface does not face the shape; and for a contact between tissues, which this detector does not know.
+  /// Sets its p_WC, R_WC and gap_m.
+  /// @return false when it is no contact any more: farther than `margin_m`, or its surface does not face the shape; and
+  ///   for a contact between tissues, which this detector does not know.
   bool measure(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL, double margin_m,
                Contact& contact) const;
 
@@ -80,9 +75,6 @@ class ContactDetector {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
-
-/// Any right-handed frame with the given unit normal as first column; a continuous function of n except at one point.
-Matrix3 contactFrame(const Vector3& n);
 
 /// How far a shape reaches from its middle where it is thinnest, m: radius of a sphere, half the smallest edge of a
 /// box, min(radius, length / 2) of a cylinder, half the smallest extent of a mesh's bounding box in its own axes (0 for

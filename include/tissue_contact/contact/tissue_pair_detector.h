@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tissue_contact/contact/contact.h"
-#include "tissue_contact/contact/contact_detector.h"
 #include "tissue_contact/core/types.h"
+#include "tissue_contact/mesh/tissue_surface.h"
 
 namespace tissue_contact {
 
@@ -20,11 +20,9 @@ struct TouchingTissues {
 
 class TissuePairDetector {
  public:
-  /// @param surfaces of all tissues of the scene. @param rest their positions at rest, m: parts of one surface that are
-  /// near each other at rest are no folds. @throws std::invalid_argument for an unknown index, a pair listed twice (in
-  ///   either order), sizes that differ, bad triangles or a bad thickness.
-  TissuePairDetector(std::vector<TouchingTissues> pairs, std::vector<TissueSurface> surfaces,
-                     const std::vector<NodalVectors>& rest);
+  /// @param surfaces of all tissues of the scene. Parts of one that are near each other at rest are no folds.
+  /// @throws std::invalid_argument for an unknown index or a pair listed twice (in either order).
+  TissuePairDetector(std::vector<TouchingTissues> pairs, SharedSurfaces surfaces);
   ~TissuePairDetector();
   TissuePairDetector(TissuePairDetector&&) noexcept;
   TissuePairDetector& operator=(TissuePairDetector&&) noexcept;
@@ -32,9 +30,10 @@ class TissuePairDetector {
   /// Appends every vertex-face and edge-edge pair nearer than `margin_m`: `tissue` and `nodes` hold one point, the
   /// `other_*` members the point in the instrument's place, n from it into `tissue`. At most 4 nodes have a weight.
   /// What is appended is sorted by key. Deterministic: depends on the arguments alone. No allocation once vectors have
-  /// grown. Not thread-safe. Non-finite positions give no contact. Which pairs count: src/contact/vertex_face.h and
-  /// edge_edge.h. @throws std::invalid_argument for sizes that differ from the construction's and a margin that is not
-  /// finite or < 0. @param apart per pair: known not to touch and left out; empty: none is.
+  /// grown. Not thread-safe. Non-finite positions give no contact. Which pairs count: src/contact/pair/vertex_face.h and
+  /// edge_edge.h.
+  /// @param apart per pair: known not to touch and left out; empty: none is.
+  /// @throws std::invalid_argument for sizes that differ from the construction's and a margin not finite or < 0.
   void detect(const std::vector<NodalVectors>& positions, double margin_m, const std::vector<bool>& apart,
               std::vector<Contact>& contacts);
   void detect(const std::vector<NodalVectors>& positions, double margin_m, std::vector<Contact>& contacts) {

@@ -32,17 +32,6 @@ inline double requireNonNegative(const std::string& what, double value, const st
   return value;
 }
 
-/// Returns `value` if low < value < high (both ends excluded), else throws.
-inline double requireInside(const std::string& what, double value, double low, double high,
-                            const std::string& unit = "") {
-  if (!(value > low && value < high)) {
-    std::ostringstream must;
-    must << "> " << low << " and < " << high;
-    throwBadValue(what, value, unit, must.str());
-  }
-  return value;
-}
-
 /// Returns `value` if it is finite, else throws.
 inline double requireFinite(const std::string& what, double value, const std::string& unit = "") {
   if (!std::isfinite(value)) throwBadValue(what, value, unit, "finite");

@@ -16,4 +16,7 @@ std::string nearestWord(const std::string& word, const std::vector<std::string>&
 /// The same; empty when all need more than `most`.
 std::string nearestWord(const std::string& word, const std::vector<std::string>& allowed, std::size_t most);
 
+/// `did you mean "<the nearest>"? `, or "" when none is near.
+std::string suggestion(const std::string& word, const std::vector<std::string>& allowed);
+
 }  // namespace tissue_contact

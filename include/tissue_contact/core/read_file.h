@@ -9,8 +9,10 @@
 namespace tissue_contact {
 
 /// Refuses what is not a readable regular file with 1 to `max_bytes` bytes: a FIFO would block, a device may never end.
-/// Symbolic links are followed. @param what names the file's kind in messages.
-/// @throws std::invalid_argument naming the file, what it is instead, and for stand-ins (git-lfs, git-annex) the remedy.
+/// Symbolic links are followed.
+/// @param what names the file's kind in messages.
+/// @throws std::invalid_argument naming the file, what it is instead, and for stand-ins (git-lfs, git-annex) the
+///   remedy.
 void requireRegularFile(const std::string& file, const std::string& what,
                         std::uintmax_t max_bytes = std::numeric_limits<std::uintmax_t>::max());
 

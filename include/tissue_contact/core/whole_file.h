@@ -34,7 +34,8 @@ class WholeFile {
   /// @throws std::runtime_error naming the file and the reason.
   void finish();
 
-  /// Finishes and takes the target's place. @throws as finish().
+  /// Finishes and takes the target's place.
+  /// @throws as finish().
   void commit();
 
  private:
@@ -53,7 +54,8 @@ struct NamedFile {
 /// @throws std::invalid_argument naming both files by role and path.
 void requireFreeOutputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
 
-/// Hands what was printed to the system. @throws std::runtime_error naming the reason when that fails, or has before.
+/// Hands what was printed to the system.
+/// @throws std::runtime_error naming the reason when that fails, or has before.
 void requireWritten(std::ostream& standard_output);
 
 }  // namespace tissue_contact

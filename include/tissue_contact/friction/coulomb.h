@@ -33,10 +33,10 @@ struct ContactAnswer {
 /// where mu_stick is mu_static, or mu_kinetic if the contact `was_sliding` (hysteresis: it re-sticks only if kinetic
 /// friction is enough to stop it). Of a sliding contact the direction is the one unknown, found by Newton's iteration;
 /// where friction is strongly coupled to the normal there can be several, and the one found first counts.
-/// @param W 3x3 symmetric positive definite local compliance, 1/kg.
-/// @param q velocity without this contact's impulse, m/s, with the gap's share gap/dt added to its normal component.
 /// Sign: r_n >= 0 pushes the tissue away from the instrument, along n. Exact up to round-off; no allocation.
 /// Anisotropic laws: see solveAnisotropicContact (friction_law.h), to which this hands over.
+/// @param W 3x3 symmetric positive definite local compliance, 1/kg.
+/// @param q velocity without this contact's impulse, m/s, with the gap's share gap/dt added to its normal component.
 ContactAnswer solveCoulombContact(const Matrix3& W, const Vector3& q, const CoulombLaw& law, bool was_sliding);
 
 }  // namespace tissue_contact

@@ -18,7 +18,7 @@
 
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/friction/coulomb.h"
-#include "tissue_contact/scene/scene.h"
+#include "tissue_contact/friction/friction_law_description.h"
 
 namespace tissue_contact {
 
@@ -37,9 +37,11 @@ class AnisotropicFriction {
   /// friction holds everything within it.
   virtual double use(const Vector2& f, bool kinetic) const = 0;
 
-  /// (r_n, r_t1, r_t2) of a contact that slides under `factor` times the kinetic friction; see solveAnisotropicContact.
-  /// @param W compliance, 1/kg, and @param q velocity, m/s, of the instrument relative to the tissue, in (n, axis 1,
-  /// axis 2); q_n < 0 and the sticking impulse outside the kinetic limit.
+  /// (r_n, r_t1, r_t2) of a contact that slides; see solveAnisotropicContact. W and q are those of the instrument
+  /// relative to the tissue, in (n, axis 1, axis 2); q_n < 0 and the sticking impulse outside the kinetic limit.
+  /// @param W compliance, 1/kg.
+  /// @param q velocity, m/s.
+  /// @param factor the kinetic friction is multiplied by this.
   virtual Vector3 slidingImpulse(const Matrix3& W, const Vector3& q, double factor) const = 0;
 };
 

@@ -8,8 +8,8 @@
 
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/instrument/collision_shape.h"
+#include "tissue_contact/instrument/instrument_description.h"
 #include "tissue_contact/instrument/robot_model.h"
-#include "tissue_contact/scene/scene.h"
 
 namespace tissue_contact {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tissue_contact/core/types.h"
-#include "tissue_contact/scene/scene.h"
+#include "tissue_contact/instrument/instrument_description.h"
 
 namespace tissue_contact {
 
@@ -54,7 +54,8 @@ class RobotModel {
 
   /// Pose of every link in the root link's frame B. `positions`: one per independent joint (rad or m).
   /// `X_BL` is resized to links().size(). No allocation once sized. Formula: X_BL = X_BP * X_PJ * motion(position).
-  /// Thread-safe. @throws std::invalid_argument when the number of positions is wrong; positions must be finite.
+  /// Thread-safe.
+  /// @throws std::invalid_argument when the number of positions is wrong; positions must be finite.
   void forwardKinematics(const VectorX& positions, std::vector<Pose>& X_BL) const;
 
  private:

@@ -16,20 +16,24 @@ double steadySeconds();
 /// Directory of a package through rospack; empty where it is not found.
 std::string packagePath(const std::string& package);
 
+/// A parameter that is a number; `otherwise` where it is not set.
+/// @throws std::invalid_argument when it is something else.
+double numberParameter(const ros::NodeHandle& node, const std::string& name, double otherwise);
+
 /// For a running node: packages through rospack, URDF text from the parameter server, frames through tf2.
 ///
 /// URDF parameters are looked up in the private namespace first, then in the node's namespace and upwards to the global
 /// one. Frames are looked up once, when the scene is built, waiting up to the private parameter `~tf_timeout_s` (wall
 /// time; default 10 s: a robot's own start-up takes about that long).
-/// @param private_node handle of the private namespace. @param world_frame frame the poses are wanted in.
+/// @param private_node handle of the private namespace.
+/// @param world_frame frame the poses are wanted in.
 /// @throws std::invalid_argument when ~tf_timeout_s is not a number >= 0; the members throw it, naming what they tried.
 SceneEnvironment nodeEnvironment(const ros::NodeHandle& private_node, const std::string& world_frame);
 
 /// For offline replay: packages through rospack, URDF text from a file, frames from the bag's /tf_static and /tf, each
 /// at the earliest moment it is known. Needs no roscore.
-/// @param bag_file bag to take frames from, opened when the first frame is wanted. @param urdf_file text to use for
-/// every
-///   URDF parameter; empty: a scene that wants one is refused.
+/// @param bag_file bag to take frames from, opened when the first frame is wanted.
+/// @param urdf_file text to use for every URDF parameter; empty: a scene that wants one is refused.
 SceneEnvironment bagEnvironment(const std::string& bag_file, const std::string& urdf_file,
                                 const std::string& world_frame);
 

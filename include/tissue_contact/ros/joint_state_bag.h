@@ -22,8 +22,8 @@ class BagReader;
 /// or a position that makes no sense is the player's to refuse.
 class JointStateBag {
  public:
-  /// @param file of format 2.0, compressed or not. @param topics as JointStatePlayer::topics(). A relative name means
-  ///   the same as in a node without a namespace.
+  /// @param file of format 2.0, compressed or not.
+  /// @param topics as JointStatePlayer::topics(). A relative name means the same as in a node without a namespace.
   /// @throws std::runtime_error when the bag cannot be read, has a message on none of the topics, or has on one of them
   ///   what is no sensor_msgs/JointState.
   JointStateBag(const std::string& file, const std::vector<std::string>& topics);

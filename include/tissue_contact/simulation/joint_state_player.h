@@ -67,26 +67,26 @@ struct PlayedSample {
 /// heard stay at the scene's initial position. The first moment of a run places instruments without any step.
 ///
 /// Waiting. A moment waits until every other topic has delivered its stamp or a later one, so that what arrives first
-/// does not matter. A topic is waited for only while its newest stamp is less than max_gap_s behind the newest of all (if
-/// it was never heard: that behind the first of all): beyond that it is missing or stuck. Under kNewestState the
+/// does not matter. A topic is waited for only while its newest stamp is less than max_gap_s behind the newest of all
+/// (if it was never heard: that behind the first of all): beyond that it is missing or stuck. Under kNewestState the
 /// bound is a quarter of max_lag_s (kWaitShare) or stopWaiting(), and topics that only update are not waited for.
 ///
 /// Time. A stamp before its topic's last by at most max_gap_s is late: refused, nothing else changes. Farther back is a
-/// loop, once the topic's next two go on from there (TopicClock has the rules); till then it waits. The first moment of a
-/// loop resets the scene. So does any stamp that goes back after restart(). A topic first heard joins the newest
+/// loop, once the topic's next two go on from there (TopicClock has the rules); till then it waits. The first moment of
+/// a loop resets the scene. So does any stamp that goes back after restart(). A topic first heard joins the newest
 /// loop; so does one that fits it within max_gap_s after another topic has begun it. Stamps of a second clock on a
-/// topic are refused while the first goes on. One far in the future is believed; if the topic goes on where it was, so does
-/// the simulation, without a reset. A looped recording shorter than max_gap_s needs restart(); without it passes are
-/// refused as late until their stamps have gone through max_gap_s, and the next pass is a loop.
+/// topic are refused while the first goes on. One far in the future is believed; if the topic goes on where it was, so
+/// does the simulation, without a reset. A looped recording shorter than max_gap_s needs restart(); without it passes
+/// are refused as late until their stamps have gone through max_gap_s, and the next pass is a loop.
 ///
-/// An interval shorter than 100 us (kShortest_s), or than a tenth of max_step_s (kShortestShare), is jitter of stamps or
-/// another topic's clock, and no time in which to move a tool: the tissues stay, the moment's wrenches are those of the step before, and its time and motion
-/// are part of the next interval.
+/// An interval shorter than 100 us (kShortest_s), or than a tenth of max_step_s (kShortestShare), is jitter of stamps
+/// or another topic's clock, and no time in which to move a tool: the tissues stay, the moment's wrenches are those of
+/// the step before, and its time and motion are part of the next interval.
 ///
 /// Counts. pushed = accepted + merged + refused (count() of the other verdicts) + waiting(), at any time. Accepted are
 /// the samples of moments that were played, and those of update-only topics up to them. Merged are those that were
-/// passed over: under kNewestState older moments, which only shape the motion by their last positions; and those
-/// of an interrupted advance.
+/// passed over: under kNewestState older moments, which only shape the motion by their last positions; and those of an
+/// interrupted advance.
 ///
 /// Memory. Played or refused samples are forgotten; waiting ones span at most max_gap_s of message time per loop and
 /// are at most kMaxWaiting (of update-only topics: each), provided that playNext() is called until it returns nothing
@@ -103,7 +103,8 @@ class JointStatePlayer {
   /// Samples that may wait for another topic: 20 s of one 500 Hz topic. Beyond it nothing waits.
   static constexpr std::size_t kMaxWaiting = 10000;
 
-  /// @param simulator must outlive the player. @throws std::invalid_argument when no instrument has a topic.
+  /// @param simulator must outlive the player.
+  /// @throws std::invalid_argument when no instrument has a topic.
   explicit JointStatePlayer(Simulator& simulator);
 
   /// Distinct joint-state topics of the scene, in order of first mention. Indices are the `topic` of push().
@@ -111,7 +112,8 @@ class JointStatePlayer {
   /// Whether the topic's stamps are moments of some instrument; if not, it only updates joints.
   bool triggers(int topic) const { return topic_states_.at(static_cast<std::size_t>(topic)).triggers; }
 
-  /// kEveryState (at first) or kNewestState; at any time. @throws std::invalid_argument for kAuto.
+  /// kEveryState (at first) or kNewestState; at any time.
+  /// @throws std::invalid_argument for kAuto.
   void setPolicy(StatePolicy policy);
   StatePolicy policy() const { return policy_; }
 

@@ -9,24 +9,28 @@
 #include <string>
 #include <vector>
 
-#include "tissue_contact/contact/contact.h"
 #include "tissue_contact/contact/contact_detector.h"
 #include "tissue_contact/core/types.h"
-#include "tissue_contact/friction/coulomb.h"
 #include "tissue_contact/instrument/instrument.h"
-#include "tissue_contact/scene/scene.h"
-#include "tissue_contact/simulation/build_scene.h"
-#include "tissue_contact/simulation/load_watch.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
+#include "tissue_contact/simulation/scene.h"
+#include "tissue_contact/simulation/scene_environment.h"
+#include "tissue_contact/simulation/solved_contact.h"
 #include "tissue_contact/solver/contact_solver.h"
 #include "tissue_contact/tissue/tissue.h"
 
 namespace tissue_contact {
 
-/// A contact with the answer of the last step.
-struct SolvedContact {
-  Contact contact;  ///< as detected at the start of the step, but p_WC moved along to its end
-  ContactState state = ContactState::kOpen;
-  Vector3 force_on_tissue_n = Vector3::Zero();  ///< world frame, N; the instrument feels the opposite
+/// What an instrument does to a tissue that no tissue bears (src/simulation/load_watch.h), at the end of an interval. The
+/// forces are then not to be trusted.
+struct ImplausibleLoad {
+  bool found = false;
+  int tissue = -1;
+  int instrument = -1;            ///< -1: another tissue
+  Vector3 p_W = Vector3::Zero();  ///< where it is worst, m
+  int inverted_elements = 0;      ///< at nodes that carry contact forces
+  double pressure_pa = 0.0;       ///< largest mean contact pressure of an instrument on a tissue
+  double modulus_pa = 0.0;        ///< Young's modulus it is compared with: the largest of that tissue
 };
 
 /// How the last step went.
@@ -50,8 +54,8 @@ struct StepReport {
 
 /// Bounds on the work of one advance, for a caller that has to keep up with time.
 struct AdvanceLimits {
-  /// At most so many implicit steps, which are then longer than scene.step.max_step_s and may carry an instrument through
-  /// something thin; <= 0: as many as the interval and the motion ask for.
+  /// At most so many implicit steps, which are then longer than scene.step.max_step_s and may carry an instrument
+  /// through something thin; <= 0: as many as the interval and the motion ask for.
   int most_steps = 0;
   /// Asked between two steps; true ends the advance there, with the instruments as far as they have come. Null: never.
   std::function<bool()> interrupted;
@@ -61,7 +65,8 @@ struct AdvanceLimits {
 
 class Simulator {
  public:
-  /// Builds every tissue and instrument. @throws std::invalid_argument "<file>:<line>: <key path>: <what is wrong>".
+  /// Builds every tissue and instrument.
+  /// @throws std::invalid_argument "<file>:<line>: <key path>: <what is wrong>".
   Simulator(const Scene& scene, const SceneEnvironment& environment);
   ~Simulator();
   Simulator(Simulator&&) noexcept;
@@ -84,14 +89,16 @@ class Simulator {
   /// Advances by `duration_s` (> 0) while the joints move linearly to `joint_positions` (one vector per instrument).
   /// Cuts the interval into equal implicit steps no longer than scene.step.max_step_s, and shorter where an instrument
   /// moves so far that it could pass through tissue. Without limits the result depends on the arguments alone.
-  /// @throws std::invalid_argument when duration or positions are not finite or of the wrong size; nothing has moved
-  /// then.
+  /// @throws std::invalid_argument when duration or positions are not finite or of the wrong size, or the duration is
+  ///   more than a billion of the longest steps; nothing has moved then.
   void advance(double duration_s, const std::vector<VectorX>& joint_positions, const AdvanceLimits& limits = {});
 
-  /// From now on solvers stop iterating once the environment's clock shows `clock_s` and report StopReason::kTimeBudget,
-  /// after one iteration at least; infinity, as at the start: never. The answer depends on the machine then. Methods
-  /// without a time budget take no notice. @param prompt_s the same once ten iterations are done: an answer that is good
-  /// enough then rather than a better one late. @throws std::invalid_argument when there is no clock, or for NaN.
+  /// From now on solvers stop iterating once the environment's clock shows `clock_s` and report
+  /// StopReason::kTimeBudget, after one iteration at least; infinity, as at the start: never. The answer depends on the
+  /// machine then. Methods without a time budget take no notice.
+  /// @param prompt_s the same once ten iterations are done: an answer that is good enough then rather than a better one
+  ///   late.
+  /// @throws std::invalid_argument when there is no clock, or for NaN.
   void setSolverDeadline(double clock_s, double prompt_s = std::numeric_limits<double>::infinity());
 
   /// What the tissues exert on the instrument: mean over the last implicit step, at the origin of the tip link and in
@@ -102,14 +109,15 @@ class Simulator {
   const std::vector<Pose>& linkPoses(int instrument) const;  ///< X_WL of every link
   /// See ContactDetector::actingSurface.
   const TriangleMesh* actingSurface(int instrument, int contact_link, int shape) const;
-  const NodalVectors& positions(int tissue) const;   ///< m, world frame
-  const NodalVectors& velocities(int tissue) const;  ///< m/s, world frame
-  const std::vector<SolvedContact>& contacts() const;
+  const NodalVectors& positions(int tissue) const;     ///< m, world frame
+  const NodalVectors& velocities(int tissue) const;    ///< m/s, world frame
+  const std::vector<SolvedContact>& contacts() const;  ///< of the last step, sorted by key; those of lastProblem()
   const StepReport& report() const;
   long stepCount() const;  ///< implicit steps since the last reset
 
-  /// Lowers `closest` to where an instrument is nearest to a tissue's surface now, if that is nearer than what it holds;
-  /// for a run in which nothing touches. Costs nothing unless called; see ContactDetector::lowerClosestApproach().
+  /// Lowers `closest` to where an instrument is nearest to a tissue's surface now, if that is nearer than what it
+  /// holds; for a run in which nothing touches. Costs nothing unless called; see
+  /// ContactDetector::lowerClosestApproach().
   void lowerClosestApproach(Approach& closest);
 
   /// The contact problem of the last step and its answer, e.g. for writeContactProblem().
@@ -119,9 +127,6 @@ class Simulator {
   /// Called after every implicit step (null: nobody), when the accessors tell of that step.
   void setStepObserver(std::function<void()> observer);
 
-  /// Bytes held by the solver.
-  ContactSolver::Memory solverMemory() const;
-
  private:
   void requireJointPositions(int instrument, const VectorX& joint_positions) const;
 
@@ -129,5 +134,8 @@ class Simulator {
   static std::unique_ptr<Implementation> build(const Scene& scene, const SceneEnvironment& environment);
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// A sentence for a log about the implausible load of the last advance: what, where and what to do.
+std::string implausibleLoadText(const Simulator& simulator);
 
 }  // namespace tissue_contact

@@ -22,15 +22,15 @@ enum class ClockRuling {
 ///
 /// Forwards. A pause may last as long as it likes, so a stamp that lies more than max_gap_s ahead is believed. If the
 /// clock of before then goes on all the same, by a stamp later than its last and nearer to it than to the one jumped
-/// to, before the new clock has gone on by max_gap_s, that was an outlier or another publisher's: the clock of before is
-/// followed again (kResumes), and the topic no longer trusted.
+/// to, before the new clock has gone on by max_gap_s, that was an outlier or another publisher's: the clock of before
+/// is followed again (kResumes), and the topic no longer trusted.
 ///
-/// Backwards. A stamp more than max_gap_s back is held. It is a loop (kLoops) once kConfirming stamps in a row, this one
-/// among them, have gone on from there and none from the clock that is followed; restart() makes it one at once. If
+/// Backwards. A stamp more than max_gap_s back is held. It is a loop (kLoops) once kConfirming stamps in a row, this
+/// one among them, have gone on from there and none from the clock that is followed; restart() makes it one at once. If
 /// the clock that is followed goes on, the held ones were strays and the topic is no longer trusted.
 ///
-/// Without trust every jump is a stray, until those in a row have gone on for more than max_gap_s without a stamp of the
-/// clock that is followed: then that one has ended. Trust comes back after kHealing gaps of time without a stray.
+/// Without trust every jump is a stray, until those in a row have gone on for more than max_gap_s without a stamp of
+/// the clock that is followed: then that one has ended. Trust comes back after kHealing gaps of time without a stray.
 class TopicClock {
  public:
   static constexpr int kConfirming = 3;  ///< two publishers take turns; one that loops does not
@@ -57,8 +57,9 @@ class TopicClock {
   /// A stamp belongs to the loop that another topic has begun.
   void join(std::int64_t stamp_ns);
 
-  /// The source of time has restarted: the next stamp not later than the last is a loop, forgotten once stamps have gone
-  /// on by max_gap_s. @return whether the stamps that are held, if any, are that loop.
+  /// The source of time has restarted: the next stamp not later than the last is a loop, forgotten once stamps have
+  /// gone on by max_gap_s.
+  /// @return whether the stamps that are held, if any, are that loop.
   bool restart();
 
  private:

@@ -14,9 +14,9 @@
 
 namespace tissue_contact {
 
-/// Linear system of one tissue, A = diag(mass) + stiffness_scale * K + damping_scale * D. K is not copied, so a change of dt costs nothing.
-/// For an implicit Euler step with Rayleigh damping D = alpha M + beta K: mass_i = (1 + alpha dt) m_i,
-/// stiffness_scale = dt (dt + beta), b = M v0 + dt f(x0).
+/// Linear system of one tissue, A = diag(mass) + stiffness_scale * K + damping_scale * D. K is not copied, so a change
+/// of dt costs nothing. For an implicit Euler step with Rayleigh damping D = alpha M + beta K:
+/// mass_i = (1 + alpha dt) m_i, stiffness_scale = dt (dt + beta), b = M v0 + dt f(x0).
 struct BodySystem {
   const BlockMatrix* K = nullptr;  ///< N/m
   const BlockMatrix* D = nullptr;  ///< N s/m, added as dt * D; null: damping is all in stiffness_scale and mass
@@ -44,9 +44,9 @@ struct ContactRow {
   Matrix3 R_WC = Matrix3::Identity();  ///< columns (n, t1, t2), n from the instrument into the tissue
   double gap_m = 0.0;                  ///< at the start of the step
   double required_u_n = 0.0;           ///< u_n must be at least this, m/s: -gap/dt, limited when penetrating deeply
-  Vector3 u_tool =
-      Vector3::Zero();  ///< velocity of the instrument's material point, contact frame, m/s; tangentially with what
-                        ///< the simulation lets the contact do besides (a landing, a slip taken back)
+  /// Velocity of the instrument's material point, contact frame, m/s; tangentially with what the simulation lets the
+  /// contact do besides (a landing, a slip taken back).
+  Vector3 u_tool = Vector3::Zero();
   CoulombLaw law;
   bool was_sliding = false;  ///< it was kinetic at the end of the previous step
 };
@@ -64,14 +64,29 @@ struct ContactSolution {
   std::vector<ContactState> states;  ///< per contact
 };
 
-/// Relative velocity u = J v - u_tool of a contact in its frame, m/s.
-inline Vector3 relativeVelocity(const ContactRow& row, const std::vector<NodalVectors>& v) {
+/// Adds J' of one contact times an impulse.
+/// @param impulse_W in world axes, N s.
+/// @param nodal per body, N s.
+inline void addImpulse(const ContactRow& row, const Vector3& impulse_W, std::vector<NodalVectors>& nodal) {
+  for (int a = 0; a < row.node_count; ++a) {
+    const RowNode& at = row.nodes[a];
+    nodal[at.body].col(at.node) += at.weight * impulse_W;
+  }
+}
+
+/// Velocity of the tissue at a contact, world axes, m/s.
+inline Vector3 tissueVelocity(const ContactRow& row, const std::vector<NodalVectors>& v) {
   Vector3 tissue = Vector3::Zero();
   for (int a = 0; a < row.node_count; ++a) {
     const RowNode& at = row.nodes[a];
     tissue += at.weight * v[at.body].col(at.node);
   }
-  return row.R_WC.transpose() * tissue - row.u_tool;
+  return tissue;
+}
+
+/// Relative velocity u = J v - u_tool of a contact in its frame, m/s.
+inline Vector3 relativeVelocity(const ContactRow& row, const std::vector<NodalVectors>& v) {
+  return row.R_WC.transpose() * tissueVelocity(row, v) - row.u_tool;
 }
 
 }  // namespace tissue_contact

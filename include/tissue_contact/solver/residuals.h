@@ -8,8 +8,8 @@ namespace tissue_contact {
 
 /// Worst values over all contacts of one step.
 struct Residuals {
-  /// |A v - b - J'lambda| / |J'lambda|, dimensionless; without contact over the load and the tissues' weight of one step,
-  /// so that 1 is an unbalanced force as large as these.
+  /// |A v - b - J'lambda| / |J'lambda|, dimensionless; without contact over the load and the tissues' weight of one
+  /// step, so that 1 is an unbalanced force as large as these.
   double momentum = 0.0;
   double momentum_defect_n_s = 0.0;  ///< |A v - b - J'lambda|, N s
   double penetration_m = 0.0;        ///< how deep the linearised gap at the end of the step is below 0, m
@@ -20,11 +20,11 @@ struct Residuals {
   double kinetic_angle_rad = 0.0;    ///< between friction force and the opposite of sliding, over sliding contacts, rad
 };
 
-/// |b| over all bodies that are awake, and the momentum of their nodes at a nanometre per second, N s. The latter is beyond
-/// measure, but keeps the round-off of a tissue at rest from being solved to the tolerance.
+/// |b| over all bodies that are awake, and the momentum of their nodes at a nanometre per second, N s. The latter is
+/// beyond measure, but keeps the round-off of a tissue at rest from being solved to the tolerance.
 double loadScale(const ContactProblem& problem);
 
-/// Evaluates the answer. `scratch` holds one nodal vector per body (overwritten; sized by the caller).
+/// @param scratch one nodal vector per body; overwritten, allocates only where the sizes change.
 Residuals computeResiduals(const ContactProblem& problem, const ContactSolution& solution,
                            std::vector<NodalVectors>& scratch);
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tissue_contact/scene/scene.h"
+#include "tissue_contact/tissue/material_description.h"
 
 namespace tissue_contact {
 

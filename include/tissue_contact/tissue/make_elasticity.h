@@ -18,8 +18,10 @@ constexpr double kAveragedPoissonsRatio = 0.3;
 /// Whether volume changes of these materials are averaged over patches: what they ask for, or what kAuto chooses.
 bool averagesDilatation(const ElementMaterials& materials);
 
-/// @param rest 3 x n, m. @param materials all of the model and dilatation of the first. @param patch_of of each
-///   tetrahedron, for materials that average their dilatation (see MeanDilatation); not looked at for others.
+/// @param rest 3 x n, m.
+/// @param materials all of the model and dilatation of the first.
+/// @param patch_of of each tetrahedron, for materials that average their dilatation (see MeanDilatation); not used
+///   for others.
 /// @throws std::invalid_argument for a material out of range, a membrane (see membrane.h), which a volume cannot be, or
 ///   patches for a model without them.
 std::unique_ptr<const Elasticity> makeVolumeElasticity(const NodalVectors& rest,

@@ -31,7 +31,9 @@ class PlateBending;
 /// Model: const after construction. Thread-safe for different states.
 class Membrane : public Elasticity {
  public:
-  /// @param rest 3 x n, m. @param triangles as checkSheetMesh accepts them. @param thickness_m > 0.
+  /// @param rest 3 x n, m.
+  /// @param triangles as checkSheetMesh accepts them.
+  /// @param thickness_m > 0.
   /// @throws std::invalid_argument for a thickness or material out of range.
   Membrane(const NodalVectors& rest, const std::vector<Triangle>& triangles, const std::vector<bool>& fixed,
            double thickness_m, const ElementMaterials& materials);

@@ -31,7 +31,8 @@ struct TetElements;
 /// Model: const after construction. Thread-safe for different states.
 class TetElasticity : public Elasticity {
  public:
-  /// @param rest 3 x n, m. @throws std::invalid_argument for a material out of range.
+  /// @param rest 3 x n, m.
+  /// @throws std::invalid_argument for a material out of range.
   TetElasticity(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
                 const ElementMaterials& materials);
   ~TetElasticity() override;
@@ -69,7 +70,6 @@ class TetElasticity : public Elasticity {
  private:
   void evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, RotationState& state,
                 NodalVectors& forces) const;
-  template <bool kDamps>
   static void addStiffness(const TetElement& element, const Quaternion& rotation, double sign, State& state);
   void refreshStiffness(std::size_t batch, RotationState& state) const;
   void adaptRotations(const NodalVectors& x, RotationState& state) const;

@@ -9,13 +9,18 @@
 #include <vector>
 
 #include "tissue_contact/core/types.h"
-#include "tissue_contact/scene/scene.h"
 #include "tissue_contact/tissue/elasticity.h"
+#include "tissue_contact/tissue/material_description.h"
+#include "tissue_contact/tissue/tissue_description.h"
 
 namespace tissue_contact {
 
 /// Told the size of a mesh; may throw to refuse it.
 using MeshSizeCheck = std::function<void(std::size_t nodes, std::size_t elements)>;
+
+/// What a Tissue would refuse before it looks at its mesh. @throws EntryError of an entry of the tissue in a scene: a model
+/// that does not suit the geometry or differs between regions, a material or damping out of range.
+void checkTissue(const TissueDescription& description);
 
 struct PlacedMesh;
 

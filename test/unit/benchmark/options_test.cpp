@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "benchmark/benchmark.h"
+#include "support/comma_locale.h"
 
 namespace tissue_contact {
 namespace {
@@ -30,13 +31,19 @@ TEST(BenchmarkOptionsTest, OwnScene) {
   EXPECT_EQ(own.window.duration_s, 2.5);
 }
 
+TEST(BenchmarkOptionsTest, NumbersAreTheSameInAnyLocale) {
+  const CommaLocale locale;
+  if (!locale.isOn()) GTEST_SKIP() << "no locale with a decimal comma, and none can be made";
+  EXPECT_EQ(parseBenchmarkOptions({"--scene", "s", "--bag", "b", "--from", "0.5"}).own.window.from_s, 0.5);
+  EXPECT_THROW(parseBenchmarkOptions({"--scene", "s", "--bag", "b", "--from", "0,5"}), std::invalid_argument);
+}
+
 TEST(BenchmarkOptionsTest, RefusesWhatMakesNoSense) {
   using Arguments = std::vector<std::string>;
   for (const Arguments& wrong :
-       {Arguments{"--oops"}, Arguments{"--out"}, Arguments{"--out="}, Arguments{"--quick=1"},
-        Arguments{"--quick", "--quick"}, Arguments{"--only", "all"}, Arguments{"--only", "robot"},
-        Arguments{"--scene", "s"}, Arguments{"--bag", "b"}, Arguments{"--from", "1"},
-        Arguments{"--scene", "s", "--bag", "b", "--quick"}, Arguments{"--scene", "s", "--bag", "b", "--duration", "0"},
+       {Arguments{"--oops"}, Arguments{"--only", "all"}, Arguments{"--only", "robot"}, Arguments{"--scene", "s"},
+        Arguments{"--bag", "b"}, Arguments{"--from", "1"}, Arguments{"--scene", "s", "--bag", "b", "--quick"},
+        Arguments{"--scene", "s", "--bag", "b", "--duration", "0"},
         Arguments{"--scene", "s", "--bag", "b", "--duration", "nan"},
         Arguments{"--scene", "s", "--bag", "b", "--from", "-1"},
         Arguments{"--scene", "s", "--bag", "b", "--from", "1s"}}) {

@@ -1,4 +1,4 @@
-// The detector over whole instruments and tissues; tree refit; contact frames; shape sizes.
+// The detector over whole instruments and tissues; contact frames; shape sizes.
 #include "tissue_contact/contact/contact_detector.h"
 
 #include <gtest/gtest.h>
@@ -14,24 +14,10 @@ namespace {
 
 using contact_test::at;
 using contact_test::boxSurface;
+using contact_test::makeInstrument;
 using contact_test::Random;
+using contact_test::sameBits;
 using contact_test::Surface;
-
-RobotModel::Link makeLink(const std::string& name, int parent) {
-  RobotModel::Link link;
-  link.name = name;
-  link.parent = parent;
-  return link;
-}
-
-/// A rigid instrument: root, and a tip link with the given shapes.
-Instrument makeInstrument(const std::string& name, const std::vector<ShapeDescription>& shapes) {
-  InstrumentDescription description;
-  description.name = name;
-  description.tip_link = "tip";
-  description.contact_links.push_back({"tip", shapes});
-  return Instrument(description, RobotModel(name, {makeLink("root", -1), makeLink("tip", 0)}, {}), Pose::Identity());
-}
 
 ShapeDescription sphere(double radius, const Vector3& p) { return {SphereGeometry{radius}, at(p)}; }
 
@@ -65,16 +51,6 @@ TwoByTwo makeScene() {
   return scene;
 }
 
-bool sameBits(const std::vector<Contact>& a, const std::vector<Contact>& b) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (!(a[i].key == b[i].key) || a[i].nodes != b[i].nodes || a[i].weights != b[i].weights) return false;
-    if (a[i].gap_m != b[i].gap_m || std::signbit(a[i].gap_m) != std::signbit(b[i].gap_m)) return false;
-    if (a[i].p_WC != b[i].p_WC || a[i].R_WC != b[i].R_WC) return false;
-  }
-  return true;
-}
-
 /// Every triangle of every tissue, by brute force.
 double slowApproach(const TwoByTwo& scene, int instrument) {
   double nearest = std::numeric_limits<double>::infinity();
@@ -95,7 +71,7 @@ double slowApproach(const TwoByTwo& scene, int instrument) {
 
 TEST(ContactDetector, ClosestApproachIsExactAtAnyDistance) {
   TwoByTwo scene = makeScene();
-  ContactDetector detector(scene.instruments, scene.surfaces, scene.positions);
+  ContactDetector detector(scene.instruments, shareSurfaces(scene.surfaces, scene.positions));
   Random random(7);
   for (int trial = 0; trial < 4; ++trial) {
     for (std::vector<Pose>& poses : scene.X_WL) {
@@ -113,7 +89,7 @@ TEST(ContactDetector, ClosestApproachIsExactAtAnyDistance) {
 
 TEST(ContactDetector, ClosestApproachOnlyFallsAndNamesThePair) {
   TwoByTwo scene = makeScene();
-  ContactDetector detector(scene.instruments, scene.surfaces, scene.positions);
+  ContactDetector detector(scene.instruments, shareSurfaces(scene.surfaces, scene.positions));
   for (std::vector<Pose>& poses : scene.X_WL) poses[1] = at({0.0, 0.0, 0.1});
   scene.X_WL[1][1] = at({0.0, 0.0, 0.03});  // the box's lower face is 5 mm below, the tissues' upper face at 20 mm
   Approach closest;
@@ -135,7 +111,7 @@ TEST(ContactDetector, ClosestApproachCountsTheThicknessOfASheet) {
   TwoByTwo scene = makeScene();
   for (TissueSurface& surface : scene.surfaces) surface.thickness_m = 0.002;
   for (std::vector<Pose>& poses : scene.X_WL) poses[1] = at({0.0, 0.0, 0.03});
-  ContactDetector detector(scene.instruments, scene.surfaces, scene.positions);
+  ContactDetector detector(scene.instruments, shareSurfaces(scene.surfaces, scene.positions));
   Approach closest;
   detector.lowerClosestApproach(scene.positions, scene.X_WL, closest);
   EXPECT_NEAR(closest.distance_m, 0.004, 1e-12);
@@ -143,7 +119,7 @@ TEST(ContactDetector, ClosestApproachCountsTheThicknessOfASheet) {
 
 TEST(ContactDetector, NamesTissueInstrumentLinkAndShape) {
   TwoByTwo scene = makeScene();
-  ContactDetector detector(scene.instruments, scene.surfaces, scene.positions);
+  ContactDetector detector(scene.instruments, shareSurfaces(scene.surfaces, scene.positions));
   std::vector<Contact> contacts;
   detector.detect(scene.positions, scene.X_WL, 1e-3, contacts);
   std::array<std::array<int, 2>, 2> count{};
@@ -155,9 +131,7 @@ TEST(ContactDetector, NamesTissueInstrumentLinkAndShape) {
     EXPECT_EQ(c.key.link, 0);
     EXPECT_EQ(c.key.shape, c.key.tissue);  // the sphere is over the first block, the box over the second
     ++count[c.key.tissue][c.key.instrument];
-    Vector3 p = Vector3::Zero();
-    for (int k = 0; k < 3; ++k) p += c.weights[k] * scene.positions[c.key.tissue].col(c.nodes[k]);
-    EXPECT_EQ(p, c.p_WC);
+    EXPECT_EQ(pointOf(scene.positions[c.key.tissue], c.nodes, c.weights), c.p_WC);
     EXPECT_NEAR(c.R_WC.determinant(), 1.0, 1e-12);
     const bool over_own = std::abs(c.p_WC.y() - (c.key.instrument == 0 ? 0.0103 : 0.0309)) < 0.006;
     EXPECT_TRUE(over_own);
@@ -181,7 +155,7 @@ TEST(ContactDetector, LinkAndShapePosesPlaceTheShape) {
   instruments.push_back(makeInstrument("probe", {{CylinderGeometry{0.003, 0.02}, X_LS}}));
   // The cylinder's flat end on the block: its middle 10 mm above the surface, axis up.
   const Pose X_WS = at({0.0211, 0.0193, 0.02 + 0.01 + 1e-4});
-  ContactDetector detector(instruments, {{block.triangles, block.fixed()}}, {block.nodes});
+  ContactDetector detector(instruments, shareSurfaces({{block.triangles, block.fixed()}}, {block.nodes}));
   std::vector<Contact> contacts;
   detector.detect({block.nodes}, {{Pose::Identity(), X_WS * X_LS.inverse()}}, 5e-4, contacts);
   ASSERT_FALSE(contacts.empty());
@@ -193,7 +167,7 @@ TEST(ContactDetector, LinkAndShapePosesPlaceTheShape) {
 
 TEST(ContactDetector, RepeatsToTheLastBitWhateverItSawBefore) {
   TwoByTwo scene = makeScene();
-  ContactDetector detector(scene.instruments, scene.surfaces, scene.positions);
+  ContactDetector detector(scene.instruments, shareSurfaces(scene.surfaces, scene.positions));
   Random random(41);
   std::vector<Contact> contacts;
   std::vector<Contact> again;
@@ -208,7 +182,7 @@ TEST(ContactDetector, RepeatsToTheLastBitWhateverItSawBefore) {
     detector.detect(scene.positions, scene.X_WL, 1e-3, again);
     EXPECT_TRUE(sameBits(contacts, again));
     // Built for these very positions, the tree has another structure; the contacts must not know.
-    ContactDetector(scene.instruments, scene.surfaces, scene.positions)
+    ContactDetector(scene.instruments, shareSurfaces(scene.surfaces, scene.positions))
         .detect(scene.positions, scene.X_WL, 1e-3, fresh);
     EXPECT_TRUE(sameBits(contacts, fresh));
     total += contacts.size();
@@ -218,7 +192,7 @@ TEST(ContactDetector, RepeatsToTheLastBitWhateverItSawBefore) {
 
 TEST(ContactDetector, RefusesWhatDoesNotFit) {
   TwoByTwo scene = makeScene();
-  const auto build = [&] { return ContactDetector(scene.instruments, scene.surfaces, scene.positions); };
+  const auto build = [&] { return ContactDetector(scene.instruments, shareSurfaces(scene.surfaces, scene.positions)); };
   {
     ContactDetector detector = build();
     std::vector<Contact> contacts;
@@ -249,38 +223,14 @@ TEST(ContactDetector, RefusesWhatDoesNotFit) {
 
 TEST(ContactDetector, NoTissueNoInstrumentNoContact) {
   std::vector<Contact> contacts(3);
-  ContactDetector nothing({}, {}, {});
+  ContactDetector nothing({}, shareSurfaces({}, {}));
   nothing.detect({}, {}, 1e-3, contacts);
   EXPECT_TRUE(contacts.empty());
   TwoByTwo scene = makeScene();
   for (auto& poses : scene.X_WL) poses[1] = at({0.0, 0.0, 1.0});
-  ContactDetector far(scene.instruments, scene.surfaces, scene.positions);
+  ContactDetector far(scene.instruments, shareSurfaces(scene.surfaces, scene.positions));
   far.detect(scene.positions, scene.X_WL, 1e-3, contacts);
   EXPECT_TRUE(contacts.empty());
-}
-
-TEST(TriangleTree, FindsExactlyTheOverlappingBoxesAfterRefit) {
-  Surface block = boxSurface({0.1, 0.1, 0.03}, {12, 9, 4});
-  TriangleTree tree(block.nodes, block.triangles);
-  Random random(42);
-  std::size_t found_total = 0;
-  for (int i = 0; i < 50; ++i) {
-    for (Eigen::Index n = 0; n < block.nodes.cols(); ++n) block.nodes.col(n) += random.vector(2e-3);
-    tree.refit(block.nodes);
-    const Vector3 low = random.vector(0.1);
-    const Eigen::AlignedBox3d box(low, Vector3(low + Vector3::Constant(0.06)));
-    std::vector<int> expected;
-    for (std::size_t t = 0; t < block.triangles.size(); ++t) {
-      Eigen::AlignedBox3d around;
-      for (const int node : block.triangles[t]) around.extend(Vector3(block.nodes.col(node)));
-      if (around.intersects(box)) expected.push_back(static_cast<int>(t));
-    }
-    std::vector<int> found;
-    tree.overlapping(box, found);
-    EXPECT_EQ(found, expected);
-    found_total += found.size();
-  }
-  EXPECT_GT(found_total, 500u);
 }
 
 TEST(ContactFrame, IsOrthonormalAndRightHandedForEveryNormal) {

@@ -10,10 +10,11 @@
 #include <vector>
 
 #include "contact/narrow_phase.h"
-#include "contact/shape_distance.h"
-#include "contact/triangle_tree.h"
+#include "contact/shape/field_distance.h"
+#include "mesh/surface/moving_surface.h"
+#include "tissue_contact/contact/contact_detector.h"
 #include "tissue_contact/core/types.h"
-#include "tissue_contact/instrument/collision_shape.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
 
 namespace tissue_contact::contact_test {
 
@@ -129,6 +130,11 @@ inline TriangleMesh sphereMesh(double radius, int levels) {
   return mesh;
 }
 
+inline std::unique_ptr<ShapeDistance> makeMeshDistance(const TriangleMesh& mesh) {
+  MeshPreparation silent;
+  return std::make_unique<FieldDistance>(prepareMeshField(mesh, "given", silent));
+}
+
 /// Smallest value of a convex function on [0, 1] by golden section.
 inline double minimiseOnInterval(const std::function<double(double)>& f, double* where = nullptr) {
   const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
@@ -194,18 +200,42 @@ inline double bruteForceMinimum(const ShapeDistance& shape, const TrianglePoints
 
 inline std::vector<ShapeContact> findContacts(const ShapeDistance& shape, const Pose& X_WS, const Surface& surface,
                                               double margin) {
-  NarrowPhase narrow_phase(surface.triangles, surface.fixed(), static_cast<int>(surface.nodes.cols()));
+  const MovingSurface moving(0, {surface.triangles, surface.fixed()}, surface.nodes);
+  NarrowPhase narrow_phase;
   std::vector<int> all(surface.triangles.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   std::vector<ShapeContact> contacts;
-  narrow_phase.findContacts(shape, X_WS, surface.nodes, all, margin, contacts);
+  narrow_phase.findContacts(shape, X_WS, moving, all, margin, contacts);
   return contacts;
 }
 
 inline Vector3 pointOf(const ShapeContact& contact, const NodalVectors& nodes) {
-  Vector3 p = Vector3::Zero();
-  for (int i = 0; i < 3; ++i) p += contact.weights[i] * nodes.col(contact.nodes[i]);
-  return p;
+  return tissue_contact::pointOf(nodes, contact.nodes, contact.weights);
+}
+
+/// A rigid instrument: root, and a tip link with the given shapes.
+inline Instrument makeInstrument(const std::string& name, const std::vector<ShapeDescription>& shapes) {
+  RobotModel::Link root;
+  root.name = "root";
+  RobotModel::Link tip;
+  tip.name = "tip";
+  tip.parent = 0;
+  InstrumentDescription description;
+  description.name = name;
+  description.tip_link = "tip";
+  description.contact_links.push_back({"tip", shapes});
+  return Instrument(description, RobotModel(name, {root, tip}, {}), Pose::Identity());
+}
+
+inline bool sameBits(const std::vector<Contact>& a, const std::vector<Contact>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!(a[i].key == b[i].key) || a[i].nodes != b[i].nodes || a[i].weights != b[i].weights) return false;
+    if (a[i].other_nodes != b[i].other_nodes || a[i].other_weights != b[i].other_weights) return false;
+    if (a[i].gap_m != b[i].gap_m || std::signbit(a[i].gap_m) != std::signbit(b[i].gap_m)) return false;
+    if (a[i].p_WC != b[i].p_WC || a[i].R_WC != b[i].R_WC) return false;
+  }
+  return true;
 }
 
 inline Pose at(const Vector3& p) {

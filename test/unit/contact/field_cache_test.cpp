@@ -1,5 +1,5 @@
 // Prepared meshes on disk: found again by content, and nothing damaged or foreign is believed.
-#include "contact/field_cache.h"
+#include "contact/shape/field_cache.h"
 
 #include <gtest/gtest.h>
 

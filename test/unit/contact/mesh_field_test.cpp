@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "contact/field_distance.h"
-#include "contact/field_jump.h"
-#include "contact/lowest_on_triangle.h"
+#include "contact/shape/field_distance.h"
+#include "contact/shape/lowest_on_triangle.h"
 #include "contact_test_utilities.h"
 
 namespace tissue_contact {
 namespace {
 
 using contact_test::boxMesh;
+using contact_test::makeMeshDistance;
 using contact_test::Random;
 using contact_test::sphereMesh;
 

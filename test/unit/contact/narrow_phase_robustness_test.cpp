@@ -13,6 +13,7 @@ using contact_test::at;
 using contact_test::boxMesh;
 using contact_test::boxSurface;
 using contact_test::findContacts;
+using contact_test::makeMeshDistance;
 using contact_test::pointOf;
 using contact_test::Random;
 using contact_test::sphereMesh;
@@ -286,13 +287,14 @@ TEST_P(AnyShape, FixedFeaturesAreLeftOut) {
   const Surface block = boxSurface(kBlock, {10, 10, 3});
   std::vector<bool> fixed(block.nodes.cols());
   for (Eigen::Index i = 0; i < block.nodes.cols(); ++i) fixed[i] = block.nodes(0, i) < 0.051;
-  NarrowPhase narrow_phase(block.triangles, fixed, static_cast<int>(block.nodes.cols()));
+  const MovingSurface moving(0, {block.triangles, fixed}, block.nodes);
+  NarrowPhase narrow_phase;
   std::vector<int> all(block.triangles.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   int left_out = 0;
   for (const Pose& X : pressingPoses(60, 36)) {
     std::vector<ShapeContact> contacts;
-    narrow_phase.findContacts(*shape_, X, block.nodes, all, 1e-3, contacts);
+    narrow_phase.findContacts(*shape_, X, moving, all, 1e-3, contacts);
     for (const ShapeContact& c : contacts) {
       bool moves = false;
       for (int i = 0; i < 3; ++i) moves |= c.weights[i] > 0.0 && !fixed[c.nodes[i]];

@@ -13,6 +13,7 @@ using contact_test::boxMesh;
 using contact_test::boxSurface;
 using contact_test::bruteForceMinimum;
 using contact_test::findContacts;
+using contact_test::makeMeshDistance;
 using contact_test::pointOf;
 using contact_test::Random;
 using contact_test::sphereMesh;

@@ -10,6 +10,7 @@ namespace tissue_contact {
 namespace {
 
 using contact_test::bruteForceMinimum;
+using contact_test::makeMeshDistance;
 using contact_test::Random;
 
 struct NamedShape {
@@ -159,6 +160,19 @@ TEST(ShapeDistance, RefusesUnusableMeshes) {
   CollisionShape shape;
   shape.geometry = MeshGeometry{"tip.stl", Vector3::Ones()};
   EXPECT_THROW(ShapeDistances({}).make(shape), std::invalid_argument);  // never loaded
+}
+
+// At the end of a ridge many normals of one side may come before the one of the other side.
+TEST(GradientSet, KeepsTheMostDifferentHoweverManyThereAre) {
+  GradientSet gradients;
+  for (int i = 0; i < 20; ++i) gradients.add(Vector3(0.01 * std::cos(i), 0.01 * std::sin(i), 1.0).normalized());
+  gradients.add(-Vector3::UnitZ());
+  gradients.add(Vector3::UnitX());
+  EXPECT_EQ(gradients.count(), GradientSet::kMost);
+  EXPECT_LT(stationaryGradient(gradients, Matrix3::Identity()).norm(), 0.01);  // both sides are as near: no direction
+  // Without a part along y, which most of the first have: the other two must have been kept.
+  const Matrix3 along_xy = Vector3(1.0, 1.0, 0.0).asDiagonal();
+  EXPECT_LT(Vector3(along_xy * stationaryGradient(gradients, along_xy)).norm(), 1e-12);
 }
 
 TEST(ShapeDistance, WorldBoxIsTight) {

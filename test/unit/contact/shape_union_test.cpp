@@ -1,18 +1,18 @@
 // Shapes of one instrument that touch each other, as one solid: the groove between them against the closed form of a
 // rolling ball, and what a tissue surface is told there.
-#include "contact/shape_union.h"
+#include "contact/shape/shape_union.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "contact_test_utilities.h"
-#include "tissue_contact/contact/contact_detector.h"
 
 namespace tissue_contact {
 namespace {
 
 using contact_test::at;
+using contact_test::makeInstrument;
 using contact_test::Random;
 
 constexpr double kR = 1.5e-3;  // two cylinders side by side along y, like a closed pair of jaws
@@ -93,18 +93,12 @@ TEST(ShapeUnion, OpenJawsAreNotFilled) {
 /// One instrument of two spheres over one triangle.
 struct TwoSpheres {
   std::vector<Instrument> instruments;
-  std::vector<std::vector<Pose>> X_WL{{Pose::Identity()}};
+  std::vector<std::vector<Pose>> X_WL{{Pose::Identity(), Pose::Identity()}};
 
   explicit TwoSpheres(double apart) {
-    RobotModel::Link link;
-    link.name = "tip";
-    InstrumentDescription description;
-    description.name = "tool";
-    description.tip_link = "tip";
     const double x = kR + 0.5 * apart;
-    description.contact_links.push_back(
-        {"tip", {{SphereGeometry{kR}, at({-x, 0, 0})}, {SphereGeometry{kR}, at({x, 0, 0})}}});
-    instruments.emplace_back(description, RobotModel("tool", {link}, {}), Pose::Identity());
+    instruments.push_back(
+        makeInstrument("tool", {{SphereGeometry{kR}, at({-x, 0, 0})}, {SphereGeometry{kR}, at({x, 0, 0})}}));
   }
 };
 
@@ -115,7 +109,7 @@ std::vector<Contact> contactsOfTip(const TwoSpheres& tool, const Vector3& tip, i
   TissueSurface surface;
   surface.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
   surface.fixed.assign(4, false);
-  ContactDetector detector(tool.instruments, {surface}, {x});
+  ContactDetector detector(tool.instruments, shareSurfaces({surface}, {x}));
   std::vector<Contact> contacts;
   detector.detect({x}, tool.X_WL, 2e-4, contacts);
   pinched = detector.pinchedContacts();

@@ -14,25 +14,12 @@ using namespace contact_test;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kThick = 1e-3;
 
-Instrument makeInstrument(const ShapeGeometry& geometry) {
-  RobotModel::Link root, tip;
-  root.name = "root";
-  root.parent = -1;
-  tip.name = "tip";
-  tip.parent = 0;
-  InstrumentDescription description;
-  description.name = "probe";
-  description.tip_link = "tip";
-  description.contact_links.push_back({"tip", {{geometry, Pose::Identity()}}});
-  return Instrument(description, RobotModel("probe", {root, tip}, {}), Pose::Identity());
-}
-
 /// One shape over one sheet.
 class Probe {
  public:
   Probe(const ShapeGeometry& geometry, const Surface& sheet, double thickness = kThick)
-      : instruments_{makeInstrument(geometry)},
-        detector_(instruments_, {{sheet.triangles, sheet.fixed(), thickness}}, {sheet.nodes}) {}
+      : instruments_{makeInstrument("probe", {{geometry, Pose::Identity()}})},
+        detector_(instruments_, shareSurfaces({{sheet.triangles, sheet.fixed(), thickness}}, {sheet.nodes})) {}
 
   std::vector<Contact> contacts(const NodalVectors& nodes, const Pose& X_WS, double margin) {
     std::vector<Contact> result;
@@ -90,12 +77,13 @@ TEST(SheetContact, FlatShapesLieFlushOnEitherSide) {
     }
   }
   const auto mesh = makeMeshDistance(block);
-  NarrowPhase narrow_phase(sheet.triangles, sheet.fixed(), static_cast<int>(sheet.nodes.cols()), kThick);
+  const MovingSurface moving(0, {sheet.triangles, sheet.fixed(), kThick}, sheet.nodes);
+  NarrowPhase narrow_phase;
   std::vector<int> all(sheet.triangles.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   for (const double side : {1.0, -1.0}) {
     std::vector<ShapeContact> contacts;
-    narrow_phase.findContacts(*mesh, at({0.0511, 0.0483, side * (0.004 + 0.5 * kThick - 1e-4)}), sheet.nodes, all, 1e-5,
+    narrow_phase.findContacts(*mesh, at({0.0511, 0.0483, side * (0.004 + 0.5 * kThick - 1e-4)}), moving, all, 1e-5,
                               contacts);
     EXPECT_GE(contacts.size(), 4u);
     for (const ShapeContact& c : contacts) {

@@ -255,7 +255,7 @@ TEST(TissuePairDetector, FixedOnBothSidesIsLeftOut) {
 TEST(TissuePairDetector, AppendsAndSortsItsOwnPart) {
   const Surface block = boxSurface({0.1, 0.1, 0.03}, {4, 4, 1});
   const std::vector<TestTissue> tissues = {{movedBy(block, {0.0, 0.0, 0.03})}, {block}};
-  TissuePairDetector detector(kBoth, surfacesOf(tissues), positionsOf(tissues));
+  TissuePairDetector detector(kBoth, shareSurfaces(surfacesOf(tissues), positionsOf(tissues)));
   std::vector<Contact> contacts(2);
   contacts[0].key.tissue = 7;
   detector.detect(positionsOf(tissues), 5e-5, contacts);
@@ -272,7 +272,7 @@ TEST(TissuePairDetector, NoPairFarApartOrNotFiniteGivesNothing) {
   EXPECT_TRUE(pairContacts({{movedBy(block, {0.0, 0.0, 0.05})}, {block}}, kBoth, 1e-3).empty());
   EXPECT_TRUE(pairContacts({{Surface{NodalVectors(3, 0), {}}}, {block}}, {{0, 1}, {0, 0}}, 1e-3).empty());
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    TissuePairDetector detector({{0, 1}, {0, 0}}, surfacesOf(tissues), positionsOf(tissues));
+    TissuePairDetector detector({{0, 1}, {0, 0}}, shareSurfaces(surfacesOf(tissues), positionsOf(tissues)));
     std::vector<NodalVectors> x = positionsOf(tissues);
     std::vector<Contact> contacts;
     for (Eigen::Index i = 0; i < x[0].cols(); i += 3) x[0].col(i).setConstant(bad);
@@ -289,12 +289,12 @@ TEST(TissuePairDetector, RefusesWhatDoesNotFit) {
   const Surface block = boxSurface({0.1, 0.1, 0.03}, {2, 2, 1});
   const std::vector<TestTissue> good = {{block}, {block}};
   const auto build = [](const std::vector<TouchingTissues>& pairs, const std::vector<TestTissue>& tissues) {
-    return TissuePairDetector(pairs, surfacesOf(tissues), positionsOf(tissues));
+    return TissuePairDetector(pairs, shareSurfaces(surfacesOf(tissues), positionsOf(tissues)));
   };
   EXPECT_THROW(build({{0, 2}}, good), std::invalid_argument);
   EXPECT_THROW(build({{-1, 0}}, good), std::invalid_argument);
   EXPECT_THROW(build({{0, 1}, {1, 0}}, good), std::invalid_argument);
-  EXPECT_THROW(TissuePairDetector(kBoth, surfacesOf(good), {block.nodes}), std::invalid_argument);
+  EXPECT_THROW(shareSurfaces(surfacesOf(good), {block.nodes}), std::invalid_argument);
   auto bad = good;
   bad[1].surface.triangles[0] = {0, 1, 1};
   EXPECT_THROW(build(kBoth, bad), std::invalid_argument);

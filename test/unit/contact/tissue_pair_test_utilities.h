@@ -39,7 +39,7 @@ inline std::vector<Contact> pairContacts(const std::vector<TestTissue>& tissues,
                                          const std::vector<TouchingTissues>& pairs, double margin) {
   std::vector<NodalVectors> rest;
   for (const TestTissue& t : tissues) rest.push_back(t.rest.cols() > 0 ? t.rest : t.surface.nodes);
-  TissuePairDetector detector(pairs, surfacesOf(tissues), rest);
+  TissuePairDetector detector(pairs, shareSurfaces(surfacesOf(tissues), rest));
   std::vector<Contact> contacts;
   detector.detect(positionsOf(tissues), margin, contacts);
   return contacts;
@@ -100,13 +100,11 @@ inline Surface transformed(Surface surface, const Pose& X) {
 }
 
 inline Vector3 tissuePoint(const Contact& c, const NodalVectors& nodes) {
-  return c.weights[0] * nodes.col(c.nodes[0]) + c.weights[1] * nodes.col(c.nodes[1]) +
-         c.weights[2] * nodes.col(c.nodes[2]);
+  return tissue_contact::pointOf(nodes, c.nodes, c.weights);
 }
 
 inline Vector3 otherPoint(const Contact& c, const NodalVectors& nodes) {
-  return c.other_weights[0] * nodes.col(c.other_nodes[0]) + c.other_weights[1] * nodes.col(c.other_nodes[1]) +
-         c.other_weights[2] * nodes.col(c.other_nodes[2]);
+  return tissue_contact::pointOf(nodes, c.other_nodes, c.other_weights);
 }
 
 inline Vector3 normalOf(const Contact& c) { return c.R_WC.col(0); }

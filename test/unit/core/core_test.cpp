@@ -8,7 +8,8 @@
 #include "tissue_contact/core/block_matrix.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/nearest_word.h"
-#include "tissue_contact/core/printable.h"
+#include "tissue_contact/core/range.h"
+#include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 namespace {
@@ -19,19 +20,24 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 TEST(Check, RefusesNanInfinityAndValuesOutOfRange) {
   for (const double bad : {kNan, kInfinity, 0.0, -1.0}) EXPECT_THROW(requirePositive("x", bad), std::invalid_argument);
   for (const double bad : {kNan, kInfinity, -1.0}) EXPECT_THROW(requireNonNegative("x", bad), std::invalid_argument);
-  for (const double bad : {kNan, 0.0, 1.0}) EXPECT_THROW(requireInside("x", bad, 0.0, 1.0), std::invalid_argument);
   for (const double bad : {kNan, kInfinity, -kInfinity}) EXPECT_THROW(requireFinite("x", bad), std::invalid_argument);
   EXPECT_EQ(requirePositive("x", 2.0), 2.0);
   EXPECT_EQ(requireNonNegative("x", 0.0), 0.0);
-  EXPECT_EQ(requireInside("x", 0.5, 0.0, 1.0), 0.5);
 }
 
-TEST(Check, MessageNamesThingValueUnitAndRange) {
+TEST(Range, HoldsItsBoundsUnlessExcludedAndNeverNan) {
+  for (const double inside : {0.0, 0.5, 1.0}) EXPECT_TRUE((Range{0.0, 1.0}.contains(inside)));
+  for (const double bad : {kNan, kInfinity, -0.1, 1.1}) EXPECT_FALSE((Range{0.0, 1.0}.contains(bad)));
+  for (const double bad : {kNan, 0.0, 1.0}) EXPECT_FALSE((Range{0.0, 1.0, "", "", true, true}.contains(bad)));
+  EXPECT_EQ((Range{0.0, 1.0}.require("x", 0.5)), 0.5);
+}
+
+TEST(Range, MessageNamesThingValueUnitRangeAndFix) {
   try {
-    requireInside("poissons_ratio", 0.7, -1.0, 0.5, "(none)");
+    Range{-1.0, 0.5, "m", "give metres", true}.require("length_m", 0.7);
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_EQ(std::string(error.what()), "poissons_ratio is 0.69999999999999996 (none); it must be > -1 and < 0.5");
+    EXPECT_STREQ(error.what(), "length_m is 0.69999999999999996 m; it must be > -1 and <= 0.5 m; give metres");
   }
 }
 
@@ -44,6 +50,9 @@ TEST(Printable, KeepsNamesShortAndFreeOfControlCharacters) {
   EXPECT_EQ(listOf({}), "");
   EXPECT_EQ(listOf({"a", "b\t"}), "a, b?");
   EXPECT_EQ(listOf({"a", "b", "c"}, 2), "a, b, ...");
+  EXPECT_EQ(printable("wrist\xc3\xa9", 6), "wrist...") << "a cut character would spoil the whole line";
+  EXPECT_EQ(inQuotes("a\n"), "\"a?\"");
+  EXPECT_EQ(stampText(1234567890000000001), "1234567890.000000001");
 }
 
 TEST(NearestWord, HasABound) {

@@ -235,11 +235,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadLaw{"Negative",
                [](Law& l) { l.kinetic_coefficients[0] = -0.1; },
                Kind::kIsotropic,
-               {"isotropic", "kinetic[0] is -0.1", "0 to 1000000"}},
+               {"isotropic", "kinetic[0] is -0.1", ">= 0 and <= 1e+06"}},
         BadLaw{"NegativeAcross",
                [](Law& l) { l.kinetic_coefficients[1] = -0.5; },
                Kind::kOrthotropic,
-               {"kinetic[1] is -0.5", "0 to 1000000"}},
+               {"kinetic[1] is -0.5", ">= 0 and <= 1e+06"}},
         BadLaw{"NotANumber", [](Law& l) { l.static_coefficients[2] = kNan; }, Kind::kAsymmetric, {"static[2] is nan"}},
         BadLaw{
             "KineticNotANumber", [](Law& l) { l.kinetic_coefficients[1] = kNan; }, Kind::kTable, {"kinetic[1] is nan"}},
@@ -314,7 +314,7 @@ INSTANTIATE_TEST_SUITE_P(
                  l.speed_factors = {1.0, 1.1};
                },
                Kind::kTable,
-               {"speed_factors[1] is 1.1", "0 to 1"}},
+               {"speed_factors[1] is 1.1", ">= 0 and <= 1"}},
         BadLaw{"FactorNotANumber",
                [](Law& l) {
                  l.speeds_m_per_s = {0.0};

@@ -6,7 +6,8 @@
 #include <variant>
 
 #include "instrument_fixture.h"
-#include "mesh_fixture.h"
+#include "tissue_contact/instrument/instrument_description.h"
+#include "unit/mesh/mesh_fixture.h"
 
 namespace tissue_contact {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "instrument_fixture.h"
-#include "mesh_fixture.h"
+#include "unit/mesh/mesh_fixture.h"
 
 namespace tissue_contact {
 namespace {

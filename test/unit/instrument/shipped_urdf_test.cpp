@@ -14,9 +14,11 @@
 #include <vector>
 
 #include "instrument_fixture.h"
-#include "mesh_fixture.h"
 #include "tissue_contact/instrument/collision_shape.h"
 #include "tissue_contact/instrument/instrument.h"
+#include "tissue_contact/instrument/instrument_description.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
+#include "unit/mesh/mesh_fixture.h"
 
 namespace tissue_contact {
 namespace {

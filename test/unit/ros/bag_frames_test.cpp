@@ -1,14 +1,14 @@
 /// @file
 /// Poses from the /tf of a bag, which is trusted as little as its joint states.
 
-#include "ros/bag_frames.h"
+#include "ros/bag/bag_frames.h"
 
 #include <gtest/gtest.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <limits>
 
-#include "unit/ros/bag_fixture.h"
+#include "bag_fixture.h"
 
 namespace tissue_contact {
 namespace {
@@ -44,7 +44,7 @@ class BagFramesTest : public testing::Test {
   }
 
   TemporaryDirectory directory_;
-  std::string file_ = directory_.file("frames.bag");
+  std::string file_ = directory_.path("frames.bag");
 };
 
 TEST_F(BagFramesTest, EarliestPoseIsTaken) { EXPECT_EQ(frameInBag("tool", "world", file_).translation().z(), 1.25); }
@@ -57,7 +57,7 @@ TEST_F(BagFramesTest, UnknownFrameAndMissingBag) {
     EXPECT_NE(std::string(error.what()).find("stage"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find(file_), std::string::npos) << error.what();
   }
-  EXPECT_THROW(frameInBag("tool", "world", directory_.file("none.bag")), std::runtime_error);
+  EXPECT_THROW(frameInBag("tool", "world", directory_.path("none.bag")), std::runtime_error);
 }
 
 TEST_F(BagFramesTest, LengthsAreCheckedBeforeMemoryIsTaken) {

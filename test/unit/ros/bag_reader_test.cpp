@@ -1,12 +1,12 @@
 /// @file
 /// What a bag may ask for: each limit, and that memory follows neither what is claimed nor what is decompressed.
 
-#include "ros/bag_reader.h"
+#include "ros/bag/bag_reader.h"
 
 #include <gtest/gtest.h>
 #include <std_msgs/String.h>
 
-#include "unit/ros/bag_fixture.h"
+#include "bag_fixture.h"
 
 namespace tissue_contact {
 namespace {
@@ -58,28 +58,23 @@ class BagReaderTest : public testing::Test {
   }
 
   TemporaryDirectory directory_;
-  std::string file_ = directory_.file("test.bag");
+  std::string file_ = directory_.path("test.bag");
 };
 
 TEST_F(BagReaderTest, EachLimitIsKept) {
   writeJointStates(file_, 200, BZ2, 2000);
   ASSERT_EQ(read(BagLimits()), 200u);
+  const auto expectRefusedWith = [this](auto BagLimits::*limit, unsigned value, const char* words) {
+    BagLimits limits;
+    limits.*limit = value;
+    expectRefused(limits, words);
+  };
+  expectRefusedWith(&BagLimits::connections, 0, "more than 0 connections");
+  expectRefusedWith(&BagLimits::chunks, 3, "more than 3 chunks");
+  expectRefusedWith(&BagLimits::parts, 3, "more than 3 chunks for the connections that are read");
+  expectRefusedWith(&BagLimits::message_bytes, 50, "at most 50 are read");
+  expectRefusedWith(&BagLimits::waiting_bytes, 1000, "more than 1000 bytes of messages");
   BagLimits limits;
-  limits.connections = 0;
-  expectRefused(limits, "more than 0 connections");
-  limits = BagLimits();
-  limits.chunks = 3;
-  expectRefused(limits, "more than 3 chunks");
-  limits = BagLimits();
-  limits.parts = 3;
-  expectRefused(limits, "more than 3 chunks for the connections that are read");
-  limits = BagLimits();
-  limits.message_bytes = 50;
-  expectRefused(limits, "at most 50 are read");
-  limits = BagLimits();
-  limits.waiting_bytes = 1000;
-  expectRefused(limits, "more than 1000 bytes of messages");
-  limits = BagLimits();
   limits.free_bytes = 10000;
   limits.expansion = 0;
   expectRefused(limits, "which is more than is read");

@@ -15,7 +15,7 @@
 #include <random>
 #include <tuple>
 
-#include "unit/ros/bag_fixture.h"
+#include "bag_fixture.h"
 
 namespace tissue_contact {
 namespace {
@@ -49,14 +49,14 @@ std::optional<std::string> errorOf(const std::string& file) {
 class JointStateBagTest : public testing::Test {
  protected:
   std::string write(const std::string& name, const std::string& bytes) const {
-    writeBytes(directory_.file(name), bytes);
-    return directory_.file(name);
+    writeBytes(directory_.path(name), bytes);
+    return directory_.path(name);
   }
 
   std::string sound(int count = 100, rosbag::CompressionType compression = Uncompressed,
                     std::uint32_t chunk_bytes = 768 * 1024) const {
-    writeJointStates(directory_.file("sound.bag"), count, compression, chunk_bytes);
-    return readBytes(directory_.file("sound.bag"));
+    writeJointStates(directory_.path("sound.bag"), count, compression, chunk_bytes);
+    return readBytes(directory_.path("sound.bag"));
   }
 
   void expectRefused(const std::string& bytes, const std::vector<std::string>& words) const {
@@ -78,7 +78,7 @@ void writeShuffled(const std::string& file, unsigned seed, rosbag::CompressionTy
   bag.setCompression(compression);
   bag.setChunkThreshold(700);  // some four messages
   for (int i = 0; i < 400; ++i) {
-    const unsigned connection = random() % 6;
+    const auto connection = static_cast<unsigned>(random() % 6);
     sensor_msgs::JointState state = jointState(i);
     state.name = {"publisher " + std::to_string(connection), "other"};
     auto header = boost::make_shared<ros::M_string>();
@@ -86,7 +86,7 @@ void writeShuffled(const std::string& file, unsigned seed, rosbag::CompressionTy
     (*header)["type"] = "sensor_msgs/JointState";
     (*header)["md5sum"] = ros::message_traits::md5sum(state);
     (*header)["message_definition"] = ros::message_traits::definition(state);
-    const unsigned time = static_cast<unsigned>(i) / 10 + random() % (random() % 8 == 0 ? 30 : 3);
+    const auto time = static_cast<unsigned>(static_cast<unsigned>(i) / 10 + random() % (random() % 8 == 0 ? 30 : 3));
     bag.write("/topic" + std::to_string(connection % 3), ros::Time(100 + time / 8, 1000000 * (time % 8)), state,
               header);
   }
@@ -109,7 +109,7 @@ TEST_F(JointStateBagTest, OrderIsRosbags) {
   const std::vector<std::string> topics{"/topic2", "/topic0"};
   for (const auto compression : {Uncompressed, BZ2, LZ4}) {
     for (unsigned seed = 0; seed < 30; ++seed) {
-      const std::string file = directory_.file("shuffled.bag");
+      const std::string file = directory_.path("shuffled.bag");
       writeShuffled(file, seed, compression);
       const std::vector<Row> expected = rowsOfRosbag(file, topics);
       ASSERT_GT(expected.size(), 200u);
@@ -131,7 +131,7 @@ TEST_F(JointStateBagTest, RecordingOfARealRobotIsRosbags) {
 }
 
 TEST_F(JointStateBagTest, MessagesOfOtherTopicsArePassedOver) {
-  const std::string file = directory_.file("camera.bag");
+  const std::string file = directory_.path("camera.bag");
   {
     rosbag::Bag bag(file, rosbag::bagmode::Write);
     bag.setChunkThreshold(1 << 16);
@@ -146,7 +146,7 @@ TEST_F(JointStateBagTest, MessagesOfOtherTopicsArePassedOver) {
 }
 
 TEST_F(JointStateBagTest, FileThatIsNoBag) {
-  const std::string none = directory_.file("none.bag");
+  const std::string none = directory_.path("none.bag");
   const std::optional<std::string> missing = errorOf(none);
   ASSERT_TRUE(missing);
   EXPECT_EQ(*missing, "bag '" + none + "' does not exist; correct the path");
@@ -155,9 +155,9 @@ TEST_F(JointStateBagTest, FileThatIsNoBag) {
   expectRefused("#ROSBAG V2.0\n", {"cut off"});
   expectRefused(patched(sound(), 0, "#ROSBAG V1.2\n"), {"format 1.2", "rosbag filter"});
   // None of these may be waited for or read without end.
-  const std::string pipe = directory_.file("pipe");
+  const std::string pipe = directory_.path("pipe");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  for (const std::string& file : {pipe, directory_.file(""), std::string("/dev/zero")}) {
+  for (const std::string& file : {pipe, directory_.path(""), std::string("/dev/zero")}) {
     const std::optional<std::string> error = errorOf(file);
     ASSERT_TRUE(error) << file;
     EXPECT_NE(error->find("bag '" + file + "' is not a regular file"), std::string::npos) << *error;
@@ -234,19 +234,19 @@ TEST_F(JointStateBagTest, IndexThatDoesNotFit) {
 /// A chunk whose index names another connection would lose its joint states without a word.
 TEST_F(JointStateBagTest, IndexOfAnotherConnection) {
   {
-    rosbag::Bag bag(directory_.file("two.bag"), rosbag::bagmode::Write);
+    rosbag::Bag bag(directory_.path("two.bag"), rosbag::bagmode::Write);
     bag.setChunkThreshold(4000);
     bag.write("/other", ros::Time(999), jointState(0));
     for (int i = 0; i < 100; ++i) bag.write(kTopic, jointState(i).header.stamp, jointState(i));
   }
-  const std::string bytes = readBytes(directory_.file("two.bag"));
+  const std::string bytes = readBytes(directory_.path("two.bag"));
   expectRefused(patched(bytes, recordOf(bytes, kIndexOp, 2).field.at("conn"), bytesOf(0U)), {kTopic, "100", "reindex"});
 }
 
 /// What rosbag does not look at either: joint states are found by reading the chunks.
 TEST_F(JointStateBagTest, SummaryOfChunksIsNotNeeded) {
   const std::string bytes = sound(300, Uncompressed, 4000);
-  const std::vector<Row> rows = rowsOf(directory_.file("sound.bag"));
+  const std::vector<Row> rows = rowsOf(directory_.path("sound.bag"));
   const RecordPlace summary = recordOf(bytes, kChunkInfoOp, 1);
   for (const char* field : {"chunk_pos", "start_time", "end_time"}) {  // a range of time back to front, too
     const std::string file = write("spoilt.bag", patched(bytes, summary.field.at(field), bytesOf(~std::uint64_t{0})));
@@ -261,21 +261,21 @@ TEST_F(JointStateBagTest, TypeAndDefinition) {
   for (std::size_t at = 0; (at = other.find(sum, at)) != std::string::npos;) other[at] = '!';
   expectRefused(other, {kTopic, "another definition", "!" + sum.substr(1), sum});
   {
-    rosbag::Bag bag(directory_.file("strings.bag"), rosbag::bagmode::Write);
+    rosbag::Bag bag(directory_.path("strings.bag"), rosbag::bagmode::Write);
     bag.write(kTopic, ros::Time(1), std_msgs::String());
   }
-  expectRefused(readBytes(directory_.file("strings.bag")), {kTopic, "std_msgs/String", "sensor_msgs/JointState"});
+  expectRefused(readBytes(directory_.path("strings.bag")), {kTopic, "std_msgs/String", "sensor_msgs/JointState"});
   {
-    rosbag::Bag bag(directory_.file("others.bag"), rosbag::bagmode::Write);
+    rosbag::Bag bag(directory_.path("others.bag"), rosbag::bagmode::Write);
     bag.write("/other", ros::Time(1), jointState(1));
   }
-  expectRefused(readBytes(directory_.file("others.bag")), {kTopic, "/other"});
+  expectRefused(readBytes(directory_.path("others.bag")), {kTopic, "/other"});
 }
 
 /// Names in a bag are anybody's: they neither fill a log nor steer a terminal.
 TEST_F(JointStateBagTest, NamesInMessagesArePrintable) {
   const auto write_strings = [this](const std::vector<std::string>& topics) {
-    rosbag::Bag bag(directory_.file("names.bag"), rosbag::bagmode::Write);
+    rosbag::Bag bag(directory_.path("names.bag"), rosbag::bagmode::Write);
     for (const std::string& topic : topics) bag.write(topic, ros::Time(1), std_msgs::String());
   };
   const auto error_of = [this](const std::string& bytes) {
@@ -286,13 +286,13 @@ TEST_F(JointStateBagTest, NamesInMessagesArePrintable) {
     return *error;
   };
   write_strings({"/red\x1b[31m", "/" + std::string(1000, 'x')});
-  EXPECT_NE(error_of(readBytes(directory_.file("names.bag"))).find("/red?[31m, /xxx"), std::string::npos);
+  EXPECT_NE(error_of(readBytes(directory_.path("names.bag"))).find("/red?[31m, /xxx"), std::string::npos);
   std::vector<std::string> many;
   for (int i = 0; i < 1000; ++i) many.push_back("/topic" + std::to_string(i));
   write_strings(many);
-  EXPECT_NE(error_of(readBytes(directory_.file("names.bag"))).find(", ..."), std::string::npos);
+  EXPECT_NE(error_of(readBytes(directory_.path("names.bag"))).find(", ..."), std::string::npos);
   write_strings({kTopic});
-  std::string bytes = readBytes(directory_.file("names.bag"));
+  std::string bytes = readBytes(directory_.path("names.bag"));
   for (std::size_t at = 0; (at = bytes.find("std_msgs", at)) != std::string::npos;) bytes[at] = '\x1b';
   EXPECT_NE(error_of(bytes).find("?td_msgs/String"), std::string::npos);
 }
@@ -305,11 +305,11 @@ TEST_F(JointStateBagTest, LongNamesAreRefused) {
     (*header)["message_definition"] = ros::message_traits::definition<sensor_msgs::JointState>();
     (*header)[field] = std::string(size, 'x');
     const bool is_topic = std::string(field) == "topic";
-    rosbag::Bag bag(directory_.file("long.bag"), rosbag::bagmode::Write);
+    rosbag::Bag bag(directory_.path("long.bag"), rosbag::bagmode::Write);
     bag.write(kTopic, ros::Time(1), jointState(1));
     bag.write(is_topic ? (*header)[field] : "/other", ros::Time(2), jointState(2), header);
     bag.close();
-    return readBytes(directory_.file("long.bag"));
+    return readBytes(directory_.path("long.bag"));
   };
   for (const char* field : {"topic", "type", "md5sum"}) {
     expectRefused(bytes_of(field, 1025), {field, "1025 bytes", "at most 1024"});
@@ -334,7 +334,7 @@ INSTANTIATE_TEST_SUITE_P(AllKinds, CompressedBag, testing::Values(Uncompressed, 
 
 TEST_P(CompressedBag, CutAtEveryPercent) {
   const std::string bytes = sound(400, GetParam(), 4000);
-  const std::vector<Row> rows = rowsOf(directory_.file("sound.bag"));
+  const std::vector<Row> rows = rowsOf(directory_.path("sound.bag"));
   ASSERT_EQ(rows.size(), 400u);
   const std::size_t first_chunk = recordOf(bytes, kChunkOp).position;
   const MemoryLimit limit(kSmall);

@@ -1,6 +1,6 @@
 /// @file
 /// Between receiving and stepping: order, bound, counts, restarts, receipt times, and numbers that are missing.
-#include "tissue_contact/ros/joint_state_inbox.h"
+#include "ros/node/joint_state_inbox.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <thread>
 #include <utility>
 
-#include "tissue_contact/ros/receipt_times.h"
-#include "tissue_contact/ros/sequence_gaps.h"
+#include "ros/node/receipt_times.h"
+#include "ros/node/sequence_gaps.h"
 
 namespace tissue_contact {
 namespace {

@@ -1,13 +1,13 @@
 /// @file
 /// What a live run says of itself: the policy, the lag and its bound, the real-time factor, the advice and the counts.
-#include "tissue_contact/ros/live_figures.h"
+#include "ros/node/live_figures.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "tissue_contact/ros/joint_state_policy.h"
-#include "tissue_contact/ros/real_time_factor.h"
+#include "ros/node/joint_state_policy.h"
+#include "ros/node/real_time_factor.h"
 
 namespace tissue_contact {
 namespace {

@@ -1,6 +1,6 @@
 /// @file
 /// How many steps, and until when, the newest joint state may take.
-#include "tissue_contact/ros/live_pacing.h"
+#include "ros/node/live_pacing.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <string>
 
-#include "tissue_contact/ros/receipt_times.h"
-#include "tissue_contact/scene/load_scene.h"
+#include "ros/node/receipt_times.h"
+#include "support/text_scene.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 
 namespace tissue_contact {
@@ -122,21 +122,9 @@ TEST(LivePacing, LearnsFastThatStepsAreDearAndSlowlyThatTheyAreCheap) {
 /// and its own next 20 ms later, to wait for. Runs what the node's stepping thread does, on an artificial
 /// clock. @return the largest lag of a wrench behind the receipt of its state.
 double worstLagOfTwoArms(double step_cost_s, int& wrenches) {
-  const char* const scene = R"(
-tissues:
-  - name: block
-    block: {size_m: [0.06, 0.06, 0.02], cells: [4, 4, 2]}
-    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}
-instruments:
-  - {name: a, urdf: "package://tissue_contact/urdf/probe.urdf", base_pose: {position_m: [-0.015, 0, 0.5]},
-     joint_state_topics: [/a], tip_link: tip, contact_links: [tip]}
-  - {name: b, urdf: "package://tissue_contact/urdf/probe.urdf", base_pose: {position_m: [0.015, 0, 0.5]},
-     joint_state_topics: [/b], tip_link: tip, contact_links: [tip]}
-step: {max_step_s: 0.001, max_lag_s: 0.02}
-)";
-  SceneEnvironment environment;
-  environment.package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
-  Simulator simulator(parseScene(scene, "test.yaml", environment.package_path), environment);
+  Simulator simulator =
+      makeSimulator(blockScene() + "instruments:\n" + probeEntry("a", "/a", "[-0.015, 0, 0.5]") +
+                    probeEntry("b", "/b", "[0.015, 0, 0.5]") + "step: {max_step_s: 0.001, max_lag_s: 0.02}\n");
   JointStatePlayer player(simulator);
   player.setPolicy(StatePolicy::kNewestState);
   ReceiptTimes receipts(2);

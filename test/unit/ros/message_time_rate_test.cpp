@@ -1,6 +1,6 @@
 /// @file
 /// MessageTimeRate: mean rate, jitter, reset, off.
-#include "tissue_contact/ros/message_time_rate.h"
+#include "ros/publish/message_time_rate.h"
 
 #include <gtest/gtest.h>
 

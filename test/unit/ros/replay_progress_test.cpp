@@ -1,6 +1,6 @@
 /// @file
 /// What a person sees of a long replay.
-#include "tissue_contact/ros/replay_progress.h"
+#include "ros/replay/replay_progress.h"
 
 #include <gtest/gtest.h>
 

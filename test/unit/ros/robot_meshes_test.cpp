@@ -1,7 +1,6 @@
 // A real recording over a slab: a robot's own shapes against the primitive ones of urdf/psm_classic.urdf (the slab is moved
 // so that deepest points dip equally deep), and dips that no tissue would bear.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -13,8 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "tissue_contact/ros/replay.h"
-#include "tissue_contact/ros/replay_options.h"
+#include "ros/replay/replay.h"
+#include "support/replaced.h"
+#include "support/temporary_directory.h"
 
 namespace tissue_contact {
 namespace {
@@ -28,17 +28,15 @@ std::string primitiveScene() {
   std::ifstream file(TISSUE_CONTACT_SOURCE_DIR "/config/psm_dvrk.yaml");
   std::ostringstream text;
   text << file.rdbuf();
-  std::string scene = text.str();
-  const std::string urdf = "package://tissue_contact";
-  scene.replace(scene.find(urdf), urdf.size(), TISSUE_CONTACT_SOURCE_DIR);
-  return scene;
+  return replaced(text.str(), "package://tissue_contact", TISSUE_CONTACT_SOURCE_DIR);
 }
+
+/// Where that scene's slab lies.
+const char* const kSlab = "position_m: [0.2, -0.041683, 0.187632]";
 
 /// The same slab and arm, moved to a robot's own model. @param slab where it lies. @param instrument the rest of it.
 std::string meshScene(const std::string& slab, const std::string& instrument) {
-  std::string scene = primitiveScene();
-  const std::string before = "position_m: [0.2, -0.041683, 0.187632]";
-  scene.replace(scene.find(before), before.size(), "position_m: " + slab);
+  std::string scene = replaced(primitiveScene(), kSlab, "position_m: " + slab);
   const std::size_t begin = scene.find("    urdf:");
   scene.replace(begin, scene.find("friction:") - begin, instrument);
   return scene;
@@ -135,20 +133,16 @@ class RobotMeshes : public testing::Test {
  protected:
   void SetUp() override {
     if (!fs::exists(kBag) || !fs::exists(kData + "/dvrk_psm")) GTEST_SKIP() << "no recording and robot in " << kData;
-    directory_ = fs::temp_directory_path() / ("tissue_contact_robot_meshes_" + std::to_string(getpid()));
-    fs::create_directories(directory_);
     setenv("XDG_CACHE_HOME", directory_.c_str(), 1);
   }
-  void TearDown() override {
-    if (!directory_.empty()) fs::remove_all(directory_);
-  }
-  fs::path directory_;
+  TemporaryDirectory temporary_;
+  const fs::path& directory_ = temporary_.path();
 };
 
 /// A robot's own shapes act as primitives do: nothing hooks, and no force is such as no tissue bears.
 void expectLikePrimitives(const Outcome& meshes, const Outcome& primitives) {
   std::printf("peak %.3f N, RMS %.3f N; primitives %.3f N, %.3f N\n", meshes.peak_n, meshes.rms_n, primitives.peak_n,
-              primitives.rms_n);  // what README states
+              primitives.rms_n);  // what doc/accuracy.md states
   EXPECT_EQ(meshes.rows, primitives.rows);
   EXPECT_EQ(primitives.not_converged, 0);
   EXPECT_EQ(meshes.not_converged, 0);
@@ -173,16 +167,11 @@ TEST_F(RobotMeshes, TheSurrolRobotPressesLikePrimitives) {
 /// The recording with the slab `deeper_m` nearer to the arm. @param iterations of the solver: what is to be flagged need not be
 ///   solved to the last digit.
 std::string deeperScene(double deeper_m, const std::string& model, const std::string& iterations) {
-  std::string scene = primitiveScene();
   std::ostringstream position;
   position << "position_m: [0.2, " << -0.041683 + 0.38942 * deeper_m << ", " << 0.187632 - 0.92106 * deeper_m << "]";
-  const std::string before = "position_m: [0.2, -0.041683, 0.187632]";
-  scene.replace(scene.find(before), before.size(), position.str());
-  const std::string law = "model: neo_hookean";
-  scene.replace(scene.find(law), law.size(), "model: " + model);
-  const std::string most = "iterations: 500";
-  scene.replace(scene.find(most), most.size(), "iterations: " + iterations);
-  return scene;
+  const std::string scene = replaced(primitiveScene(), kSlab, position.str());
+  return replaced(replaced(scene, "model: neo_hookean", "model: " + model), "iterations: 500",
+                  "iterations: " + iterations);
 }
 
 // Closed jaws that sweep 6 mm deeper. Before: up to 1100 N on opposed normals in the slit between the jaws, the slab carried

@@ -1,6 +1,6 @@
 /// @file
 /// Markers of a scene: what RViz gets, without RViz; and the conversions they use.
-#include "tissue_contact/ros/scene_markers.h"
+#include "ros/publish/scene_markers.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "tissue_contact/ros/conversions.h"
-#include "tissue_contact/scene/load_scene.h"
+#include "ros/conversions.h"
+#include "support/text_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -23,29 +23,10 @@ using visualization_msgs::Marker;
 
 constexpr std::int64_t kSecond = 1000000000;
 
-const char* const kScene = R"(
-world_frame: room
-tissues:
-  - name: block
-    block: {size_m: [0.06, 0.06, 0.02], cells: [4, 4, 2]}
-    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}
-    damping: {stiffness_s: 0.003}
-    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]
-instruments:
-  - name: probe
-    urdf: package://tissue_contact/urdf/probe.urdf
-    base_pose: {position_m: [0, 0, 0.026]}
-    joint_state_topics: [/probe]
-    tip_link: tip
-    contact_links: [tip]
-friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}]
-)";
-
-Simulator makeSimulator() {
-  const PackagePath package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
-  SceneEnvironment environment;
-  environment.package_path = package_path;
-  return {parseScene(kScene, "test.yaml", package_path), environment};
+Simulator makeScene() {
+  return makeSimulator("world_frame: room\n" + blockScene() + "instruments:\n" +
+                       probeEntry("probe", "/probe", "[0, 0, 0.026]") +
+                       "friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}]\n");
 }
 
 SceneSnapshot snapshotOf(const Simulator& simulator, std::int64_t stamp_ns) {
@@ -62,7 +43,7 @@ std::map<std::string, int> countByNamespace(const visualization_msgs::MarkerArra
 }
 
 TEST(SceneMarkers, ShowTissueToolAndForcesInTheWorldFrame) {
-  Simulator simulator = makeSimulator();
+  Simulator simulator = makeScene();
   SceneMarkers markers(simulator, MarkerStyle());
   const auto rest = countByNamespace(markers.update(snapshotOf(simulator, kSecond)), Marker::ADD);
   EXPECT_EQ(rest.at("block"), 2);  // triangles and edges
@@ -82,7 +63,7 @@ TEST(SceneMarkers, ShowTissueToolAndForcesInTheWorldFrame) {
 }
 
 TEST(SceneMarkers, ArrowsAreTheForcesOnTheInstrumentFromTheContactPoints) {
-  Simulator simulator = makeSimulator();
+  Simulator simulator = makeScene();
   MarkerStyle style;
   style.force_arrow_m_per_n = 0.5;
   SceneMarkers markers(simulator, style);
@@ -110,7 +91,7 @@ TEST(SceneMarkers, ArrowsAreTheForcesOnTheInstrumentFromTheContactPoints) {
 }
 
 TEST(SceneMarkers, ArrowsVanishWhenTheContactIsLost) {
-  Simulator simulator = makeSimulator();
+  Simulator simulator = makeScene();
   SceneMarkers markers(simulator, MarkerStyle());
   simulator.advance(0.1, {Vector3(0, 0, -0.005)});
   const int arrows = countByNamespace(markers.update(snapshotOf(simulator, kSecond)), Marker::ADD).at("contact_forces");
@@ -123,7 +104,7 @@ TEST(SceneMarkers, ArrowsVanishWhenTheContactIsLost) {
 }
 
 TEST(SceneMarkers, RefuseAStyleThatCannotBeDrawn) {
-  const Simulator simulator = makeSimulator();
+  const Simulator simulator = makeScene();
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THROW(SceneMarkers(simulator, MarkerStyle{bad, 0.1}), std::invalid_argument) << bad;
     EXPECT_THROW(SceneMarkers(simulator, MarkerStyle{0.005, bad}), std::invalid_argument) << bad;
@@ -157,7 +138,7 @@ TEST(Conversions, StampsKeepEveryNanosecond) {
 }
 
 TEST(Conversions, StatusTellsOfJumps) {
-  Simulator simulator = makeSimulator();
+  Simulator simulator = makeScene();
   const JointStatePlayer player(simulator);
   Status status;
   simulator.advance(0.01, {Vector3(0, 0, -0.0005)});
@@ -171,7 +152,7 @@ TEST(Conversions, StatusTellsOfJumps) {
 }
 
 TEST(Conversions, StatusTellsOfSleep) {
-  Scene scene = makeSimulator().scene();
+  Scene scene = makeScene().scene();
   scene.gravity_m_per_s2 = Vector3(0, 0, -1.0);  // something to be held against
   SceneEnvironment environment;
   environment.package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
@@ -189,7 +170,7 @@ TEST(Conversions, StatusTellsOfSleep) {
 }
 
 TEST(Conversions, StatusOfADiscardedStepIsFiniteAndSaysSo) {
-  Scene scene = makeSimulator().scene();
+  Scene scene = makeScene().scene();
   scene.gravity_m_per_s2 = Vector3(0, 0, -1e308);  // beyond what the loader allows: overflows within a step of 10 s
   scene.step.max_step_s = 10.0;
   SceneEnvironment environment;

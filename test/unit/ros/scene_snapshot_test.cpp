@@ -1,6 +1,6 @@
 /// @file
 /// Snapshots between stepping and publishing: bounded, reused, dropped with a count, never waited for.
-#include "tissue_contact/ros/scene_snapshot.h"
+#include "ros/publish/scene_snapshot.h"
 
 #include <gtest/gtest.h>
 

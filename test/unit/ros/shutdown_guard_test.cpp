@@ -1,6 +1,6 @@
 /// @file
 /// SIGINT and SIGTERM: the program is asked, and left where it does not listen.
-#include "tissue_contact/ros/shutdown_guard.h"
+#include "ros/node/shutdown_guard.h"
 
 #include <gtest/gtest.h>
 

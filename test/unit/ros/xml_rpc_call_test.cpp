@@ -1,7 +1,7 @@
 /// @file
 /// A call to a master that takes the connection and never answers, as one that is stopped does: it ends in time.
 
-#include "tissue_contact/ros/xml_rpc_call.h"
+#include "ros/node/xml_rpc_call.h"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

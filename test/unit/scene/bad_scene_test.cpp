@@ -15,6 +15,7 @@ const BadScene kKeys[] = {
     {"youngs_modulus_pa: 5e3", "youngs_modulus: 5e3", "17: tissues[0].material.youngs_modulus",
      "did you mean \"youngs_modulus_pa\"? allowed here: model, dilatation, youngs_modulus_pa, poissons_ratio, "
      "density_kg_per_m3"},
+    {"  tf: true", "  tff: true", "73: publish.tff", "unknown key; did you mean \"tf\"?"},
     {"  contact_passes: 3", "  zzz: 3", "66: solver.zzz", "unknown key; allowed here: method, relaxation, iterations"},
     {"  iterations: 20", "  iterations: 20\n  iterations: 30", "66: solver.iterations",
      "given twice (first in line 65)"},
@@ -53,8 +54,10 @@ const BadScene kTypes[] = {
     {"mass_per_s: 0.5", "mass_per_s: .inf", "21: tissues[0].damping.mass_per_s", "is \".inf\""},
     {"mass_per_s: 0.5", "mass_per_s: 1e999", "21: tissues[0].damping.mass_per_s", "is \"1e999\""},
     {"  iterations: 20", "  iterations: 2.5", "65: solver.iterations", "whole number >= 1 and <= 10000"},
-    {"  tf: true", "  tf: yes", "73: publish.tf", "is \"yes\"; it must be true or false"},
-    {"  tf: true", "  tf: \"true\"", "73: publish.tf", "it must be true or false"},
+    {"remove_unreferenced_nodes: true", "remove_unreferenced_nodes: yes",
+     "31: tissues[1].mesh.remove_unreferenced_nodes", "is \"yes\"; it must be true or false"},
+    {"remove_unreferenced_nodes: true", "remove_unreferenced_nodes: \"true\"",
+     "31: tissues[1].mesh.remove_unreferenced_nodes", "it must be true or false"},
     {"step: {max_step_s: 0.002, max_gap_s: 0.5}", "step: 0.001", "63: step", "is \"0.001\"; it must be a map"},
     {"    fixed:\n", "    fixed: none\n    damping_:\n", "24: tissues[0].damping_", "did you mean \"damping\"?"},
     {"    contact_links: [jaw]", "    contact_links: jaw", "59: instruments[1].contact_links", "it must be a list"},
@@ -121,7 +124,6 @@ const BadScene kRanges[] = {
     {"iterations: 20", "iterations: 0", "65: solver.iterations", ">= 1 and <= 10000"},
     {"contact_passes: 3", "contact_passes: 101", "66: solver.contact_passes", ">= 1 and <= 100"},
     {"tolerance: 1.0e-7", "tolerance: 0", "67: solver.tolerance", ">= 1e-16 and <= 0.1"},
-    {"markers_rate_hz: 0", "markers_rate_hz: -1", "72: publish.markers_rate_hz", "0 switches the topic off"},
 };
 INSTANTIATE_TEST_SUITE_P(Ranges, BadSceneTest, testing::ValuesIn(kRanges));
 
@@ -153,10 +155,10 @@ const BadScene kNames[] = {
 INSTANTIATE_TEST_SUITE_P(Names, BadSceneTest, testing::ValuesIn(kNames));
 
 const BadScene kFiles[] = {
-    {"file: organ.vtk", "file: other.vtk", "29: tissues[1].mesh.file", "other.vtk\" does not exist"},
+    {"file: organ.vtk", "file: other.vtk", "29: tissues[1].mesh.file", "other.vtk' does not exist"},
     {"file: organ.vtk", "file: organ.stl", "29: tissues[1].mesh.file", "allowed endings: .msh, .vtk"},
     {"urdf: package://tissue_contact/arm.urdf", "urdf: package://tissue_contact/leg.urdf", "36: instruments[0].urdf",
-     "leg.urdf\" does not exist"},
+     "leg.urdf' does not exist"},
     {"urdf: package://tissue_contact/arm.urdf", "urdf: arm.urdf.xacro", "36: instruments[0].urdf",
      "is a xacro file; expand it first: xacro arm.urdf.xacro > arm.urdf, or"},
     {"urdf: package://tissue_contact/arm.urdf", "urdf: package://nowhere/arm.urdf", "36: instruments[0].urdf",
@@ -166,7 +168,7 @@ const BadScene kFiles[] = {
     {"scale: [0.001, 0.002, 0.003]", "scale: [0.001, 0.002]",
      "54: instruments[0].contact_links[1].shapes[3].mesh.scale", "has 2 elements"},
     {"file: jaw.STL, scale: 0.001", "file: claw.stl, scale: 0.001",
-     "55: instruments[0].contact_links[1].shapes[4].mesh.file", "claw.stl\" does not exist"},
+     "55: instruments[0].contact_links[1].shapes[4].mesh.file", "claw.stl' does not exist"},
 };
 INSTANTIATE_TEST_SUITE_P(Files, BadSceneTest, testing::ValuesIn(kFiles));
 
@@ -175,7 +177,7 @@ const BadScene kSyntax[] = {
     {"  iterations: 20", "  iterations: 20\n contact", "67: (YAML syntax)", "column"},
     {"      poissons_ratio: 0.45", "\t  poissons_ratio: 0.45", "18: (YAML syntax)", "column"},
     {"tf_frame: operating_table", "tf_frame: *nowhere", "32: (YAML syntax)", "column"},
-    {"world_frame: lab", "--- {}\n---\nworld_frame: lab", "1: scene", "2 YAML documents"},
+    {"world_frame: lab", "--- {}\n---\nworld_frame: lab", "2: (YAML syntax)", "a second YAML document begins"},
 };
 INSTANTIATE_TEST_SUITE_P(Syntax, BadSceneTest, testing::ValuesIn(kSyntax));
 
@@ -188,6 +190,13 @@ TEST_F(SceneTest, RefusesAFileWithoutTissue) {
   EXPECT_EQ(refusal("\ntissues:\n\n").find("scene.yaml:2: tissues: is empty; it must be a list"), 0U);
   EXPECT_EQ(refusal("- tissues").find("scene.yaml:1: scene: is a list; it must be a map"), 0U);
   EXPECT_EQ(refusal("tissues").find("scene.yaml:1: scene: is \"tissues\"; it must be a map"), 0U);
+}
+
+// yaml-cpp 0.7 finds one more document in each of these for ever.
+TEST_F(SceneTest, RefusesATextInWhichTheParserDoesNotGetOn) {
+  for (const char* yaml : {",|<", ",-|-", ",-[<0[", ",]||''&a", "!&,b>,@a"}) {
+    EXPECT_EQ(refusal(yaml).find("scene.yaml:1: (YAML syntax): "), 0U) << yaml << ": " << refusal(yaml);
+  }
 }
 
 std::string repeated(const std::string& text, std::size_t times) {

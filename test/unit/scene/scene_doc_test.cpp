@@ -4,15 +4,13 @@
 #include <sstream>
 
 #include "scene_fixture.h"
+#include "tissue_contact/core/read_file.h"
 
 namespace tissue_contact {
 namespace {
 
 std::string documentText() {
-  std::ifstream stream(std::string(TISSUE_CONTACT_SOURCE_DIR) + "/doc/scene.md");
-  std::stringstream text;
-  text << stream.rdbuf();
-  return text.str();
+  return readFile(TISSUE_CONTACT_SOURCE_DIR "/doc/scene.md", "document", std::uintmax_t{1} << 20U);
 }
 
 /// Keys in the table of each section "### `path`".
@@ -40,9 +38,7 @@ std::string example() {
 
 TEST(SceneDocument, HasExactlyTheKeysOfTheLoader) {
   std::map<std::string, std::set<std::string>> known;
-  for (const SceneMapKeys& map : sceneKeys()) {
-    EXPECT_TRUE(known.emplace(map.path, std::set<std::string>(map.keys.begin(), map.keys.end())).second) << map.path;
-  }
+  for (const auto& [path, keys] : sceneKeys()) known[path] = {keys.begin(), keys.end()};
   const auto documented = documentedKeys();
   for (const auto& [path, keys] : known) {
     const auto section = documented.find(path);
@@ -53,16 +49,15 @@ TEST(SceneDocument, HasExactlyTheKeysOfTheLoader) {
 }
 
 TEST_F(SceneTest, ExampleOfTheDocumentLoadsAndUsesEveryKey) {
-  for (const char* directory : {"meshes", "urdf"}) std::filesystem::create_directory(directory_ / directory);
+  for (const char* directory : {"meshes", "urdf"}) std::filesystem::create_directory(path(directory));
   for (const char* file : {"meshes/liver.vtk", "meshes/cover.stl", "meshes/gut.obj", "urdf/psm_classic.urdf"})
     write(file, "x");
   const std::string yaml = example();
   const Scene scene = parse(yaml);
   EXPECT_EQ(scene.tissues.size(), 4U);
   EXPECT_EQ(scene.instruments.size(), 2U);
-  for (const SceneMapKeys& map : sceneKeys()) {
-    for (const std::string& key : map.keys)
-      EXPECT_NE(yaml.find(key + ":"), std::string::npos) << map.path << "." << key;
+  for (const auto& [path, keys] : sceneKeys()) {
+    for (const std::string& key : keys) EXPECT_NE(yaml.find(key + ":"), std::string::npos) << path << "." << key;
   }
 }
 

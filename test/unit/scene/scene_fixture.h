@@ -4,23 +4,15 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 
+#include "support/replaced.h"
+#include "support/temporary_directory.h"
 #include "tissue_contact/scene/load_scene.h"
+#include "tissue_contact/simulation/scene.h"
 
 namespace tissue_contact {
-
-/// `text` with its only occurrence of `from` replaced.
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  if (at == std::string::npos || text.find(from, at + 1) != std::string::npos) {
-    throw std::logic_error("\"" + from + "\" does not occur exactly once");
-  }
-  return text.replace(at, from.size(), to);
-}
 
 /// One place of a good scene, spoilt.
 struct BadScene {
@@ -34,19 +26,15 @@ struct BadScene {
 class SceneTest : public testing::Test {
  protected:
   SceneTest() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "scene_test_XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary directory");
-    directory_ = pattern;
     for (const char* name : {"arm.urdf", "organ.vtk", "jaw.STL", "skin.obj"}) write(name, "x");
   }
-  ~SceneTest() override { std::filesystem::remove_all(directory_); }
 
-  std::string path(const std::string& name) const { return (directory_ / name).string(); }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+  std::string path(const std::string& name) const { return directory_.path(name); }
+  void write(const std::string& name, const std::string& text) const { directory_.write(name, text); }
 
   Scene parse(const std::string& yaml) const {
     return parseScene(yaml, path("scene.yaml"), [this](const std::string& package) {
-      return package == "tissue_contact" ? directory_.string() : std::string();
+      return package == "tissue_contact" ? directory_.path().string() : std::string();
     });
   }
 
@@ -56,9 +44,8 @@ class SceneTest : public testing::Test {
       parse(yaml);
     } catch (const std::invalid_argument& error) {
       std::string message = error.what();
-      if (message.compare(0, directory_.string().size(), directory_.string()) == 0) {
-        message.erase(0, directory_.string().size() + 1);
-      }
+      const std::string directory = path("");
+      if (message.compare(0, directory.size(), directory) == 0) message.erase(0, directory.size());
       return message;
     }
     ADD_FAILURE() << "accepted:\n" << yaml;
@@ -100,7 +87,7 @@ class SceneTest : public testing::Test {
     return refused;
   }
 
-  std::filesystem::path directory_;
+  TemporaryDirectory directory_;
 };
 
 /// Line numbers matter to the tests: keep them in step.

@@ -1,12 +1,12 @@
 /// What the advisor says about a scene, and that its exact choices change nothing: folds of convex bodies, paths of
 /// friction.
-#include "tissue_contact/simulation/advisor.h"
+#include "simulation/advisor.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "validation/text_scene.h"
+#include "support/text_scene.h"
 
 namespace tissue_contact {
 namespace {

@@ -2,15 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "support/replaced.h"
+#include "support/temporary_directory.h"
 #include "support/tissue_files.h"
+#include "tissue_contact/mesh/mesh_description.h"
 #include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/simulation/joint_state_player.h"
+#include "tissue_contact/simulation/scene.h"
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
@@ -97,47 +99,34 @@ std::ostream& operator<<(std::ostream& out, const BadCase& bad) { return out << 
 class BadSceneTest : public testing::TestWithParam<BadCase> {
  protected:
   BadSceneTest() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "bad_scene_test_XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary directory");
-    directory_ = pattern;
     write("table.urdf", kTable);
     write("probe.urdf", kProbe);
     write("organ.vtk", vtkTetrahedron());
     write("skin.obj", "v 0 0 0.5\nv 0.1 0 0.5\nv 0 0.1 0.5\nf 1 2 3\n");
     write("ball.stl", stlTetrahedron());
   }
-  ~BadSceneTest() override { std::filesystem::remove_all(directory_); }
 
-  void write(const std::string& name, const std::string& text) const { std::ofstream(directory_ / name) << text; }
+  void write(const std::string& name, const std::string& text) const { directory_.write(name, text); }
 
   /// Builds the scene as node and replay do.
   void build(const std::string& yaml) const {
-    const std::string file = (directory_ / "scene.yaml").string();
-    Simulator simulator(parseScene(yaml, file, nullptr), SceneEnvironment());
+    Simulator simulator(parseScene(yaml, directory_.path("scene.yaml"), nullptr), SceneEnvironment());
     JointStatePlayer player(simulator);
   }
 
-  std::filesystem::path directory_;
+  TemporaryDirectory directory_;
 };
-
-std::string replacedOnce(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  if (at == std::string::npos || text.find(from, at + 1) != std::string::npos) {
-    throw std::logic_error("\"" + from + "\" does not occur exactly once");
-  }
-  return text.replace(at, from.size(), to);
-}
 
 TEST_P(BadSceneTest, IsRefusedWithItsPlace) {
   const BadCase& bad = GetParam();
   ASSERT_NO_THROW(build(kScene));
   if (bad.file != nullptr) write(bad.file, bad.content);
   try {
-    build(*bad.from == '\0' ? std::string(kScene) : replacedOnce(kScene, bad.from, bad.to));
+    build(*bad.from == '\0' ? std::string(kScene) : replaced(kScene, bad.from, bad.to));
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
     const std::string message = error.what();
-    EXPECT_EQ(message.find((directory_ / "scene.yaml").string() + ":" + bad.where + ": "), 0U) << message;
+    EXPECT_EQ(message.find(directory_.path("scene.yaml") + ":" + bad.where + ": "), 0U) << message;
     EXPECT_NE(message.find(bad.problem), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }

@@ -1,10 +1,10 @@
 /// What contacts inherit from the step before, and which points are kept.
-#include "tissue_contact/simulation/contact_memory.h"
+#include "simulation/contact_memory.h"
 
 #include <gtest/gtest.h>
 
+#include "support/text_scene.h"
 #include "tissue_contact/instrument/parse_urdf.h"
-#include "validation/text_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -22,27 +22,35 @@ Contact makeContact(int shape, std::array<int, 3> feature, const Vector3& p_W) {
   return contact;
 }
 
-ContactMemory::Inherited carrying(double newton) { return {Vector3(0.0, 0.0, newton), ContactState::kKinetic}; }
+SolvedContact carrying(double newton, const Contact& contact) {
+  return {contact, ContactState::kKinetic, Vector3(0.0, 0.0, newton)};
+}
+
+std::vector<SolvedContact> carrying(double newton, const std::vector<Contact>& contacts) {
+  std::vector<SolvedContact> solved;
+  for (const Contact& contact : contacts) solved.push_back(carrying(newton, contact));
+  return solved;
+}
 
 TEST(ContactMemory, SameKeyInheritsForceAndState) {
   ContactMemory memory;
   const std::vector<Contact> contacts = {makeContact(0, {0, 1, 2}, Vector3::Zero()),
                                          makeContact(0, {1, 2, 3}, Vector3::UnitX())};
-  memory.remember(contacts, {carrying(1.0), carrying(2.0)});
-  std::vector<ContactMemory::Inherited> inherited;
+  memory.remember({carrying(1.0, contacts[0]), carrying(2.0, contacts[1])});
+  std::vector<SolvedContact> inherited;
   memory.recall(contacts, 0.0, inherited);
   ASSERT_EQ(inherited.size(), 2u);
-  EXPECT_EQ(inherited[0].force_W.z(), 1.0);
-  EXPECT_EQ(inherited[1].force_W.z(), 2.0);
+  EXPECT_EQ(inherited[0].force_on_tissue_n.z(), 1.0);
+  EXPECT_EQ(inherited[1].force_on_tissue_n.z(), 2.0);
   EXPECT_EQ(inherited[1].state, ContactState::kKinetic);
 }
 
 TEST(ContactMemory, SlidingOntoTheNextTriangleKeepsTheHistory) {
   ContactMemory memory;
-  memory.remember({makeContact(0, {0, 1, 2}, Vector3::Zero())}, {carrying(1.0)});
-  std::vector<ContactMemory::Inherited> inherited;
+  memory.remember({carrying(1.0, makeContact(0, {0, 1, 2}, Vector3::Zero()))});
+  std::vector<SolvedContact> inherited;
   memory.recall({makeContact(0, {1, 2, 3}, Vector3(0.5, 0.0, 0.0))}, 1.0, inherited);
-  EXPECT_EQ(inherited[0].force_W.z(), 1.0);
+  EXPECT_EQ(inherited[0].force_on_tissue_n.z(), 1.0);
   // Too far, and of another shape: nothing to continue.
   memory.recall({makeContact(0, {1, 2, 3}, Vector3(0.5, 0.0, 0.0))}, 0.4, inherited);
   EXPECT_EQ(inherited[0].state, ContactState::kOpen);
@@ -52,24 +60,24 @@ TEST(ContactMemory, SlidingOntoTheNextTriangleKeepsTheHistory) {
 
 TEST(ContactMemory, AnOldContactIsContinuedOnlyOnce) {
   ContactMemory memory;
-  memory.remember({makeContact(0, {0, 1, 2}, Vector3::Zero())}, {carrying(1.0)});
-  std::vector<ContactMemory::Inherited> inherited;
+  memory.remember({carrying(1.0, makeContact(0, {0, 1, 2}, Vector3::Zero()))});
+  std::vector<SolvedContact> inherited;
   memory.recall({makeContact(0, {1, 2, 3}, Vector3(0.1, 0.0, 0.0)), makeContact(0, {2, 3, 4}, Vector3(0.2, 0.0, 0.0))},
                 1.0, inherited);
-  EXPECT_EQ(inherited[0].force_W.z() + inherited[1].force_W.z(), 1.0);
+  EXPECT_EQ(inherited[0].force_on_tissue_n.z() + inherited[1].force_on_tissue_n.z(), 1.0);
 }
 
 TEST(ContactMemory, OpenContactsAndClearedOnesAreForgotten) {
   ContactMemory memory;
   const std::vector<Contact> contacts = {makeContact(0, {0, 1, 2}, Vector3::Zero())};
-  std::vector<ContactMemory::Inherited> inherited;
-  memory.remember(contacts, {{Vector3::UnitZ(), ContactState::kOpen}});
+  std::vector<SolvedContact> inherited;
+  memory.remember({{contacts[0], ContactState::kOpen, Vector3::UnitZ()}});
   memory.recall(contacts, 1.0, inherited);
-  EXPECT_EQ(inherited[0].force_W, Vector3::Zero());
-  memory.remember(contacts, {carrying(1.0)});
+  EXPECT_EQ(inherited[0].force_on_tissue_n, Vector3::Zero());
+  memory.remember(carrying(1.0, contacts));
   memory.clear();
   memory.recall(contacts, 1.0, inherited);
-  EXPECT_EQ(inherited[0].force_W, Vector3::Zero());
+  EXPECT_EQ(inherited[0].force_on_tissue_n, Vector3::Zero());
 }
 
 /// A sphere of 1 m over a face of three nodes; its centre can be moved.
@@ -86,7 +94,7 @@ class KeptPoints : public ::testing::Test {
     TissueSurface surface;
     surface.triangles = {{0, 1, 2}};
     surface.fixed = {false, false, false};
-    detector = std::make_unique<ContactDetector>(instruments, std::vector<TissueSurface>{surface}, positions);
+    detector = std::make_unique<ContactDetector>(instruments, shareSurfaces({surface}, positions));
   }
 
   std::vector<Contact> detectAt(double x) {
@@ -107,37 +115,72 @@ class KeptPoints : public ::testing::Test {
 TEST_F(KeptPoints, APointThatCarriedForceStaysBesideTheNewClosestPoint) {
   const std::vector<Contact> first = detectAt(0.0);
   ASSERT_EQ(first.size(), 1u);
-  memory.remember(first, {carrying(1.0)});
+  memory.remember(carrying(1.0, first));
   const std::vector<Contact> second = detectAt(0.2);
   ASSERT_EQ(second.size(), 2u);
   EXPECT_EQ(second[0].key.slot, 0);
   EXPECT_EQ(second[1].key.slot, 1);
   EXPECT_EQ(second[1].weights, first[0].weights);
   EXPECT_NEAR(second[1].gap_m, std::sqrt(1.04) - 1.0, 1e-14);  // the sphere has moved 0.2 m along a flat face
-  std::vector<ContactMemory::Inherited> inherited;
+  std::vector<SolvedContact> inherited;
   memory.recall(second, 0.0, inherited);
   EXPECT_EQ(inherited[0].state, ContactState::kOpen);
-  EXPECT_EQ(inherited[1].force_W.z(), 1.0);  // the force stays with its point
+  EXPECT_EQ(inherited[1].force_on_tissue_n.z(), 1.0);  // the force stays with its point
 }
 
 TEST_F(KeptPoints, AFreshPointAtTheSamePlaceContinuesTheOldOne) {
-  memory.remember(detectAt(0.0), {carrying(1.0)});
+  memory.remember(carrying(1.0, detectAt(0.0)));
   const std::vector<Contact> second = detectAt(0.01);
   ASSERT_EQ(second.size(), 1u);
-  std::vector<ContactMemory::Inherited> inherited;
+  std::vector<SolvedContact> inherited;
   memory.recall(second, 0.0, inherited);
-  EXPECT_EQ(inherited[0].force_W.z(), 1.0);
+  EXPECT_EQ(inherited[0].force_on_tissue_n.z(), 1.0);
 }
 
 TEST_F(KeptPoints, PointsAreDroppedOnceFarOrWithoutForceAndNeverMoreThanTheBound) {
-  memory.remember(detectAt(0.0), {carrying(1.0)});
+  memory.remember(carrying(1.0, detectAt(0.0)));
   EXPECT_EQ(detectAt(0.5).size(), 1u);  // old point 0.118 m away: beyond the margin
-  memory.remember(detectAt(0.0), {ContactMemory::Inherited()});
+  memory.remember({SolvedContact{detectAt(0.0).at(0)}});
   EXPECT_EQ(detectAt(0.2).size(), 1u);
   for (int k = 0; k < 10; ++k) {
     const std::vector<Contact> contacts = detectAt(k % 2 == 0 ? -0.02 * k : 0.02 * k);
     EXPECT_LE(contacts.size(), 1u + ContactMemory::kKeptPoints);
-    memory.remember(contacts, std::vector<ContactMemory::Inherited>(contacts.size(), carrying(1.0)));
+    memory.remember(carrying(1.0, contacts));
+  }
+}
+
+// Two old points near the fresh one: the nearer goes on in it, and nobody inherits from the other.
+TEST_F(KeptPoints, OfTwoPointsAtTheFreshOneOnlyTheNearerGoesOn) {
+  for (const bool first_is_nearer : {true, false}) {
+    std::vector<SolvedContact> before = {carrying(1.0, detectAt(first_is_nearer ? 0.01 : 0.03).at(0)),
+                                         carrying(2.0, detectAt(first_is_nearer ? -0.03 : -0.01).at(0))};
+    before[1].contact.key.slot = 1;
+    memory.remember(before);
+    std::vector<Contact> contacts = detectAt(0.0);
+    ASSERT_EQ(contacts.size(), 1u);
+    contacts.push_back(makeContact(0, {1, 2, 3}, contacts[0].p_WC));  // could have been reached by either
+    std::vector<SolvedContact> inherited;
+    memory.recall(contacts, 1.0, inherited);
+    EXPECT_EQ(inherited[0].force_on_tissue_n.z(), first_is_nearer ? 1.0 : 2.0);
+    EXPECT_EQ(inherited[1].state, ContactState::kOpen);
+    memory.clear();
+  }
+}
+
+// The closest point has moved on to where a kept one is, while all slots are in use: the point it has left is kept.
+TEST_F(KeptPoints, AFullFeatureHandsEachHistoryToItsOwnPoint) {
+  std::vector<SolvedContact> before;
+  for (const double x : {0.0, 0.3, -0.1, 0.1}) {
+    before.push_back(carrying(1.0 + 10.0 * x, detectAt(x).at(0)));
+    before.back().contact.key.slot = static_cast<int>(before.size()) - 1;
+  }
+  memory.remember(before);
+  const std::vector<Contact> contacts = detectAt(0.1);
+  ASSERT_EQ(contacts.size(), 4u);
+  std::vector<SolvedContact> inherited;
+  memory.recall(contacts, 0.0, inherited);
+  for (const SolvedContact& contact : inherited) {
+    EXPECT_NEAR(contact.force_on_tissue_n.z(), 1.0 + 10.0 * contact.contact.p_WC.x(), 1e-12);
   }
 }
 
@@ -160,7 +203,7 @@ TEST(KeptRidgePoint, DoesNotDependOnTriangleOrder) {
     surface.triangles = {{0, 1, 2}, {1, 0, 3}};
     if (!up_first) std::swap(surface.triangles[0], surface.triangles[1]);
     surface.fixed.assign(4, false);
-    ContactDetector detector(instruments, {surface}, positions);
+    ContactDetector detector(instruments, shareSurfaces({surface}, positions));
     Contact contact = makeContact(0, {0, 1, -1}, Vector3::Zero());
     contact.nodes = surface.triangles[0];
     contact.weights = Vector3(0.5, 0.5, 0.0);

@@ -1,5 +1,5 @@
 /// Which law holds where: by link and region, with the axis of a link or of the fibres in the contact plane.
-#include "tissue_contact/simulation/friction_table.h"
+#include "simulation/friction_table.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "tissue_contact/simulation/build_scene.h"
-#include "validation/text_scene.h"
+#include "simulation/build_scene.h"
+#include "support/text_scene.h"
 
 namespace tissue_contact {
 namespace {

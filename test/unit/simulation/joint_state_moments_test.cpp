@@ -11,9 +11,8 @@ namespace {
 
 using Order = std::vector<std::pair<int, JointStateSample>>;
 
-std::unique_ptr<Simulator> twoProbes() { return makeSimulator(probe("a", "/a", -0.015) + probe("b", "/b", 0.015)); }
 /// x and y on the arm's topic, z on the jaw's.
-std::unique_ptr<Simulator> armAndJaw() { return makeSimulator(probe("a", "/a/measured_js, /a/jaw/measured_js", 0.0)); }
+std::unique_ptr<Simulator> armAndJaw() { return blockTouchedBy(probe("a", "/a/measured_js, /a/jaw/measured_js", 0.0)); }
 
 JointStateSample arm(std::int64_t stamp_ns, double x) { return {stamp_ns, {"x", "y"}, {x, 0.0}}; }
 JointStateSample jaw(std::int64_t stamp_ns, double z) { return {stamp_ns, {"z"}, {z}}; }
@@ -112,7 +111,7 @@ TEST(JointStateMoments, EqualStampsAreOneMomentWhateverArrivesFirst) {
 TEST(JointStateMoments, TheOrderOfTopicsInTheSceneDoesNotMatter) {
   std::vector<Trace> traces;
   for (const char* topics : {"/arm, /wrist", "/wrist, /arm"}) {
-    const auto simulator = makeSimulator(probe("a", topics, 0.0));
+    const auto simulator = blockTouchedBy(probe("a", topics, 0.0));
     JointStatePlayer player(*simulator);
     const bool arm_first = player.topics()[0] == "/arm";
     Order order;
@@ -181,7 +180,7 @@ TEST(JointStateMoments, ArrivalOrderOfAJawDoesNotMatter) {
 }
 
 TEST(JointStateMoments, AJawThatTriggersGivesWrenchesOfItsOwn) {
-  const auto simulator = makeSimulator(probe("a", "/a/measured_js, {topic: /a/jaw/measured_js, triggers: true}", 0.0));
+  const auto simulator = blockTouchedBy(probe("a", "/a/measured_js, {topic: /a/jaw/measured_js, triggers: true}", 0.0));
   JointStatePlayer player(*simulator);
   Order order;
   for (int i = 0; i < 5; ++i) {
@@ -296,7 +295,7 @@ TEST(JointStateMoments, NoOrderOfArrivalMattersWithinMaxGap) {
     Order order;
     for (const Arrival& arrival : arrivals) order.emplace_back(arrival.topic, arrival.sample);
     const auto simulator =
-        makeSimulator(probe("a", "/a/measured_js, /a/jaw/measured_js", -0.015) + probe("b", "/b", 0.015));
+        blockTouchedBy(probe("a", "/a/measured_js, /a/jaw/measured_js", -0.015) + probe("b", "/b", 0.015));
     JointStatePlayer player(*simulator);
     const Trace trace = run(*simulator, player, order);
     resets = player.resets();

@@ -7,8 +7,6 @@
 namespace tissue_contact {
 namespace {
 
-std::unique_ptr<Simulator> twoProbes() { return makeSimulator(probe("a", "/a", -0.015) + probe("b", "/b", 0.015)); }
-
 /// Pushes (topic, sample) in the given order, draining after each.
 Trace run(Simulator& simulator, JointStatePlayer& player, const std::vector<std::pair<int, JointStateSample>>& order) {
   Trace trace;

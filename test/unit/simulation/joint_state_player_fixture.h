@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tissue_contact/scene/load_scene.h"
+#include "support/text_scene.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 
 namespace tissue_contact {
@@ -19,29 +19,19 @@ namespace tissue_contact {
 constexpr std::int64_t kSecond = 1000000000;
 constexpr std::int64_t kMillisecond = 1000000;
 
-/// Top face of the block at z = 0.02; with joints at 0 a probe's ball (radius 5 mm) just does not touch it.
-inline const char* const kTissue = R"(
-tissues:
-  - name: block
-    block: {size_m: [0.06, 0.06, 0.02], cells: [4, 4, 2]}
-    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}
-    damping: {stiffness_s: 0.003}
-    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]
-step: {max_step_s: 0.001, max_gap_s: 0.05}
-)";
-
+/// With joints at 0 its ball (radius 5 mm) just does not touch the block, whose top face is at z = 0.02.
 inline std::string probe(const std::string& name, const std::string& topics, double x) {
-  return "  - name: " + name + "\n    urdf: package://tissue_contact/urdf/probe.urdf\n    base_pose: {position_m: [" +
-         std::to_string(x) + ", 0, 0.026]}\n    joint_state_topics: [" + topics +
-         "]\n    joint_names: {recorded_z: z}\n    tip_link: tip\n    contact_links: [tip]\n";
+  return probeEntry(name, topics, "[" + std::to_string(x) + ", 0, 0.026]", "    joint_names: {recorded_z: z}\n");
 }
 
-inline std::unique_ptr<Simulator> makeSimulator(const std::string& instruments) {
-  const PackagePath package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
-  SceneEnvironment environment;
-  environment.package_path = package_path;
-  const std::string yaml = std::string(kTissue) + "instruments:\n" + instruments;
-  return std::make_unique<Simulator>(parseScene(yaml, "test.yaml", package_path), environment);
+inline std::unique_ptr<Simulator> blockTouchedBy(const std::string& instruments) {
+  return std::make_unique<Simulator>(
+      makeSimulator(blockScene() + "step: {max_step_s: 0.001, max_gap_s: 0.05}\ninstruments:\n" + instruments));
+}
+
+inline std::unique_ptr<Simulator> oneProbe() { return blockTouchedBy(probe("a", "/a", 0.0)); }
+inline std::unique_ptr<Simulator> twoProbes() {
+  return blockTouchedBy(probe("a", "/a", -0.015) + probe("b", "/b", 0.015));
 }
 
 inline JointStateSample sample(std::int64_t stamp_ns, double z) { return {stamp_ns, {"x", "y", "z"}, {0.0, 0.0, z}}; }

@@ -12,8 +12,6 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::unique_ptr<Simulator> oneProbe() { return makeSimulator(probe("a", "/a", 0.0)); }
-
 PlayedSample playOne(JointStatePlayer& player, int topic, const JointStateSample& s) {
   player.push(topic, s);
   const std::vector<PlayedSample> all = drain(player);
@@ -22,13 +20,13 @@ PlayedSample playOne(JointStatePlayer& player, int topic, const JointStateSample
 }
 
 TEST(JointStatePlayer, ListsDistinctTopicsInOrderOfFirstMention) {
-  const auto simulator = makeSimulator(probe("a", "/second, /first", -0.015) + probe("b", "/first, /third", 0.015));
+  const auto simulator = blockTouchedBy(probe("a", "/second, /first", -0.015) + probe("b", "/first, /third", 0.015));
   const JointStatePlayer player(*simulator);
   EXPECT_EQ(player.topics(), (std::vector<std::string>{"/second", "/first", "/third"}));
 }
 
 TEST(JointStatePlayer, RefusesASceneWithoutTopics) {
-  const auto simulator = makeSimulator(
+  const auto simulator = blockTouchedBy(
       "  - name: plate\n    urdf: package://tissue_contact/urdf/incline.urdf\n    tip_link: plate\n"
       "    base_pose: {position_m: [0, 0, -0.5]}\n    contact_links: [plate]\n");
   EXPECT_THROW(JointStatePlayer{*simulator}, std::invalid_argument);

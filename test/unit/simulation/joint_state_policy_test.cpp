@@ -10,9 +10,6 @@
 namespace tissue_contact {
 namespace {
 
-std::unique_ptr<Simulator> oneProbe() { return makeSimulator(probe("a", "/a", 0.0)); }
-std::unique_ptr<Simulator> twoProbes() { return makeSimulator(probe("a", "/a", -0.015) + probe("b", "/b", 0.015)); }
-
 /// A press of one probe, `batch` samples at a time.
 Trace pressInBatches(StatePolicy policy, std::size_t batch, std::int64_t& merged) {
   const auto simulator = oneProbe();
@@ -136,7 +133,7 @@ TEST(JointStatePolicy, AnInstrumentThatIsAlwaysBehindStillMovesAndHasItsWrench) 
 }
 
 TEST(JointStatePolicy, NewestStateDoesNotWaitForAJaw) {
-  const auto simulator = makeSimulator(probe("a", "/a/measured_js, /a/jaw/measured_js", 0.0));
+  const auto simulator = blockTouchedBy(probe("a", "/a/measured_js, /a/jaw/measured_js", 0.0));
   JointStatePlayer player(*simulator);
   player.setPolicy(StatePolicy::kNewestState);
   player.push(0, {kSecond, {"x"}, {0.0}});
@@ -200,7 +197,7 @@ TEST(JointStatePolicy, LimitsBoundTheStepsOfEachMoment) {
 TEST(JointStatePolicy, CountsAddUpToWhatWasPushed) {
   for (const StatePolicy policy : {StatePolicy::kEveryState, StatePolicy::kNewestState}) {
     const auto simulator =
-        makeSimulator(probe("a", "/a/measured_js, /a/jaw/measured_js", -0.015) + probe("b", "/b", 0.015));
+        blockTouchedBy(probe("a", "/a/measured_js, /a/jaw/measured_js", -0.015) + probe("b", "/b", 0.015));
     JointStatePlayer player(*simulator);
     player.setPolicy(policy);
     std::mt19937 random(7);

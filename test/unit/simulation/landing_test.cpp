@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "validation/text_scene.h"
+#include "support/text_scene.h"
 
 namespace tissue_contact {
 namespace {

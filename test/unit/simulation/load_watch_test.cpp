@@ -1,10 +1,10 @@
 /// Loads that no tissue bears: found where they are, and not where they are not.
-#include "tissue_contact/simulation/load_watch.h"
+#include "simulation/load_watch.h"
 
 #include <gtest/gtest.h>
 
+#include "support/text_scene.h"
 #include "tissue_contact/simulation/simulator.h"
-#include "validation/text_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -54,9 +54,9 @@ struct Watched {
   std::vector<NodalVectors> x = {simulator.tissues()[0].restPositions()};
   int node = middleNode(simulator.tissues()[0]);
 
-  ImplausibleLoad look(const std::vector<SolvedContact>& contacts) {
+  ImplausibleLoad check(const std::vector<SolvedContact>& contacts) {
     ImplausibleLoad load;
-    watch.look(contacts, x, load);
+    watch.check(contacts, x, load);
     return load;
   }
 };
@@ -66,45 +66,45 @@ constexpr double kNodeArea =
 
 TEST(LoadWatch, ComparesTheMeanPressureWithTheModulus) {
   Watched scene;
-  const ImplausibleLoad light = scene.look({pushOn(scene.node, {0.0, 0.0, -0.5 * kModulus * kNodeArea})});
+  const ImplausibleLoad light = scene.check({pushOn(scene.node, {0.0, 0.0, -0.5 * kModulus * kNodeArea})});
   EXPECT_FALSE(light.found);
   EXPECT_NEAR(light.pressure_pa, 0.5 * kModulus, 0.34 * 0.5 * kModulus);
   EXPECT_EQ(light.modulus_pa, kModulus);
-  const ImplausibleLoad heavy = scene.look({pushOn(scene.node, {0.0, 0.0, -4.0 * kModulus * kNodeArea})});
+  const ImplausibleLoad heavy = scene.check({pushOn(scene.node, {0.0, 0.0, -4.0 * kModulus * kNodeArea})});
   EXPECT_TRUE(heavy.found);
   EXPECT_EQ(heavy.tissue, 0);
   EXPECT_EQ(heavy.instrument, 0);
   EXPECT_EQ(heavy.inverted_elements, 0);
   EXPECT_EQ(heavy.p_W, Vector3(0.0, 0.0, 0.02));
-  EXPECT_FALSE(scene.look({}).found);
+  EXPECT_FALSE(scene.check({}).found);
 }
 
 TEST(LoadWatch, OpposedForcesDoNotCancel) {
   Watched scene;
   const double big = 4.0 * kModulus * kNodeArea;
-  EXPECT_TRUE(scene.look({pushOn(scene.node, {big, 0, 0}), pushOn(scene.node, {-big, 0, 0})}).found);
+  EXPECT_TRUE(scene.check({pushOn(scene.node, {big, 0, 0}), pushOn(scene.node, {-big, 0, 0})}).found);
 }
 
 TEST(LoadWatch, OpenContactsPressNothing) {
   Watched scene;
   SolvedContact contact = pushOn(scene.node, {0.0, 0.0, -1.0});
   contact.state = ContactState::kOpen;
-  EXPECT_FALSE(scene.look({contact}).found);
+  EXPECT_FALSE(scene.check({contact}).found);
 }
 
 TEST(LoadWatch, FindsElementsTurnedInsideOutUnderTheTool) {
   Watched scene;
   const std::vector<SolvedContact> contacts = {pushOn(scene.node, {0.0, 0.0, -0.01})};
   scene.x[0](2, scene.node) -= 0.006;  // of 10 mm: flatter
-  EXPECT_FALSE(scene.look(contacts).found);
+  EXPECT_FALSE(scene.check(contacts).found);
   scene.x[0](2, scene.node) -= 0.009;  // through the layer below
-  const ImplausibleLoad load = scene.look(contacts);
+  const ImplausibleLoad load = scene.check(contacts);
   EXPECT_TRUE(load.found);
   EXPECT_GT(load.inverted_elements, 0);
   EXPECT_LT((load.p_W - scene.x[0].col(scene.node)).norm(), 0.02);
   scene.x[0](2, scene.node) += 0.015;
   scene.x[0](2, 0) += 0.05;  // somewhere else, where nothing presses
-  EXPECT_FALSE(scene.look(contacts).found);
+  EXPECT_FALSE(scene.check(contacts).found);
 }
 
 TEST(LoadWatch, APressIsPlausibleAndAToolThroughTheBaseIsNot) {

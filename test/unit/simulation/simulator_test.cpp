@@ -7,8 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "tissue_contact/simulation/instrument_motion.h"
-#include "validation/text_scene.h"
+#include "simulation/instrument_motion.h"
+#include "support/text_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -97,6 +97,16 @@ TEST(Simulator, StopsBetweenStepsWhenInterruptedAndGoesOnFromThere) {
   whole.advance(0.05, {Vector3(0.0, 0.0, -0.004)});
   // The same motion cut in two: round-off of where the ball is, met by what the solver's tolerance leaves open.
   EXPECT_NEAR(simulator.wrench(0).force.z(), whole.wrench(0).force.z(), 1e-3 * whole.wrench(0).force.z());
+}
+
+TEST(Simulator, RefusesADurationOfMoreStepsThanCanBeCounted) {
+  Simulator simulator = makeScene();
+  for (const double duration : {3e6, 1e300}) {  // at 1 ms: 3e9 steps and more
+    EXPECT_THROW(simulator.advance(duration, {Vector3(0.0, 0.0, -0.001)}), std::invalid_argument);
+    EXPECT_THROW(simulator.advance(duration, {Vector3(0.0, 0.0, -0.001)}, {3, nullptr}), std::invalid_argument);
+  }
+  EXPECT_EQ(simulator.stepCount(), 0);
+  EXPECT_EQ(simulator.jointPositions(0), VectorX(Vector3::Zero()));
 }
 
 TEST(Simulator, MomentumResidualOfTissueThatCreepsBackToRestIsSmall) {

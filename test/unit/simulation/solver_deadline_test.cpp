@@ -2,11 +2,12 @@
 /// The deadline a live caller sets for the solver: by the caller's clock, one iteration at least, no trace when unused.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
-#include "tissue_contact/scene/load_scene.h"
+#include "support/text_scene.h"
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
@@ -17,31 +18,15 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 /// A 5 mm ball 0.2 mm above a block; the clock shows a second more each time it is asked.
 class SolverDeadline : public testing::Test {
  protected:
-  Simulator makeSimulator(const std::string& solver, bool with_clock = true) {
-    const PackagePath package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
-    SceneEnvironment environment;
-    environment.package_path = package_path;
-    if (with_clock) environment.clock = [this] { return now_s_ += 1.0; };
-    const std::string yaml = R"(
-tissues:
-  - name: block
-    block: {size_m: [0.06, 0.06, 0.02], cells: [4, 4, 2]}
-    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}
-    damping: {stiffness_s: 0.003}
-    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]
-instruments:
-  - name: probe
-    urdf: package://tissue_contact/urdf/probe.urdf
-    base_pose: {position_m: [0, 0, 0.0252]}
-    joint_state_topics: [/probe]
-    tip_link: tip
-    contact_links: [tip]
-friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}]
-step: {max_step_s: 0.01}
-advisor: {sleep: never}
-solver: {iterations: 100, tolerance: 1.0e-14, )" +
-                             solver + "}\n";
-    return {parseScene(yaml, "test.yaml", package_path), environment};
+  Simulator makeScene(const std::string& solver, bool with_clock = true) {
+    std::function<double()> clock;
+    if (with_clock) clock = [this] { return now_s_ += 1.0; };
+    return makeSimulator(blockScene() + "instruments:\n" + probeEntry("probe", "/probe", "[0, 0, 0.0252]") +
+                             "friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}]\n"
+                             "step: {max_step_s: 0.01}\nadvisor: {sleep: never}\n"
+                             "solver: {iterations: 100, tolerance: 1.0e-14, " +
+                             solver + "}\n",
+                         {}, clock);
   }
 
   /// 0.7 mm deep: in one step, since a step may be as long as half the radius of the probe's stem, 1 mm.
@@ -53,7 +38,7 @@ solver: {iterations: 100, tolerance: 1.0e-14, )" +
 TEST_F(SolverDeadline, StopsTheIterations) {
   for (const char* method : {"method: predictor_corrector", "method: impulse"}) {
     now_s_ = 0.0;
-    Simulator simulator = makeSimulator(method);
+    Simulator simulator = makeScene(method);
     simulator.setSolverDeadline(5.0);
     press(simulator);
     EXPECT_EQ(simulator.report().iterations, 5) << method;  // the clock is asked after each
@@ -70,7 +55,7 @@ TEST_F(SolverDeadline, StopsTheIterations) {
 TEST_F(SolverDeadline, ThePromptOneLeavesTenIterations) {
   for (const char* method : {"method: predictor_corrector", "method: impulse"}) {
     now_s_ = 0.0;
-    Simulator simulator = makeSimulator(method);
+    Simulator simulator = makeScene(method);
     simulator.setSolverDeadline(kNever, 1.0);
     press(simulator);
     EXPECT_EQ(simulator.report().iterations, 10) << method;
@@ -83,7 +68,7 @@ TEST_F(SolverDeadline, ThePromptOneLeavesTenIterations) {
 }
 
 TEST_F(SolverDeadline, TheEarlierOfItAndTheTimeBudgetCounts) {
-  Simulator simulator = makeSimulator("time_budget_s: 3");
+  Simulator simulator = makeScene("time_budget_s: 3");
   simulator.setSolverDeadline(1000.0);
   press(simulator);
   EXPECT_EQ(simulator.report().iterations, 3);
@@ -94,8 +79,8 @@ TEST_F(SolverDeadline, TheEarlierOfItAndTheTimeBudgetCounts) {
 }
 
 TEST_F(SolverDeadline, UnusedItAsksNoClockAndChangesNothing) {
-  Simulator plain = makeSimulator("method: predictor_corrector", false);
-  Simulator timed = makeSimulator("method: predictor_corrector");
+  Simulator plain = makeScene("method: predictor_corrector", false);
+  Simulator timed = makeScene("method: predictor_corrector");
   timed.setSolverDeadline(kNever);
   press(plain);
   press(timed);
@@ -108,18 +93,18 @@ TEST_F(SolverDeadline, UnusedItAsksNoClockAndChangesNothing) {
 }
 
 TEST_F(SolverDeadline, MethodsWithoutABudgetTakeNoNotice) {
-  Simulator simulator = makeSimulator("method: reference");
+  Simulator simulator = makeScene("method: reference");
   simulator.setSolverDeadline(0.0);
   press(simulator);
   EXPECT_NE(simulator.report().stop, StopReason::kTimeBudget);
 }
 
 TEST_F(SolverDeadline, WantsAClockAndANumber) {
-  Simulator without_clock = makeSimulator("method: predictor_corrector", false);
+  Simulator without_clock = makeScene("method: predictor_corrector", false);
   EXPECT_THROW(without_clock.setSolverDeadline(1.0), std::invalid_argument);
   EXPECT_THROW(without_clock.setSolverDeadline(kNever, 1.0), std::invalid_argument);
   without_clock.setSolverDeadline(kNever);
-  Simulator simulator = makeSimulator("method: predictor_corrector");
+  Simulator simulator = makeScene("method: predictor_corrector");
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(simulator.setSolverDeadline(kNan), std::invalid_argument);
   EXPECT_THROW(simulator.setSolverDeadline(kNever, kNan), std::invalid_argument);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "validation/text_scene.h"
+#include "support/text_scene.h"
 
 namespace tissue_contact {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "support/temporary_directory.h"
-#include "tissue_contact/solver/delassus.h"
-#include "validation/text_scene.h"
+#include "support/text_scene.h"
+#include "tissue_contact/baselines/delassus.h"
 
 namespace tissue_contact {
 namespace {

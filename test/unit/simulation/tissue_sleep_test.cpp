@@ -1,13 +1,13 @@
 /// Sleeping nodes through the whole simulator: they save work, are woken in time, and what they add to the wrench stays
 /// within the bound that is stated.
-#include "tissue_contact/simulation/tissue_sleep.h"
+#include "simulation/tissue_sleep.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <sstream>
 
-#include "validation/text_scene.h"
+#include "support/text_scene.h"
 
 namespace tissue_contact {
 namespace {

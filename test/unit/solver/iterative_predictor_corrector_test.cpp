@@ -1,5 +1,5 @@
 /// The iterative predictor-corrector against closed forms, against its own residuals and on bad options.
-#include "tissue_contact/solver/iterative_predictor_corrector.h"
+#include "solver/iterative_predictor_corrector.h"
 
 #include <gtest/gtest.h>
 
@@ -218,15 +218,15 @@ TEST(LaggedCholesky, NeedsFewIterationsWhereGaussSeidelStalls) {
 
 TEST(IterativePredictorCorrector, StopsWhenTheTimeBudgetIsSpentAndSaysSo) {
   PressedBlock scene(0.5, 1e-2);
-  SolverDescription description = options(5000, 2, 1e-15);
-  description.time_budget_s = 2.5;
+  SolverOptions timed = options(5000, 2, 1e-15);
+  timed.time_budget_s = 2.5;
   double seconds = 0.0;
   const auto clock = [&] { return seconds += 1.0; };
-  const SolverReport report = IterativePredictorCorrector(description, clock).solve(scene.problem, scene.solution);
+  const SolverReport report = IterativePredictorCorrector(timed, clock).solve(scene.problem, scene.solution);
   EXPECT_EQ(report.stop, StopReason::kTimeBudget);
   EXPECT_EQ(report.iterations, 3);
   EXPECT_GT(report.residuals.momentum, 0.0);
-  EXPECT_THROW(IterativePredictorCorrector{description}, std::invalid_argument);  // no clock
+  EXPECT_THROW(IterativePredictorCorrector{timed}, std::invalid_argument);  // no clock
 }
 
 /// Nodes each held by a contact of its own: the case of MICA's projector.
@@ -272,7 +272,7 @@ TEST(Residuals, NotANumberIsNeverTakenForZero) {
   OneNode scene(Vector3(-1.0, 0.2, 0.1), {0.5, 0.5});
   scene.solution.states = {ContactState::kStatic};
   scene.solution.v[0].setConstant(std::numeric_limits<double>::quiet_NaN());
-  std::vector<NodalVectors> scratch = {NodalVectors::Zero(3, 1)};
+  std::vector<NodalVectors> scratch;
   const Residuals residuals = computeResiduals(scene.problem, scene.solution, scratch);
   EXPECT_TRUE(std::isnan(residuals.momentum));
   EXPECT_TRUE(std::isnan(residuals.penetration_m));

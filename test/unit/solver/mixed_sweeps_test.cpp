@@ -4,9 +4,9 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "solver/sparse_system.h"
+#include "solver/iterative_predictor_corrector.h"
+#include "solver/momentum_defect.h"
 #include "support/pressed_block.h"
-#include "tissue_contact/solver/iterative_predictor_corrector.h"
 
 namespace tissue_contact {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "tissue/element_patches.h"
+#include "tissue_contact/mesh/tet_mesh.h"
 #include "tissue_contact/tissue/make_elasticity.h"
-#include "tissue_contact/tissue/tet_mesh.h"
 #include "validation/elasticity_helpers.h"
 
 namespace tissue_contact {

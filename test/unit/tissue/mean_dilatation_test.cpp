@@ -1,5 +1,5 @@
 /// Volume changes averaged over patches: the patches, where nothing may change, and where locking must go.
-#include "tissue_contact/tissue/mean_dilatation.h"
+#include "tissue/mean_dilatation.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <set>
 
 #include "tissue/element_patches.h"
+#include "tissue_contact/mesh/tet_mesh.h"
 #include "tissue_contact/tissue/make_elasticity.h"
-#include "tissue_contact/tissue/tet_mesh.h"
 #include "validation/elasticity_helpers.h"
 
 namespace tissue_contact {

@@ -1,5 +1,5 @@
 /// What the neo-Hookean model is for: elements that were turned inside out or pressed flat come back.
-#include "tissue_contact/tissue/neo_hookean.h"
+#include "tissue/neo_hookean.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
-#include "tissue_contact/tissue/mass_spring.h"
-#include "tissue_contact/tissue/tet_mesh.h"
+#include "tissue/mass_spring.h"
+#include "tissue_contact/mesh/tet_mesh.h"
 #include "validation/elasticity_helpers.h"
 
 namespace tissue_contact {

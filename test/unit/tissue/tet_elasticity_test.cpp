@@ -7,7 +7,7 @@
 #include <memory>
 #include <random>
 
-#include "tissue_contact/tissue/tet_mesh.h"
+#include "tissue_contact/mesh/tet_mesh.h"
 #include "validation/elasticity_helpers.h"
 
 namespace tissue_contact {

@@ -117,7 +117,7 @@ TEST(Tissue, RefusesModelsThatDoNotSuitTheGeometry) {
   expectRefused(description, {"tissue 'block'", "'membrane'", "volume", "corotational"});
   description = sheetDescription();
   description.material.model = ElasticModel::kLinear;
-  expectRefused(description, {"tissue 'flap'", "'linear'", "takes membrane"});
+  expectRefused(description, {"tissue 'flap'", "'linear'", "must be a membrane"});
   description = blockDescription();
   description.regions = {regionAbove(0.01)};
   description.regions[0].material.model = ElasticModel::kNeoHookean;

@@ -1,0 +1,18 @@
+/// @file
+/// Room `core`: paths as scenes and robot models write them.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace tissue_contact {
+
+/// Directory of a ROS package, or "" when it is not known. The ROS room has packagePath().
+using PackagePath = std::function<std::string(const std::string& package)>;
+
+/// Turns `uri` into an absolute path: `package://name/rest` through `package_path`, `file:///rest`, an absolute path,
+/// or a path relative to `base_directory`. Does not test that the file exists.
+/// @throws std::invalid_argument naming the uri when the package is unknown or the scheme is not one of these.
+std::string resolvePath(const std::string& uri, const std::string& base_directory, const PackagePath& package_path);
+
+}  // namespace tissue_contact

@@ -1,0 +1,48 @@
+/// @file
+/// Room `tissue`: what a tissue is made of.
+#pragma once
+
+#include <utility>
+
+#include "tissue_contact/core/range.h"
+
+namespace tissue_contact {
+
+/// kLinear to kMassSpring are for volumes (block, mesh); kMembrane is for surfaces (sheet, shell) and their only model.
+enum class ElasticModel { kLinear, kCorotational, kNeoHookean, kMassSpring, kMembrane };
+
+/// As in scene files.
+constexpr std::pair<const char*, ElasticModel> kElasticModelNames[] = {{"linear", ElasticModel::kLinear},
+                                                                       {"corotational", ElasticModel::kCorotational},
+                                                                       {"neo_hookean", ElasticModel::kNeoHookean},
+                                                                       {"mass_spring", ElasticModel::kMassSpring},
+                                                                       {"membrane", ElasticModel::kMembrane}};
+
+/// Over what a linear or corotational volume averages its change of volume.
+enum class Dilatation {
+  kAuto,     ///< kPatch from Poisson's ratio 0.3 on, where it pays; else kElement
+  kElement,  ///< each tetrahedron: locks as Poisson's ratio nears 1/2
+  kPatch     ///< the five tetrahedra of a block's cell, or about five neighbours of a mesh: does not
+};
+
+struct MaterialDescription {
+  static constexpr Range kPoissonsRatio{-1.0, 0.5, "", "0.5 itself (incompressible) cannot be simulated, 0.49 can",
+                                        true, true};
+
+  ElasticModel model = ElasticModel::kCorotational;
+  double youngs_modulus_pa = 0.0;
+  double poissons_ratio = 0.0;
+  double density_kg_per_m3 = 0.0;
+  /// Membranes: bending stiffness per width, N m; negative: that of a plate, E h^3 / (12 (1 - nu^2)).
+  double bending_stiffness_n_m = -1.0;
+  Dilatation dilatation = Dilatation::kAuto;
+};
+
+/// Damping matrix D = mass_per_s * M + stiffness_s * K (Rayleigh; the second part is Kelvin-Voigt's, with
+/// viscosity = stiffness_s * modulus).
+struct DampingDescription {
+  double mass_per_s = 0.0;
+  double stiffness_s = 0.0;
+};
+
+}  // namespace tissue_contact

@@ -1,0 +1,41 @@
+#include "contact/pair/surface_pair.h"
+
+namespace tissue_contact {
+namespace {
+
+double longestEdge(const MovingSurface& surface, const SurfacePoint& point) {
+  double longest = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    if (point.weights[i] > 0.0) longest = std::max(longest, surface.longestEdge(point.nodes[i]));
+  }
+  return longest;
+}
+
+}  // namespace
+
+bool SurfacePair::nearAtRest(const SurfacePoint& on_own, const SurfacePoint& on_other) const {
+  if (!folds()) return false;
+  constexpr double kTightestFold = 1.5;  // of the thickness; just below pi / 2
+  const double length = std::max({longestEdge(own, on_own), longestEdge(other, on_other), kTightestFold * apart()});
+  return !((on_own.in(own.rest()) - on_other.in(other.rest())).norm() > length);
+}
+
+void SurfacePair::add(const SurfaceFeature& own_feature, const SurfacePoint& on_own,
+                      const SurfaceFeature& other_feature, const SurfacePoint& on_other, const Vector3& n,
+                      double distance, std::vector<Contact>& contacts) const {
+  if (own.isFixed(own_feature) && other.isFixed(other_feature)) return;
+  Contact& contact = contacts.emplace_back();
+  contact.key.tissue = own.tissue();
+  contact.key.feature = own_feature;
+  contact.key.other_tissue = other.tissue();
+  contact.key.other_feature = other_feature;
+  contact.nodes = on_own.nodes;
+  contact.weights = on_own.weights;
+  contact.other_nodes = on_other.nodes;
+  contact.other_weights = on_other.weights;
+  contact.p_WC = on_own.in(own.positions());
+  contact.R_WC = contactFrame(n);
+  contact.gap_m = distance - apart();
+}
+
+}  // namespace tissue_contact

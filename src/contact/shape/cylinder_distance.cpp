@@ -1,0 +1,212 @@
+/// @file
+/// Room `contact`: cylinder, axis along z.
+///
+/// Where on a triangle the cylinder is nearest: as for the box (box_distance.cpp), with psi the larger of the distance
+/// to the side (of the endless cylinder) and to the nearer cap plane. Every point that can minimise psi over a triangle
+/// has a closed form; all are tried.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "contact/shape/shape_distance.h"
+#include "contact/shape/soft_minimum.h"
+#include "contact/tolerances.h"
+
+namespace tissue_contact {
+namespace {
+
+class CylinderDistance : public ShapeDistance {
+ public:
+  CylinderDistance(double radius, double half_length)
+      : radius_(radius), half_length_(half_length), size_(std::min(radius, half_length)) {}
+
+  double size() const override { return size_; }
+  Vector3 halfExtents(const Matrix3& R_WS) const override {
+    const Vector3 axis = R_WS.col(2);
+    return half_length_ * axis.cwiseAbs() + radius_ * (1.0 - axis.array().square()).max(0.0).sqrt().matrix();
+  }
+  SignedDistance at(const Vector3& p_S) const override;
+  bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const override;
+
+ private:
+  double beyondSide(const Vector3& p) const { return std::sqrt(p.x() * p.x() + p.y() * p.y()) - radius_; }
+  double beyondCap(const Vector3& p) const { return std::abs(p.z()) - half_length_; }
+  double beyondPlanes(const Vector3& p) const { return std::max(beyondSide(p), beyondCap(p)); }
+
+  void offer(const TrianglePoints& triangle, const Vector3& weights, SoftMinimum& minimum) const {
+    minimum.add(weights, beyondPlanes(triangle.pointAt(weights)));
+  }
+  void offerOnEdge(const TrianglePoints& triangle, int edge, double u, SoftMinimum& minimum) const {
+    if (u > 0.0 && u < 1.0) offer(triangle, weightsOnEdge(edge, u), minimum);
+  }
+  void offerEdge(const TrianglePoints& triangle, int edge, SoftMinimum& minimum) const;
+  void offerInside(const TrianglePoints& triangle, SoftMinimum& minimum) const;
+  void addNormals(const Vector3& p, ClosestPoint& result) const;
+  bool nearestInside(const TrianglePoints& triangle, Vector3& weights) const;
+  double nearestOnEdge(const Vector3& a, const Vector3& d) const;
+  void findBeyondRim(const TrianglePoints& triangle, ClosestPoint& result) const;
+
+  double radius_;
+  double half_length_;
+  double size_;
+};
+
+/// Outward direction of the side at p; x on the axis itself, where all are gradients.
+Vector3 radialDirection(const Vector3& p) {
+  const double from_axis = std::sqrt(p.x() * p.x() + p.y() * p.y());
+  return from_axis > 0.0 ? Vector3(p.x() / from_axis, p.y() / from_axis, 0.0) : Vector3::UnitX();
+}
+
+Vector3 capNormal(const Vector3& p) { return {0.0, 0.0, p.z() < 0.0 ? -1.0 : 1.0}; }
+
+SignedDistance CylinderDistance::at(const Vector3& p_S) const {
+  const double side = beyondSide(p_S);
+  const double cap = beyondCap(p_S);
+  if (side > 0.0 && cap > 0.0) {
+    const double distance = std::sqrt(side * side + cap * cap);
+    if (distance > kTouch * size_) {
+      return {distance, (side * radialDirection(p_S) + cap * capNormal(p_S)) / distance};
+    }
+    return {distance, side > cap ? radialDirection(p_S) : capNormal(p_S)};
+  }
+  return {std::max(side, cap), side > cap ? radialDirection(p_S) : capNormal(p_S)};
+}
+
+bool CylinderDistance::closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const {
+  SoftMinimum minimum(kTie * size_);
+  for (int i = 0; i < 3; ++i) {
+    offer(triangle, Vector3::Unit(i), minimum);
+    offerEdge(triangle, i, minimum);
+  }
+  if (!triangle.normal.isZero(0.0)) offerInside(triangle, minimum);
+  if (minimum.lowest() > margin) return false;  // psi <= phi
+  result.weights = minimum.weights();
+  result.gradients = GradientSet();
+  result.beyond_rim = false;
+  const Vector3 p = triangle.pointAt(result.weights);
+  const SignedDistance here = at(p);
+  result.distance = here.distance;
+  if (here.distance <= kTie * size_) {
+    addNormals(p, result);
+  } else if (here.distance > beyondPlanes(p) + kTouch * size_) {
+    findBeyondRim(triangle, result);
+  } else {
+    result.gradients.add(here.normal);
+  }
+  return result.distance <= margin;
+}
+
+/// Points of an edge a + u d where psi can be least: nearest to the axis; z = 0; and where side and cap are equally
+/// far, (a + u d)_xy^2 = (radius - half length +- z)^2.
+void CylinderDistance::offerEdge(const TrianglePoints& triangle, int edge, SoftMinimum& minimum) const {
+  const Vector3& a = triangle.corners[edge];
+  const Vector3 d = triangle.corners[(edge + 1) % 3] - a;
+  const double across = d.x() * d.x() + d.y() * d.y();
+  const double mixed = a.x() * d.x() + a.y() * d.y();
+  offerOnEdge(triangle, edge, -mixed / across, minimum);
+  offerOnEdge(triangle, edge, -a.z() / d.z(), minimum);
+  for (const double sign : {-1.0, 1.0}) {
+    const double offset = radius_ - half_length_ + sign * a.z();
+    const double square = across - d.z() * d.z();
+    const double linear = mixed - sign * d.z() * offset;
+    const double constant = a.x() * a.x() + a.y() * a.y() - offset * offset;
+    const double discriminant = linear * linear - square * constant;
+    if (!(discriminant >= 0.0)) continue;
+    const double q = -(linear + std::copysign(std::sqrt(discriminant), linear));
+    offerOnEdge(triangle, edge, q / square, minimum);
+    offerOnEdge(triangle, edge, constant / q, minimum);
+  }
+}
+
+/// Inner points: where the axis passes; where the line z = 0 is nearest to the axis; and where side and cap are equally
+/// far and a combination of their normals is the triangle's normal N, which puts the point in direction +-N_xy from the
+/// axis. Each is projected on the triangle, so that one outside does no harm.
+void CylinderDistance::offerInside(const TrianglePoints& triangle, SoftMinimum& minimum) const {
+  const auto offerPoint = [&](const Vector3& p) {
+    if (p.allFinite()) offer(triangle, projectOnTriangle(triangle.corners, p), minimum);
+  };
+  const Vector3& n = triangle.normal;
+  const double height = n.dot(triangle.corners[0]);
+  const double tilt = std::sqrt(n.x() * n.x() + n.y() * n.y());
+  offerPoint({0.0, 0.0, height / n.z()});
+  if (!(tilt > 0.0)) return;
+  const Vector3 direction(n.x() / tilt, n.y() / tilt, 0.0);
+  for (const double towards : {-1.0, 1.0}) {
+    for (const double cap : {-1.0, 1.0}) {
+      const double offset = radius_ - half_length_;
+      const double z = (height - towards * tilt * offset) / (n.z() + towards * cap * tilt);
+      offerPoint(towards * (offset + cap * z) * direction + z * Vector3::UnitZ());
+    }
+  }
+  // Needed only where both caps are equally far; elsewhere it may tie with the ends of a line of contact and must not
+  // displace their mean.
+  const Vector3 middle = projectOnTriangle(triangle.corners, height / tilt * direction);
+  if (beyondPlanes(triangle.pointAt(middle)) < minimum.lowest() - kTie * size_) offer(triangle, middle, minimum);
+}
+
+void CylinderDistance::addNormals(const Vector3& p, ClosestPoint& result) const {
+  const double active = beyondPlanes(p) - 2.0 * kTie * size_;
+  if (beyondSide(p) >= active) {
+    result.gradients.add(radialDirection(p));
+    if (beyondSide(p) + radius_ <= kTie * size_) {  // on the axis
+      result.gradients.add(-radialDirection(p));
+      result.gradients.add(Vector3::UnitZ().cross(radialDirection(p)));
+      result.gradients.add(radialDirection(p).cross(Vector3::UnitZ()));
+    }
+  }
+  if (beyondCap(p) >= active) result.gradients.add(capNormal(p));
+  if (-std::abs(p.z()) - half_length_ >= active) result.gradients.add(-capNormal(p));
+}
+
+/// The point below the cylinder's foremost point towards the triangle's plane, if the triangle holds it. Where that is a
+/// line or a cap, an edge is as near.
+bool CylinderDistance::nearestInside(const TrianglePoints& triangle, Vector3& weights) const {
+  if (triangle.normal.isZero(0.0)) return false;
+  const double height = triangle.normal.dot(triangle.corners[0]);
+  const Vector3 n = std::copysign(1.0, height) * triangle.normal;
+  const double tilt = std::sqrt(n.x() * n.x() + n.y() * n.y());
+  if (!(tilt > 0.0)) return false;
+  const Vector3 foremost(radius_ * n.x() / tilt, radius_ * n.y() / tilt, std::copysign(half_length_, n.z()));
+  if (!(n.dot(foremost) < std::abs(height))) return false;  // the plane cuts the cylinder
+  weights = projectOnTriangle(triangle.corners, foremost);
+  return weights.minCoeff() > 0.0;
+}
+
+/// Parameter in [0, 1] of the point of a + u d nearest to the cylinder: the distance is convex along it.
+double CylinderDistance::nearestOnEdge(const Vector3& a, const Vector3& d) const {
+  constexpr int kMaxSteps = 54;  // to round-off
+  double low = 0.0;
+  double high = 1.0;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const double middle = 0.5 * (low + high);
+    (at(a + middle * d).normal.dot(d) > 0.0 ? high : low) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// By location, not by value: distances that differ by round-off are 1e-8 of the size apart.
+void CylinderDistance::findBeyondRim(const TrianglePoints& triangle, ClosestPoint& result) const {
+  result.beyond_rim = true;
+  if (!nearestInside(triangle, result.weights)) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int edge = 0; edge < 3; ++edge) {
+      const Vector3& a = triangle.corners[edge];
+      const double u = nearestOnEdge(a, triangle.corners[(edge + 1) % 3] - a);
+      const double distance = at(triangle.pointAt(weightsOnEdge(edge, u))).distance;
+      if (!(distance < least)) continue;
+      least = distance;
+      result.weights = weightsOnEdge(edge, u);
+    }
+  }
+  const SignedDistance there = at(triangle.pointAt(result.weights));
+  result.distance = there.distance;
+  result.gradients.add(there.normal);
+}
+
+}  // namespace
+
+std::unique_ptr<ShapeDistance> makeCylinderDistance(double radius, double half_length) {
+  return std::make_unique<CylinderDistance>(radius, half_length);
+}
+
+}  // namespace tissue_contact

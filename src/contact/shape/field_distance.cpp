@@ -1,0 +1,59 @@
+#include "contact/shape/field_distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "contact/shape/field_surface.h"
+#include "contact/shape/lowest_on_triangle.h"
+#include "contact/tolerances.h"
+
+namespace tissue_contact {
+namespace {
+
+constexpr std::size_t kDrawnTriangles = 6000;  // 0.4 MB of a marker
+
+}  // namespace
+
+FieldDistance::FieldDistance(std::shared_ptr<const MeshField> field)
+    : field_(std::move(field)),
+      centre_(0.5 * (field_->low + field_->high)),
+      half_(0.5 * (field_->high - field_->low)),
+      size_(half_.maxCoeff()) {}
+
+const TriangleMesh* FieldDistance::drawn() const {
+  if (!drawn_) drawn_ = fieldSurface(field_->grid, kDrawnTriangles);
+  return &*drawn_;
+}
+
+SignedDistance FieldDistance::at(const Vector3& p_S) const {
+  if (!p_S.allFinite()) return {std::numeric_limits<double>::quiet_NaN(), Vector3::UnitX()};
+  const GridSample here = field_->grid.at(p_S);
+  const double length = here.gradient.norm();
+  constexpr double kNone = 1e-9;  // deepest inside: every direction is as good as another
+  return {here.distance, length > kNone ? Vector3(here.gradient / length) : Vector3::UnitX()};
+}
+
+void FieldDistance::foremostCorners(const Vector3& forward, const Eigen::AlignedBox3d& box,
+                                    std::vector<ShapeCorner>& corners) const {
+  corners.clear();
+  for (std::size_t i = 0; i < field_->tips.size(); ++i) {
+    const MeshTip& tip = field_->tips[i];
+    const auto rises = [&](const Vector3& edge) { return forward.dot(edge) > kCornerSlope; };
+    if (!box.contains(tip.p_S) || std::any_of(tip.edges.begin(), tip.edges.end(), rises)) continue;
+    corners.push_back({static_cast<int>(i), tip.p_S});
+  }
+}
+
+bool FieldDistance::closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const {
+  Eigen::AlignedBox3d around;
+  for (const Vector3& p : triangle.corners) around.extend(p);
+  const Eigen::AlignedBox3d box(Vector3(centre_ - half_), Vector3(centre_ + half_));
+  if (!(around.exteriorDistance(box) <= margin)) return false;
+  const double reach = triangle.normal.cwiseAbs().dot(half_) + margin;
+  if (std::abs(triangle.normal.dot(centre_ - triangle.corners[0])) > reach) return false;
+  return lowestOnTriangle(field_->grid, triangle, margin, result);
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,40 @@
+/// @file
+/// Room `contact`: a mesh shape as a sampled signed distance.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "contact/shape/mesh_field.h"
+#include "contact/shape/shape_distance.h"
+
+namespace tissue_contact {
+
+/// The distance changes by no more than the way between two points, its normal without jumps but on ridges inside. It is
+/// exact to some hundredths of the grid's spacing beside flat and gently curved faces; edges are rounded by about one
+/// spacing. No corners but the tips of needles: a closest point per triangle, the tissue's vertices and the points that
+/// ContactMemory keeps.
+class FieldDistance : public ShapeDistance {
+ public:
+  explicit FieldDistance(std::shared_ptr<const MeshField> field);
+
+  double size() const override { return size_; }
+  Vector3 halfExtents(const Matrix3& R_WS) const override { return R_WS.cwiseAbs() * half_; }
+  Vector3 boxCentre() const override { return centre_; }
+  SignedDistance at(const Vector3& p_S) const override;
+  const TriangleMesh* drawn() const override;
+  /// The tips alone: rounded edges and corners need none.
+  void foremostCorners(const Vector3& forward, const Eigen::AlignedBox3d& box,
+                       std::vector<ShapeCorner>& corners) const override;
+  double cornerReach() const override { return half_.minCoeff(); }
+  bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const override;
+
+ private:
+  std::shared_ptr<const MeshField> field_;
+  Vector3 centre_;
+  Vector3 half_;
+  double size_;
+  mutable std::optional<TriangleMesh> drawn_;  ///< made when first asked for: a replay draws nothing
+};
+
+}  // namespace tissue_contact

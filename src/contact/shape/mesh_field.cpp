@@ -1,0 +1,205 @@
+#include "contact/shape/mesh_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "contact/shape/field_cache.h"
+#include "contact/shape/sample_distance.h"
+#include "mesh/mesh_checks.h"
+#include "mesh/nodes.h"
+#include "mesh/surface/outer_surface.h"
+#include "mesh/surface/triangle_geometry.h"
+
+namespace tissue_contact {
+namespace {
+
+constexpr double kSamplesPerDeviationPoint = 50.0;
+
+/// Triangles that have an area, and their vertices.
+/// @throws std::invalid_argument when there is none or an index is out of range.
+TriangleMesh usablePart(const TriangleMesh& mesh) {
+  TriangleMesh usable{mesh.vertices, {}};
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    checkNodeIndices(t, i, mesh.vertices.cols(), "triangle", "collision mesh");
+    const bool is_flat =
+        triangleNormal(mesh.vertices.col(t[0]), mesh.vertices.col(t[1]), mesh.vertices.col(t[2])).isZero(0.0);
+    if (!is_flat) usable.triangles.push_back(t);
+  }
+  if (usable.triangles.empty()) throw std::invalid_argument("collision mesh: it has no triangle with an area > 0");
+  dropUnusedNodes(usable.vertices, usable.triangles);  // they must not widen the grid
+  return usable;
+}
+
+/// Vertices that are tips of the solid; a pit is none.
+std::vector<MeshTip> tipsOf(const TriangleMesh& mesh, const DistanceGrid& grid) {
+  constexpr double kNarrow = 0.866;  // cosine
+  constexpr double kAside = 5.0;     // spacings along the axis: inside behind a tip, outside before it
+  std::vector<MeshTip> ends(static_cast<std::size_t>(mesh.vertices.cols()));
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const int other : {t[(k + 1) % 3], t[(k + 2) % 3]}) {
+        const Vector3 edge = mesh.vertices.col(other) - mesh.vertices.col(t[k]);
+        if (edge.norm() > 0.0) ends[static_cast<std::size_t>(t[k])].edges.push_back(edge.normalized());
+      }
+    }
+  }
+  std::vector<MeshTip> tips;
+  for (std::size_t v = 0; v < ends.size(); ++v) {
+    MeshTip& tip = ends[v];
+    Vector3 axis = Vector3::Zero();
+    for (const Vector3& edge : tip.edges) axis += edge;
+    const auto is_wide = [&](const Vector3& edge) { return !(edge.dot(axis) > kNarrow * axis.norm()); };
+    if (tip.edges.size() < 6 || std::any_of(tip.edges.begin(), tip.edges.end(), is_wide)) continue;
+    tip.p_S = mesh.vertices.col(static_cast<Eigen::Index>(v));
+    const Vector3 aside = kAside * grid.spacing * axis.normalized();
+    if (grid.at(tip.p_S + aside).distance < 0.0 && grid.at(tip.p_S - aside).distance > 0.0) tips.push_back(tip);
+  }
+  return tips;
+}
+
+void requireInside(const DistanceGrid& grid, const std::string& name) {
+  if (std::any_of(grid.samples.begin(), grid.samples.end(), [](float value) { return value < 0.0F; })) return;
+  throw std::invalid_argument(
+      "mesh '" + name +
+      "' encloses nothing: it is an open sheet, or thinner than a hundredth of its length; a tool "
+      "that touches tissue must be a closed solid");
+}
+
+/// At points spread evenly over the triangles (additive recurrence of the plastic number, folded into each triangle).
+void measureDeviation(const TriangleMesh& outer, double points, MeshField& field) {
+  const auto corner = [&](const Triangle& t, int k) -> Vector3 { return outer.vertices.col(t[k]); };
+  double total = 0.0;
+  for (const Triangle& t : outer.triangles) total += triangleArea(outer.vertices, t);
+  std::vector<std::pair<double, double>> found;  // deviation, area
+  double squares = 0.0;
+  double u = 0.5;
+  double v = 0.5;
+  for (const Triangle& t : outer.triangles) {
+    const double area = triangleArea(outer.vertices, t);
+    const int count = static_cast<int>(std::ceil(points * area / total));
+    for (int i = 0; i < count; ++i) {
+      u = std::fmod(u + 0.7548776662466927, 1.0);
+      v = std::fmod(v + 0.5698402909980532, 1.0);
+      const bool fold = u + v > 1.0;
+      const double a = fold ? 1.0 - u : u;
+      const double b = fold ? 1.0 - v : v;
+      const Vector3 p = corner(t, 0) + a * (corner(t, 1) - corner(t, 0)) + b * (corner(t, 2) - corner(t, 0));
+      const double deviation = std::abs(field.grid.at(p).distance);
+      found.emplace_back(deviation, area / count);
+      squares += deviation * deviation * area / count;
+    }
+  }
+  std::sort(found.begin(), found.end());
+  double below = 0.0;
+  for (const auto& [deviation, area] : found) {
+    if (below <= 0.5 * total) field.median_deviation = deviation;
+    below += area;
+  }
+  field.largest_deviation = found.back().first;
+  field.rms_deviation = std::sqrt(squares / total);
+}
+
+/// Says how far a long preparation has come.
+class Progress {
+ public:
+  Progress(const std::string& name, const MeshPreparation& preparation) : name_(name), preparation_(preparation) {
+    if (preparation.clock) last_ = preparation.clock();
+  }
+  void at(double share) {
+    if (!preparation_.say || !preparation_.clock) return;
+    const double now = preparation_.clock();
+    if (now - last_ < 1.0) return;
+    last_ = now;
+    preparation_.say("mesh " + name_ + ": " + std::to_string(static_cast<int>(100.0 * share)) + " % prepared");
+  }
+
+ private:
+  const std::string& name_;
+  const MeshPreparation& preparation_;
+  double last_ = 0.0;
+};
+
+MeshField build(const TriangleMesh& mesh, const std::string& name, const MeshPreparation& preparation,
+                double sample_count) {
+  const GridPlan plan = planGrid(mesh, sample_count);
+  const WindingTree all(mesh);
+  const TriangleMesh outer = outerSurface(mesh, all, GridPlan::kBlock * plan.spacing);
+  MeshField field;
+  field.low = mesh.vertices.rowwise().minCoeff();
+  field.high = mesh.vertices.rowwise().maxCoeff();
+  if (outer.triangles.empty()) requireInside(field.grid, name);
+  const TriangleTree outer_tree(outer.vertices, outer.triangles);
+  Progress progress(name, preparation);
+  field.grid = sampleDistance(all, outer_tree, plan, [&](double share) { progress.at(share); });
+  requireInside(field.grid, name);
+  measureDeviation(outer, sample_count / kSamplesPerDeviationPoint, field);
+  return field;
+}
+
+/// Across an opening of the mesh, wherever one is wider than the samples tell apart.
+void reportJump(const std::string& name, const DistanceGrid& grid, const MeshPreparation& preparation) {
+  const FieldJump jump = widestJump(grid);
+  if (!preparation.say || !(jump.width_m > 0.0)) return;
+  std::array<char, 384> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      ": not closed: at (%.4g, %.4g, %.4g) m of its frame, scaled, is an opening about %.3g mm wide, the widest if "
+      "there are more; inside and outside meet there and the distance jumps, so tissue that gets there is pushed "
+      "suddenly and to a side of the opening; fill it in the mesh, or use a closed mesh or a box, cylinder or sphere",
+      jump.p_S.x(), jump.p_S.y(), jump.p_S.z(), 1e3 * jump.width_m);
+  preparation.say("mesh " + name + text.data());
+}
+
+void report(const std::string& name, std::size_t triangles, const MeshField& field, const std::string& origin,
+            const MeshPreparation& preparation) {
+  if (!preparation.say) return;
+  std::array<char, 256> text{};
+  const DistanceGrid& grid = field.grid;
+  std::snprintf(text.data(), text.size(),
+                ": %zu triangles, grid %d x %d x %d of %.3g mm, which rounds edges; off the mesh by %.3g mm at most, "
+                "%.3g mm rms, half of it less than %.2g mm; ",
+                triangles, grid.size[0], grid.size[1], grid.size[2], 1e3 * grid.spacing, 1e3 * field.largest_deviation,
+                1e3 * field.rms_deviation, 1e3 * field.median_deviation);
+  preparation.say("mesh " + name + text.data() + origin);
+  reportJump(name, grid, preparation);
+  constexpr double kLargeTool = 2.0;  // m
+  const double extent = (field.high - field.low).maxCoeff();
+  if (extent > kLargeTool) {
+    std::snprintf(text.data(), text.size(), ": it is %.3g m long; is it in millimetres? then give it scale 0.001",
+                  extent);
+    preparation.say("mesh " + name + text.data());
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const MeshField> prepareMeshField(const TriangleMesh& original, const std::string& name,
+                                                  MeshPreparation& preparation, double sample_count) {
+  const TriangleMesh mesh = usablePart(original);
+  const std::string key = fieldKey(mesh, sample_count);
+  auto field = std::make_shared<MeshField>();
+  if (readField(preparation.cache_directory, key, *field)) {
+    field->tips = tipsOf(mesh, field->grid);
+    report(name, original.triangles.size(), *field, "from the cache", preparation);
+    return field;
+  }
+  const double start = preparation.clock ? preparation.clock() : 0.0;
+  *field = build(mesh, name, preparation, sample_count);
+  field->tips = tipsOf(mesh, field->grid);
+  std::array<char, 64> took{"built"};
+  if (preparation.clock) std::snprintf(took.data(), took.size(), "built in %.1f s", preparation.clock() - start);
+  const std::string trouble = writeField(preparation.cache_directory, key, *field);
+  report(name, original.triangles.size(), *field, took.data(), preparation);
+  if (!trouble.empty()) {
+    if (preparation.say) preparation.say("meshes are prepared again at every start: " + trouble);
+    preparation.cache_directory.clear();
+  }
+  return field;
+}
+
+}  // namespace tissue_contact

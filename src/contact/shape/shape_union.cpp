@@ -1,0 +1,73 @@
+#include "contact/shape/shape_union.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tissue_contact {
+namespace {
+
+/// Coefficients (s, t) with p = s a + t b + something square to both, for unit a and b that are not parallel.
+Vector2 coefficients(const Vector3& a, const Vector3& b, const Vector3& p) {
+  const double cosine = a.dot(b);
+  const double along_a = a.dot(p);
+  const double along_b = b.dot(p);
+  return Vector2(along_a - cosine * along_b, along_b - cosine * along_a) / (1.0 - cosine * cosine);
+}
+
+/// Normals nearer to parallel than this (sine squared) do not say where two shapes meet.
+constexpr double kParallel = 1e-6;
+
+/// Whether a ball around the point where the shapes are that far away touches both, to a hundredth of its radius.
+bool isPlaced(const SignedDistance& a, const SignedDistance& b, double radius) {
+  return std::max(std::abs(a.distance - radius), std::abs(b.distance - radius)) < 0.01 * radius;
+}
+
+}  // namespace
+
+SignedDistance distanceAt(const PlacedShape& shape, const Vector3& p_W) {
+  const Matrix3& R_WS = shape.X_WS.linear();
+  SignedDistance here = shape.distance->at(R_WS.transpose() * (p_W - shape.X_WS.translation()));
+  here.normal = R_WS * here.normal;
+  return here;
+}
+
+bool areOpposed(const SignedDistance& first, const SignedDistance& second) {
+  constexpr double kOpposed = -0.9;  // cosine: 26 degrees from each other's opposite
+  return first.normal.dot(second.normal) < kOpposed;
+}
+
+bool fillGroove(const PlacedShape& first, const PlacedShape& second, const Vector3& p_W, double radius_m,
+                const SignedDistance& at_first, const SignedDistance& at_second, SignedDistance& filled) {
+  constexpr int kSteps = 8;            // of Newton's method, none longer than the radius
+  constexpr double kFarthest = 4.0;    // radii: a ball that far away has slipped out of the groove
+  constexpr double kNearCentre = 0.1;  // of the radius: no direction there, and nothing near to touch
+  SignedDistance a = at_first;
+  SignedDistance b = at_second;
+  const double closes_after = std::max(0.0, a.distance + b.distance) / (a.normal + b.normal).norm();
+  const double radius = radius_m * std::clamp(2.0 - closes_after / radius_m, 0.0, 1.0);
+  if (!(radius > 0.0) || !(a.distance < radius && b.distance < radius)) return false;
+  Vector3 centre = p_W;
+  for (int k = 0; k < kSteps; ++k) {
+    const double cosine = a.normal.dot(b.normal);
+    if (!(1.0 - cosine * cosine > kParallel)) return false;
+    const double short_a = radius - a.distance;
+    const double short_b = radius - b.distance;
+    const Vector3 step =
+        ((short_a - cosine * short_b) * a.normal + (short_b - cosine * short_a) * b.normal) / (1.0 - cosine * cosine);
+    centre += step * std::min(1.0, radius / step.norm());
+    if (!((centre - p_W).norm() < kFarthest * radius_m)) return false;
+    a = distanceAt(first, centre);
+    b = distanceAt(second, centre);
+    if (isPlaced(a, b, radius)) break;
+  }
+  const double cosine = a.normal.dot(b.normal);
+  if (!isPlaced(a, b, radius) || !(1.0 - cosine * cosine > kParallel)) return false;
+  // The groove lies between the points that the ball touches.
+  if (!(coefficients(a.normal, b.normal, centre - p_W).minCoeff() > 0.0)) return false;
+  const double to_centre = (centre - p_W).norm();
+  if (!(to_centre > kNearCentre * radius) || !(radius - to_centre < at_first.distance)) return false;
+  filled = {radius - to_centre, (centre - p_W) / to_centre};
+  return true;
+}
+
+}  // namespace tissue_contact

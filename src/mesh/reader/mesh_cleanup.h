@@ -1,0 +1,27 @@
+/// @file
+/// Room `mesh` (private): from the triangle soup of a mesh file to a connected, outward surface.
+#pragma once
+
+#include <vector>
+
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
+
+namespace tissue_contact {
+
+/// Merges vertices nearer to each other than 1e-7 of the bounding box's diagonal: STL repeats every vertex per
+/// triangle, and mesh files store single precision, so equal points may differ in the last digit after a node's
+/// transform. The first of each group is kept, and triangles left with two equal corners are dropped. Linear in the
+/// number of vertices.
+/// @param vertices finite.
+TriangleMesh mergeVertices(const std::vector<Vector3>& vertices, const std::vector<Triangle>& triangles);
+
+/// Gives every closed, orientable connected part one orientation and a positive enclosed volume; other parts stay as
+/// they are, since nothing tells their outside.
+void orientOutward(TriangleMesh& mesh);
+
+/// Drops triangles whose corners lie on a line (area below 1e-10 of the longest edge squared). Call it after
+/// orientOutward(): such a triangle may well close a surface.
+void dropFlatTriangles(TriangleMesh& mesh);
+
+}  // namespace tissue_contact

@@ -1,0 +1,83 @@
+/// @file
+/// Room `mesh`: loadTetMesh: file and scale in, tetrahedral mesh in metres out; the formats are in gmsh_*.cpp,
+/// vtk_*.cpp.
+///
+/// Own readers, on purpose. Gmsh's library is GPL-2+, loads 91 shared libraries at each start, and its VTK reader drops
+/// unreferenced nodes in silence, whereas a user must learn which they are. VTK is larger still. Neither bounds what a
+/// damaged file makes it allocate nor names the line or byte at fault.
+#include "mesh/reader/mesh_file.h"
+
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "mesh/nodes.h"
+#include "tissue_contact/core/check.h"
+#include "tissue_contact/core/read_file.h"
+#include "tissue_contact/mesh/tet_mesh.h"
+
+namespace tissue_contact {
+namespace {
+
+// Two million tetrahedra, the most a scene may have, take 100 MB as text. What is read from so many bytes is at most four
+// times as large.
+constexpr std::uintmax_t kMaximumFileBytes = std::uintmax_t{256} << 20U;
+
+MeshFileContents readContents(const std::string& file) {
+  std::string bytes = readFile(file, "mesh file", kMaximumFileBytes);
+  const bool gmsh = !bytes.empty() && bytes[0] == '$';
+  const bool vtk = bytes.rfind("# vtk ", 0) == 0;
+  const bool xml = !bytes.empty() && bytes[0] == '<';
+  const std::string start = quoted(std::string_view(bytes).substr(0, bytes.find_first_of("\r\n")));
+  MeshFileCursor in(file, std::move(bytes));
+  if (gmsh) return readGmsh(in);
+  if (vtk) return readVtk(in);
+  if (in.atEnd()) in.fail("the file is empty; it must hold a Gmsh .msh or a legacy VTK mesh");
+  in.fail("the file starts with " + start +
+          ", which is neither Gmsh .msh ('$MeshFormat') nor legacy VTK ('# vtk DataFile Version')" +
+          (xml ? "; XML (.vtu) is not read: save it as legacy VTK" : "; convert it to one of these"));
+}
+
+/// In metres, from the file's unit.
+void scale(const MeshDescription& description, NodalVectors& positions) {
+  positions *= description.scale_m_per_unit;
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+    if (positions.col(i).allFinite()) continue;
+    throw std::invalid_argument("mesh file '" + description.file + "': node " + std::to_string(i) +
+                                " is not finite after scaling; reduce scale_m_per_unit");
+  }
+}
+
+}  // namespace
+
+Vector3 readNode(MeshFileCursor& in, int bytes, std::size_t index) {
+  static constexpr const char* kNames[] = {"a node's x", "a node's y", "a node's z"};
+  Vector3 node;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    node[axis] = in.real(bytes, kNames[axis]);
+    if (!std::isfinite(node[axis])) {
+      in.fail("node " + std::to_string(index) + " (0-based, in file order) has the coordinate " +
+              std::to_string(node[axis]) + "; coordinates must be finite: repair the mesh");
+    }
+  }
+  return node;
+}
+
+TetMesh loadTetMesh(const MeshDescription& description) {
+  requirePositive("scale_m_per_unit of mesh file '" + description.file + "'", description.scale_m_per_unit, "m");
+  MeshFileContents contents = readContents(description.file);
+  if (contents.tetrahedra.empty()) {
+    throw std::invalid_argument("mesh file '" + description.file + "' holds no tetrahedra (" +
+                                std::to_string(contents.nodes.size()) + " nodes, " +
+                                std::to_string(contents.other_elements) +
+                                " elements of other kinds); mesh its volume, for instance with gmsh -3");
+  }
+  TetMesh mesh{columnsOf(contents.nodes), std::move(contents.tetrahedra)};
+  if (description.remove_unreferenced_nodes) dropUnusedNodes(mesh.positions, mesh.tetrahedra);
+  scale(description, mesh.positions);
+  return mesh;
+}
+
+}  // namespace tissue_contact

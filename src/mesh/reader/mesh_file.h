@@ -1,0 +1,32 @@
+/// @file
+/// Room `mesh`, private: what the readers of mesh files share: the contents they return and the reading of a node.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "mesh/reader/mesh_file_cursor.h"
+#include "tissue_contact/core/types.h"
+
+namespace tissue_contact {
+
+/// A mesh as the file has it: file units, file order. Node indices are in range and coordinates finite.
+struct MeshFileContents {
+  std::vector<Vector3> nodes;
+  std::vector<Tetrahedron> tetrahedra;
+  std::size_t other_elements = 0;  ///< elements skipped because they are no tetrahedra
+};
+
+/// Gmsh MSH 2.x, 4.0 and 4.1, ASCII and binary of either byte order; `in` at its start.
+/// @throws std::invalid_argument.
+MeshFileContents readGmsh(MeshFileCursor& in);
+
+/// Legacy VTK 1 to 5, ASCII and binary, data set UNSTRUCTURED_GRID; `in` at its start.
+/// @throws std::invalid_argument.
+MeshFileContents readVtk(MeshFileCursor& in);
+
+/// Reads three coordinates (`bytes` each if binary) of node `index`.
+/// @throws std::invalid_argument if one is not finite.
+Vector3 readNode(MeshFileCursor& in, int bytes, std::size_t index);
+
+}  // namespace tissue_contact

@@ -1,0 +1,83 @@
+/// @file
+/// Room `mesh`: which points lie in a region, which nodes are fixed.
+#include "mesh/region.h"
+
+#include <algorithm>
+#include <sstream>
+#include <variant>
+
+#include "mesh/mesh_checks.h"
+#include "tissue_contact/core/entry_error.h"
+#include "tissue_contact/mesh/tet_mesh.h"
+
+namespace tissue_contact {
+namespace {
+
+bool holds(const BoxRegion& box, const Vector3& x, double rounding) {
+  return ((x - box.min_m).array() >= -rounding).all() && ((box.max_m - x).array() >= -rounding).all();
+}
+bool holds(const PlaneRegion& plane, const Vector3& x, double rounding) {
+  const double norm = plane.normal.norm();  // without a direction it holds nothing
+  return norm > 0.0 && plane.normal.dot(x - plane.point_m) <= rounding * norm;
+}
+bool holds(const SphereRegion& sphere, const Vector3& x, double rounding) {
+  return (x - sphere.center_m).norm() <= sphere.radius_m + rounding;
+}
+
+bool holds(const Region& region, const Vector3& x, double rounding) {
+  return std::visit([&](const auto& shape) { return holds(shape, x, rounding); }, region);
+}
+
+void describe(const BoxRegion& box, std::ostream& out) {
+  out << "box from (" << box.min_m.transpose() << ") to (" << box.max_m.transpose() << ") m";
+}
+void describe(const PlaneRegion& plane, std::ostream& out) {
+  out << "plane through (" << plane.point_m.transpose() << ") m, against its normal (" << plane.normal.transpose()
+      << ")";
+}
+void describe(const SphereRegion& sphere, std::ostream& out) {
+  out << "sphere around (" << sphere.center_m.transpose() << ") m of radius " << sphere.radius_m << " m";
+}
+
+[[noreturn]] void refuseRegion(const NodalVectors& x, const Region& region, std::size_t index,
+                               const std::string& source) {
+  std::ostringstream message;
+  message << "fixed region " << index << " (";
+  std::visit([&](const auto& shape) { describe(shape, message); }, region);
+  message << ") holds no node; ";
+  if (x.cols() > 0) {
+    message << "the mesh lies within (" << x.rowwise().minCoeff().transpose() << ") to ("
+            << x.rowwise().maxCoeff().transpose() << ") m of the tissue frame: move or enlarge the region";
+  } else {
+    message << "the mesh has no nodes";
+  }
+  throw EntryError(elementOf("fixed", index), source + ": " + message.str());
+}
+
+}  // namespace
+
+double roundingDistance(const NodalVectors& x) {
+  return x.cols() == 0 ? 0.0 : 1e-9 * (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).norm();
+}
+
+bool anyHolds(const std::vector<Region>& regions, const Vector3& x, double rounding) {
+  return std::any_of(regions.begin(), regions.end(), [&](const Region& region) { return holds(region, x, rounding); });
+}
+
+std::vector<bool> fixedNodes(const NodalVectors& positions, const std::vector<Region>& regions,
+                             const std::string& source) {
+  std::vector<bool> fixed(static_cast<std::size_t>(positions.cols()), false);
+  const double rounding = roundingDistance(positions);
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    bool any = false;
+    for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+      const Vector3 x = positions.col(i);
+      if (!holds(regions[r], x, rounding)) continue;
+      fixed[static_cast<std::size_t>(i)] = any = true;
+    }
+    if (!any) refuseRegion(positions, regions[r], r, source);
+  }
+  return fixed;
+}
+
+}  // namespace tissue_contact

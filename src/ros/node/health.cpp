@@ -1,0 +1,275 @@
+#include "ros/node/health.h"
+
+#include <ros/console.h>
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+#include "ros/conversions.h"
+#include "tissue_contact/ros/environment.h"
+
+namespace tissue_contact {
+namespace {
+
+int nodesOf(const Simulator& simulator) {
+  int nodes = 0;
+  for (const Tissue& tissue : simulator.tissues()) nodes += tissue.nodeCount();
+  return nodes;
+}
+
+void addFigures(const LiveFigures& figures, double worst_lag_s, diagnostic_updater::DiagnosticStatusWrapper& status) {
+  status.add("policy", figures.newest_state ? "newest_state" : "every_state");
+  status.add("lag_s", worst_lag_s);
+  status.add("largest lag_s", figures.largest_lag_s);
+  status.add("real_time_factor", figures.real_time_factor);
+  status.add("step cost_s", figures.step_cost_s);
+  status.add("joint states: received", figures.received);
+  for (int v = 0; v < kVerdictCount; ++v) {
+    status.add(std::string("joint states: ") + verdictText(static_cast<Verdict>(v)),
+               figures.by_verdict[static_cast<std::size_t>(v)]);
+  }
+  status.add("joint states: merged", figures.merged);
+  status.add("joint states: dropped", figures.dropped);
+  status.add("joint states: waiting", figures.waiting);
+  status.add("joint states: behind_s", figures.behind_s);
+  status.add("wrenches published", figures.wrenches);
+  status.add("steps", figures.steps);
+  status.add("intervals with lengthened steps", figures.lengthened);
+  status.add("resets", figures.resets);
+  status.add("gaps", figures.gaps);
+  status.add("jumps", figures.jumps);
+  status.add("intervals without a finite answer", figures.not_finite);
+  status.add("intervals not converged", figures.not_converged);
+  status.add("intervals out of time", figures.out_of_time);
+  status.add("last not converged", figures.last_not_converged);
+  status.add("intervals with forces that no tissue bears", figures.implausible);
+  status.add("last of them", figures.last_implausible);
+  status.add("intervals with pinched contacts", figures.pinched);
+  status.add("snapshots dropped", figures.snapshots_dropped);
+}
+
+}  // namespace
+
+Health::Health(const Simulator& simulator, const JointStatePlayer& player, const JointStateInbox& inbox)
+    : simulator_(simulator), player_(player), inbox_(inbox) {}
+
+bool Health::Throttle::pass() {
+  constexpr std::chrono::seconds kPeriod(5);
+  const Clock::time_point now = Clock::now();
+  if (!began_ || now - *began_ >= kPeriod) {
+    began_ = now;
+    passed_ = 0;
+  }
+  return passed_++ < most_;
+}
+
+void Health::noteWork(std::optional<double> received_s) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  working_on_s_ = received_s;
+  held_by_player_ = player_.waiting();
+}
+
+bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
+  warn(played, steps);
+  const bool accepted = played.verdict == Verdict::kAccepted;
+  const bool finite = accepted && isFinite(simulator_);
+  std::unique_lock<std::mutex> lock(mutex_);
+  for (int v = 0; v < kVerdictCount; ++v) {
+    figures_.by_verdict[static_cast<std::size_t>(v)] = player_.count(static_cast<Verdict>(v));
+  }
+  figures_.accepted = player_.count(Verdict::kAccepted);
+  figures_.merged = player_.merged();
+  figures_.resets = player_.resets();
+  figures_.gaps = player_.gaps();
+  held_by_player_ = player_.waiting();
+  figures_.step_cost_s = step_cost_s;
+  if (!accepted) return false;
+  if (played.was_reset) figures_.broken = false;
+  played_stamp_ns_ = played.stamp_ns;
+  const bool is_newly_broken = steps > 0 && noteSteps(played, steps, finite);
+  lock.unlock();  // a log that blocks must not hold up those who ask for the figures
+  if (is_newly_broken) tellBroken(played, finite);
+  return finite;
+}
+
+void Health::warn(const PlayedSample& played, int steps) {
+  if (played.verdict != Verdict::kAccepted) {
+    if (refusals_[static_cast<std::size_t>(played.verdict)].pass()) {
+      const bool name_publishers = played.verdict == Verdict::kTwoClocks && publishers_;
+      ROS_WARN_STREAM("joint state ignored (" << verdictText(played.verdict) << "): " << played.detail
+                                              << (name_publishers ? "; sent by " + publishers_(played.topic) : ""));
+    }
+    return;
+  }
+  const std::string& topic = player_.topics()[static_cast<std::size_t>(played.topic)];
+  if (played.was_reset && resets_.pass()) {
+    ROS_WARN_STREAM("time went backwards on " << topic << " to " << toTime(played.stamp_ns)
+                                              << " s: the scene was reset to its start");
+  }
+  if (played.was_resumed && resumptions_.pass()) {
+    ROS_WARN_STREAM("a stamp far off was followed on " << topic << ", which now goes on where it was, at "
+                                                       << toTime(played.stamp_ns) << " s: so does the simulation");
+  }
+  if (played.was_gap && gaps_.pass()) {
+    ROS_WARN_STREAM("no joint state for more than max_gap_s before " << topic << " at " << toTime(played.stamp_ns)
+                                                                     << " s: simulated as "
+                                                                     << simulator_.scene().step.max_gap_s << " s");
+  }
+  if (steps == 0) return;  // the report is that of an interval before, and told
+  if (simulator_.report().jumped && jumps_.pass()) {
+    ROS_WARN_STREAM("an instrument moved too far before " << toTime(played.stamp_ns)
+                                                          << " s to be swept: it was placed at its new position");
+  }
+  if (simulator_.report().implausible_load.found && implausible_loads_.pass()) {
+    ROS_WARN_STREAM(toTime(played.stamp_ns) << " s: " << implausibleLoadText(simulator_));
+  }
+}
+
+/// What an interval with steps in it did to the figures. The lock is held.
+/// @return whether an answer was not finite for the first time since the last reset.
+bool Health::noteSteps(const PlayedSample& played, int steps, bool finite) {
+  const StepReport& report = simulator_.report();
+  figures_.steps += steps;
+  figures_.simulated_s += report.advanced_s;
+  real_time_factor_.note(steadySeconds(), report.advanced_s);
+  constexpr double kRoundOff = 1e-9;  // of stamps, as a share of a step: such a step is no longer one
+  if (report.advanced_s >
+      (1.0 + kRoundOff) * steps * longestStep(figures_.newest_state, simulator_.scene().step.max_step_s))
+    ++figures_.lengthened;
+  if (report.jumped) ++figures_.jumps;
+  if (report.pinched_contacts > 0) ++figures_.pinched;
+  if (report.implausible_load.found) {
+    ++figures_.implausible;
+    std::ostringstream text;
+    text << toTime(played.stamp_ns) << " s: " << implausibleLoadText(simulator_);
+    figures_.last_implausible = text.str();
+  }
+  if (report.stop != StopReason::kTolerance) {
+    ++figures_.not_converged;
+    if (report.stop == StopReason::kTimeBudget) ++figures_.out_of_time;
+    std::ostringstream text;
+    text << toTime(played.stamp_ns) << " s: momentum " << report.residuals.momentum << ", penetration "
+         << report.residuals.penetration_m << " m, cone " << report.residuals.cone_violation_n << " N after "
+         << report.iterations << " iterations";
+    figures_.last_not_converged = text.str();
+  }
+  if (!report.discarded && finite) return false;
+  ++figures_.not_finite;
+  return !std::exchange(figures_.broken, true);
+}
+
+void Health::tellBroken(const PlayedSample& played, bool finite) {
+  ROS_ERROR_STREAM("a step of the interval ending at "
+                   << toTime(played.stamp_ns) << " s had no finite answer; "
+                   << (finite ? "the tissues were stopped where they were and its contact forces, so also the wrench "
+                                "if it was the last step, are zero"
+                              : "nothing is published for it")
+                   << ". Look for very stiff or very light tissue, or lower step.max_step_s");
+}
+
+void Health::noteWrenches(std::size_t count, std::optional<double> lag_s) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  figures_.wrenches += static_cast<std::int64_t>(count);
+  if (!lag_s) return;
+  figures_.lag_s = *lag_s;
+  figures_.largest_lag_s = std::max(figures_.largest_lag_s, *lag_s);
+  worst_lag_s_ = std::max(worst_lag_s_, *lag_s);
+}
+
+void Health::noteSnapshotsDropped(std::int64_t dropped) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  figures_.snapshots_dropped = dropped;
+}
+
+void Health::notePolicy(bool newest_state) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  figures_.newest_state = newest_state;
+}
+
+LiveFigures Health::figures() const {
+  const JointStateInbox::Counts inbox = inbox_.counts();
+  const double now_s = steadySeconds();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  LiveFigures figures = figures_;
+  figures.received = inbox.received;
+  figures.dropped = inbox.dropped;
+  figures.waiting = static_cast<std::int64_t>(inbox.waiting) + held_by_player_;
+  figures.real_time_factor = real_time_factor_.value(now_s);
+  // A wrench that is due and has not gone out is late already.
+  if (working_on_s_) figures.lag_s = std::max(figures.lag_s, now_s - *working_on_s_);
+  if (!figures.newest_state && inbox.waiting > 0)
+    figures.lag_s = std::max(figures.lag_s, now_s - inbox.oldest_received_s);
+  if (inbox.waiting > 0)
+    figures.behind_s = std::max(0.0, 1e-9 * static_cast<double>(inbox.newest_stamp_ns - played_stamp_ns_));
+  return figures;
+}
+
+void Health::addTo(Status& status) const {
+  const LiveFigures figures = this->figures();
+  const auto count = [](std::int64_t value) { return static_cast<std::uint64_t>(value); };
+  const auto refused = [&](Verdict verdict) { return count(figures.by_verdict[static_cast<std::size_t>(verdict)]); };
+  status.policy = figures.newest_state ? Status::POLICY_NEWEST_STATE : Status::POLICY_EVERY_STATE;
+  status.lag = figures.lag_s;
+  status.real_time_factor = figures.real_time_factor;
+  status.joint_states_received = count(figures.received);
+  status.joint_states_merged = count(figures.merged);
+  status.joint_states_dropped = count(figures.dropped);
+  status.joint_states_waiting = count(figures.waiting);
+  status.refused_duplicate_stamp = refused(Verdict::kDuplicateStamp);
+  status.refused_bad_stamp = refused(Verdict::kBadStamp);
+  status.refused_not_finite = refused(Verdict::kNotFinite);
+  status.refused_bad_length = refused(Verdict::kBadLength);
+  status.refused_no_known_joint = refused(Verdict::kNoKnownJoint);
+  status.refused_late = refused(Verdict::kLate);
+  status.refused_two_clocks = refused(Verdict::kTwoClocks);
+  status.lengthened_intervals = count(figures.lengthened);
+}
+
+/// The largest since the last call: of wrenches that went out, and of one that is still due.
+double Health::worstLag(const LiveFigures& figures) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  double worst = std::exchange(worst_lag_s_, 0.0);
+  if (working_on_s_ || figures.waiting > 0) worst = std::max(worst, figures.lag_s);
+  return worst;
+}
+
+void Health::fill(std::int64_t missing, diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const LiveFigures now = figures();
+  const double worst_lag_s = worstLag(now);
+  summarize(now, worst_lag_s, status);
+  addFigures(now, worst_lag_s, status);
+  status.add("joint states: missing by header.seq", missing);
+  told_ = now;
+}
+
+void Health::summarize(const LiveFigures& now, double worst_lag_s,
+                       diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using Level = diagnostic_msgs::DiagnosticStatus;
+  const StepDescription& step = simulator_.scene().step;
+  const double bound_s = lagBound(now, step.max_lag_s);
+  const LagVerdict lag = judgeLag(worst_lag_s, bound_s);
+  const auto two_clocks = static_cast<std::size_t>(Verdict::kTwoClocks);
+  const bool is_strained = now.newest_state && now.lengthened > told_.lengthened;
+  if (now.broken) {
+    status.summary(Level::ERROR, "a step had no finite answer");
+  } else if (now.by_verdict[two_clocks] > told_.by_verdict[two_clocks] + 1) {  // one may be an outlier
+    status.summary(Level::ERROR, "two clocks on one topic: joint states of one of them are refused");
+  } else if (lag != LagVerdict::kWithinBound) {
+    status.summaryf(lag == LagVerdict::kFarOverBound ? Level::ERROR : Level::WARN,
+                    "wrenches late by up to %.3g s, more than %.3g s", worst_lag_s, bound_s);
+  } else if (now.implausible > told_.implausible) {
+    status.summary(Level::WARN, "forces that no tissue bears: " + now.last_implausible);
+  } else if (is_strained) {
+    status.summary(Level::WARN, "steps lengthened, since the machine does not keep up with max_step_s");
+  } else if (now.troubles() > told_.troubles()) {
+    status.summary(Level::WARN, "joint states refused or dropped, or motion cut short");
+  } else {
+    status.summary(Level::OK, now.accepted > 0 ? "running" : "no joint state yet");
+  }
+  if (advised_ || (lag == LagVerdict::kWithinBound && !is_strained)) return;
+  advised_ = true;
+  ROS_WARN_STREAM("does not keep up: " << keepUpAdvice(now, step.max_step_s, step.max_lag_s, nodesOf(simulator_)));
+}
+
+}  // namespace tissue_contact

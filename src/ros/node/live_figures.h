@@ -1,0 +1,72 @@
+/// @file
+/// Room `ros`, private: the figures of a live run, and what they say. No ROS and no clock inside.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "tissue_contact/simulation/joint_state_player.h"
+
+namespace tissue_contact {
+
+/// Counts since start-up. received = dropped + waiting + accepted + merged + refused, once no state is on its way between
+/// the threads.
+struct LiveFigures {
+  std::int64_t received = 0;
+  std::int64_t dropped = 0;   ///< the queue of those received was full
+  std::int64_t waiting = 0;   ///< received and not yet played; also for another topic
+  std::int64_t accepted = 0;  ///< stepped to
+  std::int64_t merged = 0;    ///< into the motion to a newer one
+  std::array<std::int64_t, kVerdictCount> by_verdict{};
+  std::int64_t resets = 0;
+  std::int64_t gaps = 0;
+  std::int64_t jumps = 0;          ///< intervals in which an instrument moved too far for sub-stepping
+  std::int64_t not_finite = 0;     ///< intervals whose result was not finite
+  std::int64_t not_converged = 0;  ///< intervals whose last step missed the tolerance
+  std::int64_t out_of_time = 0;    ///< of those, intervals that stopped for want of time
+  std::int64_t lengthened = 0;     ///< intervals whose steps were longer than step.max_step_s
+  std::int64_t steps = 0;
+  std::int64_t wrenches = 0;
+  std::int64_t snapshots_dropped = 0;  ///< meshes, contacts, status, markers not published: nobody took them in time
+  std::string last_not_converged = "never";
+  std::int64_t implausible = 0;  ///< intervals that ended with loads that no tissue bears
+  std::string last_implausible = "never";
+  std::int64_t pinched = 0;  ///< intervals whose last step left out contacts without room
+  bool broken = false;       ///< not finite since the last reset
+
+  bool newest_state = false;   ///< policy: else every state
+  double lag_s = 0.0;          ///< of the last wrench behind the receipt of its state; of a step that runs, so far
+  double largest_lag_s = 0.0;  ///< of any wrench
+  double behind_s = 0.0;       ///< message time received and not yet played
+  double step_cost_s = 0.0;    ///< usual wall time of a step
+  double simulated_s = 0.0;    ///< message time simulated
+  double real_time_factor = 0.0;
+
+  std::int64_t refused() const;
+  /// What deserves a warning when there is more of it.
+  std::int64_t troubles() const { return refused() + dropped + gaps + jumps + not_finite; }
+};
+
+/// Of a lag, by the bound for it.
+enum class LagVerdict { kWithinBound, kOverBound, kFarOverBound };
+
+/// How late wrenches may be, s: step.max_lag_s where the newest state counts; a second where every state does, since
+/// nobody waits for the answer then, but a lag that grows shows a machine that does not keep up.
+double lagBound(const LiveFigures& figures, double max_lag_s);
+LagVerdict judgeLag(double lag_s, double bound_s);
+
+/// How long a step may be that is not lengthened, s: step.max_step_s; where the newest state counts a quarter more, since
+/// the stamps of a driver that runs at 1 / max_step_s jitter, and cutting such intervals in two would double the work.
+double longestStep(bool newest_state, double max_step_s);
+
+/// What a user can change, with the figures measured, when the machine does not keep up.
+/// @param max_step_s, max_lag_s of the scene.
+/// @param nodes of all tissues.
+std::string keepUpAdvice(const LiveFigures& figures, double max_step_s, double max_lag_s, int nodes);
+
+/// "joint states: 100 received, 90 accepted, ...; 90 wrenches; largest lag 0.012 s".
+std::string countsLine(const LiveFigures& figures);
+
+}  // namespace tissue_contact

@@ -1,0 +1,201 @@
+#include "ros/node/node.h"
+
+#include <ros/callback_queue.h>
+#include <ros/console.h>
+#include <ros/init.h>
+#include <ros/time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "ros/node/logger_service.h"
+#include "ros/node/private_parameters.h"
+#include "ros/publish/publish_options.h"
+#include "tissue_contact/core/whole_file.h"
+#include "tissue_contact/ros/environment.h"
+#include "tissue_contact/scene/load_scene.h"
+#include "tissue_contact/simulation/scene.h"
+
+namespace tissue_contact {
+namespace {
+
+constexpr const char* kUsage =
+    R"(usage: rosrun tissue_contact tissue_contact_node _scene:=SCENE.yaml [_parameter:=value] [from:=to] [__name:=name]
+
+Contact forces between instruments and soft tissue: joint states in, wrenches and deformed tissue out. Needs a ROS master
+(roscore, or roslaunch). Without one: tissue_contact_replay.
+
+private parameters
+  ~scene               the scene (doc/scene.md): a path, or package://PACKAGE/PATH
+  ~robot_description   text of a URDF, for scenes that take it from this parameter (or from another that they name);
+                       looked for here, then in every namespace up to /
+  ~tf_timeout_s        how long to wait for tf frames that the scene names, s; default 10
+  ~markers/...         force_arrow_m_per_n, displacement_full_scale_m: sizes in RViz
+  any other argument, also _parameter:=value, is refused; of what is set on the parameter server, misspelt names only
+
+subscribed topics
+  as the scene names them  sensor_msgs/JointState
+
+published topics
+  ~INSTRUMENT/wrench   geometry_msgs/WrenchStamped of the tissue on the instrument, one per state of the arm stepped to
+  ~TISSUE/topology     tissue_contact/TissueTopology, latched
+  ~TISSUE/mesh         tissue_contact/TissueMesh
+  ~contacts            tissue_contact/ContactArray
+  ~status              tissue_contact/Status
+  ~markers             visualization_msgs/MarkerArray
+  /diagnostics         diagnostic_msgs/DiagnosticArray
+
+example
+  rosrun tissue_contact tissue_contact_node _scene:=package://tissue_contact/config/press_drag.yaml
+)";
+
+/// Where every joint state gives a wrench none may be dropped while a step takes long: a bag played too fast for this
+/// machine waits here. Bounded, because nothing may grow for ever: 200 s of a 500 Hz topic, about 60 MB.
+constexpr std::size_t kJointStateQueue = 100000;
+
+Simulator makeSimulator(const ros::NodeHandle& private_node, const std::vector<std::string>& arguments,
+                        PublishOptions& publish) {
+  const std::string parameter = private_node.resolveName("scene");
+  std::string file;
+  if (!private_node.getParam("scene", file) || file.empty()) {
+    refuseUnknownParameters(private_node, nullptr, arguments);  // it may be there, misspelt
+    throw std::invalid_argument(
+        "parameter '" + parameter +
+        "' is not set to the path of a scene file; start the node with _scene:=/path/scene.yaml "
+        "or <param name=\"scene\" value=\"...\"/>");
+  }
+  const auto naming_file = [&](const std::exception& error) {
+    return std::invalid_argument("parameter '" + parameter + "' (" + file + "): " + error.what());
+  };
+  Scene scene;
+  try {
+    scene = loadScene(file, packagePath, [&](const YamlMap& sections) { publish = parsePublish(sections); });
+  } catch (const std::exception& error) {
+    throw naming_file(error);
+  }
+  refuseUnknownParameters(private_node, &scene, arguments);
+  try {
+    return {scene, nodeEnvironment(private_node, scene.world_frame)};
+  } catch (const std::exception& error) {
+    throw naming_file(error);
+  }
+}
+
+}  // namespace
+
+Node::Node(ShutdownGuard& guard, const std::vector<std::string>& arguments)
+    : guard_(guard),
+      private_node_("~"),
+      simulator_(makeSimulator(private_node_, arguments, publish_)),
+      player_(simulator_),
+      inbox_(kJointStateQueue),
+      health_(simulator_, player_, inbox_),
+      outputs_(private_node_, simulator_, player_, publish_, [this](Status& status) { health_.addTo(status); }),
+      stepper_(simulator_, player_, inbox_, outputs_, health_, ros::Time::isSimTime()),
+      receiver_(inbox_) {
+  for (const std::string& line : simulator_.advice()) ROS_INFO_STREAM("advisor: " << line);
+  health_.setPublishers([this](int topic) { return receiver_.publishers(topic); });
+  updater_.setHardwareID("none");
+  updater_.add("tissue contact", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
+    health_.fill(receiver_.missing(), status);
+  });
+  updater_.add("ROS master", [this](diagnostic_updater::DiagnosticStatusWrapper& status) { master_.fill(status); });
+}
+
+Node::~Node() {
+  guard_.setLastWords(nullptr);
+  stop();
+}
+
+int Node::run() {
+  guard_.setLastWords([this] {
+    tellCounts();
+    ros::shutdown();  // so that the master forgets us
+  });
+  outputs_.start([this] { inbox_.wake(); });
+  stepper_.start();
+  receiver_.start(player_.topics());
+  loggers_ = advertiseLoggers(private_node_);
+  master_.start();
+  diagnostics_thread_ = std::thread([this] { tellDiagnostics(); });
+  constexpr double kWakeUp = 0.05;  // s: how long a signal may go unseen
+  while (ros::ok() && !guard_.asked() && !stepper_.failed()) {
+    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(kWakeUp));
+  }
+  if (!stepper_.failed()) guard_.ask();  // rosnode kill: nothing may hang then either
+  stop();
+  tellCounts();
+  return stepper_.failed() ? 1 : 0;
+}
+
+void Node::stop() {
+  stepper_.stop();
+  receiver_.stop();
+  master_.stop();
+  {
+    const std::lock_guard<std::mutex> lock(diagnostics_mutex_);
+    diagnostics_stop_ = true;
+  }
+  diagnostics_changed_.notify_all();
+  if (diagnostics_thread_.joinable()) diagnostics_thread_.join();
+}
+
+/// By the wall clock: with simulated time a bag that is paused or over would silence the diagnostics.
+void Node::tellDiagnostics() {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::seconds kPeriod(1);
+  std::unique_lock<std::mutex> lock(diagnostics_mutex_);
+  for (Clock::time_point next = Clock::now() + kPeriod;
+       !diagnostics_changed_.wait_until(lock, next, [this] { return diagnostics_stop_; });
+       next = std::max(next + kPeriod, Clock::now())) {
+    lock.unlock();
+    updater_.force_update();
+    lock.lock();
+  }
+}
+
+void Node::tellCounts() {
+  if (counts_told_.exchange(true)) return;
+  // Not through the log, which may block, and is closed after rosnode kill.
+  std::printf("%s\n", countsLine(health_.figures()).c_str());
+  std::fflush(stdout);
+}
+
+int runNode(int argc, char** argv) {
+  // Before anything of ROS, which would wait for a master.
+  try {
+    if (asksForHelp(argc, argv)) {
+      std::cout << kUsage;
+      requireWritten(std::cout);
+      return 0;
+    }
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM(error.what());
+    return 1;
+  }
+  ShutdownGuard guard;
+  const std::vector<std::string> arguments = privateArguments(argc, argv);
+  ros::init(argc, argv, "tissue_contact", ros::init_options::NoSigintHandler);
+  int code = 1;
+  try {
+    const ros::NodeHandle keep_alive;  // so that the fatal message still reaches /rosout
+    try {
+      code = Node(guard, arguments).run();
+    } catch (const std::exception& error) {
+      if (guard.asked()) return 0;  // what was waited for need not be there any more
+      ROS_FATAL_STREAM(error.what());
+    }
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM(error.what());
+  }
+  ros::shutdown();
+  return code;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,87 @@
+/// @file
+/// Room `ros`, private: the node: joint states in, wrenches, meshes, contacts and markers out.
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/node_handle.h>
+#include <ros/service_server.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "ros/node/health.h"
+#include "ros/node/joint_state_inbox.h"
+#include "ros/node/master_watch.h"
+#include "ros/node/receiver.h"
+#include "ros/node/shutdown_guard.h"
+#include "ros/node/stepper.h"
+#include "ros/publish/outputs.h"
+#include "ros/publish/publish_options.h"
+#include "tissue_contact/simulation/joint_state_player.h"
+#include "tissue_contact/simulation/simulator.h"
+
+namespace tissue_contact {
+
+/// Private parameters: ~scene (path of the scene file, required), ~tf_timeout_s (see environment.h),
+/// ~markers/displacement_full_scale_m and ~markers/force_arrow_m_per_n (see scene_markers.h), and the URDF parameters
+/// that the scene names. Topics: see outputs.h; diagnostics on /diagnostics once per second of wall time.
+///
+/// Threads, and what is between them:
+///   receiving    Receiver: joint states into inbox_, which is locked for a move at a time
+///   stepping     Stepper: inbox_ -> player_ -> simulator_ -> wrenches; alone in touching player_, simulator_ and outputs_
+///   publishing   SnapshotPublisher inside outputs_: snapshots through a locked queue; of simulator_ only what is const
+///   diagnostics  here: LiveFigures of health_, which is locked for a copy at a time
+///   master       MasterWatch: asks the ROS master once per second whether it knows this node
+///   main         callbacks of roscpp: a subscriber came (an atomic flag, and inbox_ wakes the stepping thread)
+/// None waits for another's work.
+class Node {
+ public:
+  /// Builds the scene; advertises and subscribes nothing yet.
+  /// @param guard must outlive this.
+  /// @param arguments names of the private parameters that came by the command line.
+  /// @throws std::exception naming the parameter or file at fault and what to do.
+  Node(ShutdownGuard& guard, const std::vector<std::string>& arguments);
+  ~Node();
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  /// Advertises, subscribes and works until asked to stop; then prints the counts.
+  /// @return exit code.
+  int run();
+
+ private:
+  void tellDiagnostics();
+  void tellCounts();
+  void stop();
+
+  ShutdownGuard& guard_;
+  ros::NodeHandle node_;
+  ros::NodeHandle private_node_;
+  PublishOptions publish_;
+  Simulator simulator_;
+  JointStatePlayer player_;
+  JointStateInbox inbox_;
+  Health health_;
+  Outputs outputs_;
+  Stepper stepper_;
+  Receiver receiver_;
+  ros::ServiceServer loggers_;
+  MasterWatch master_;
+  std::atomic<bool> counts_told_{false};
+
+  diagnostic_updater::Updater updater_;
+  std::mutex diagnostics_mutex_;
+  std::condition_variable diagnostics_changed_;
+  bool diagnostics_stop_ = false;  ///< guarded by diagnostics_mutex_
+  std::thread diagnostics_thread_;
+};
+
+/// Runs the node until it is asked to stop.
+/// @return exit code: 0, or 1 after one fatal message when it cannot start or go on.
+int runNode(int argc, char** argv);
+
+}  // namespace tissue_contact

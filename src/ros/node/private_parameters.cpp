@@ -1,0 +1,115 @@
+#include "ros/node/private_parameters.h"
+
+#include <ros/console.h>
+#include <ros/param.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <stdexcept>
+
+#include "tissue_contact/core/command_line.h"
+#include "tissue_contact/core/nearest_word.h"
+#include "tissue_contact/core/text.h"
+
+namespace tissue_contact {
+namespace {
+
+const std::string kBecomes = ":=";
+constexpr std::size_t kMaxName = 256;  // printed of a name that anybody may have set
+
+bool contains(const std::vector<std::string>& all, const std::string& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+/// Relative to the private namespace. diagnostic_period is diagnostic_updater's; roscpp, rosconsole and tf2_ros read none.
+const std::vector<std::string> kOwnNames = {"diagnostic_period", "markers/displacement_full_scale_m",
+                                            "markers/force_arrow_m_per_n", "scene", "tf_timeout_s"};
+
+std::vector<std::string> knownNames(const Scene* scene) {
+  std::vector<std::string> names = kOwnNames;
+  names.emplace_back("robot_description");
+  if (scene == nullptr) return names;
+  for (const InstrumentDescription& instrument : scene->instruments) {
+    const std::string& name = instrument.robot_description_parameter;
+    if (!name.empty() && !contains(names, name)) names.push_back(name);
+  }
+  return names;
+}
+
+std::string refusalText(const std::string& refused, const std::string& own, const std::vector<std::string>& names,
+                        const std::vector<std::string>& arguments) {
+  const std::string relative = refused.substr(own.size() + 1);
+  const std::string nearest = nearestWord(relative, names);
+  return "parameter '" + printable(refused, kMaxName) + "' is none that this node reads; " +
+         (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") + "It reads " + joined(names) + ". " +
+         (contains(arguments, relative)
+              ? "It was given as _" + printable(relative, kMaxName) + ":=..."
+              : "Correct it where it is set (a launch file?), or remove it: rosparam delete " +
+                    printable(refused, kMaxName));
+}
+
+}  // namespace
+
+bool asksForHelp(int argc, const char* const* argv) {
+  std::vector<std::string> own;
+  std::copy_if(argv + 1, argv + argc, std::back_inserter(own),
+               [](const std::string& argument) { return argument.find(kBecomes) == std::string::npos; });
+  try {
+    return CommandLine(own, {}).help();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string(error.what()) +
+                                ", _parameter:=value (the scene: _scene:=/path/scene.yaml), from:=to and __name:=name");
+  }
+}
+
+std::vector<std::string> privateArguments(int argc, const char* const* argv) {
+  std::vector<std::string> names;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const std::size_t end = argument.find(kBecomes);
+    if (end == std::string::npos || end < 2 || argument[0] != '_' || argument[1] == '_') continue;
+    names.push_back(argument.substr(1, end - 1));
+  }
+  return names;
+}
+
+std::vector<std::string> unknownNames(const std::vector<std::string>& set, const std::string& own,
+                                      const std::vector<std::string>& known) {
+  std::vector<std::string> unknown;
+  for (const std::string& name : set) {
+    if (name.compare(0, own.size() + 1, own + "/") == 0 && !contains(known, name)) unknown.push_back(name);
+  }
+  std::sort(unknown.begin(), unknown.end());
+  return unknown;
+}
+
+std::string misspelt(const std::string& name) {
+  constexpr std::size_t kMostLetters = 2;
+  return nearestWord(name, kOwnNames, kMostLetters);
+}
+
+void refuseUnknownParameters(const ros::NodeHandle& private_node, const Scene* scene,
+                             const std::vector<std::string>& arguments) {
+  std::vector<std::string> set;
+  if (!ros::param::getParamNames(set)) return;  // the master went away: told by who needs it
+  const std::vector<std::string> names = knownNames(scene);
+  std::vector<std::string> known;
+  known.reserve(names.size());
+  for (const std::string& name : names) known.push_back(private_node.resolveName(name));
+  const std::string& own = private_node.getNamespace();
+  const std::vector<std::string> unknown = unknownNames(set, own, known);
+  if (unknown.empty()) return;
+  std::vector<std::string> refused;
+  std::vector<std::string> ignored;
+  for (const std::string& name : unknown) {
+    const std::string relative = name.substr(own.size() + 1);
+    const bool is_argument = contains(arguments, relative);
+    if (is_argument) ros::param::del(name);
+    (is_argument || !misspelt(relative).empty() ? refused : ignored).push_back(name);
+  }
+  if (!refused.empty()) throw std::invalid_argument(refusalText(refused.front(), own, names, arguments));
+  ROS_WARN_STREAM("parameters that this node does not read: " << listOf(ignored) << "; it reads " << joined(names));
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,172 @@
+#include "ros/node/stepper.h"
+
+#include <ros/console.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "tissue_contact/ros/environment.h"
+
+namespace tissue_contact {
+
+Stepper::Stepper(Simulator& simulator, JointStatePlayer& player, JointStateInbox& inbox, Outputs& outputs,
+                 Health& health, bool simulated_time)
+    : simulator_(simulator),
+      player_(player),
+      inbox_(inbox),
+      outputs_(outputs),
+      health_(health),
+      chooser_(simulator.scene().step.joint_states, simulated_time),
+      pacing_(simulator.scene().step.max_lag_s),
+      receipts_(player.topics().size()) {
+  simulator_.setStepObserver([this] { noteStep(); });
+  player_.setLimits(limits(0));
+}
+
+Stepper::~Stepper() {
+  stop();
+  simulator_.setStepObserver(nullptr);
+}
+
+void Stepper::start() {
+  thread_ = std::thread([this] { run(); });
+}
+
+void Stepper::stop() {
+  stop_ = true;
+  inbox_.wake();
+  if (thread_.joinable()) thread_.join();
+}
+
+void Stepper::run() {
+  try {
+    while (!stop_) {
+      awaitStates();
+      outputs_.showToNewcomer();
+      takeReceived();
+      health_.noteWork(std::nullopt);  // what the player holds counts as waiting, also when it is to play no more
+      while (!stop_ && playNext()) {
+      }
+    }
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM(error.what());
+    failed_ = true;
+  }
+}
+
+AdvanceLimits Stepper::limits(int most_steps) const {
+  AdvanceLimits limits;
+  limits.most_steps = most_steps;
+  limits.longest_step_s = longestStep(newest_state_, simulator_.scene().step.max_step_s);
+  limits.interrupted = [this] { return stop_.load(); };
+  return limits;
+}
+
+/// For more of them, but under the newest state for no longer than one that waits for another topic's may.
+void Stepper::awaitStates() {
+  const std::optional<std::int64_t> earliest = newest_state_ ? player_.earliestStamp() : std::nullopt;
+  if (!earliest) return inbox_.wait();
+  const std::optional<Receipt> receipt = receipts_.find(*earliest);
+  const double left_s = pacing_.waitUntil(receipt ? receipt->received_s : newest_received_s_) - steadySeconds();
+  if (left_s <= 0.0 || !inbox_.wait(left_s)) player_.stopWaiting();
+}
+
+/// Under every state one after the other, so that what waits is bounded by the inbox; else all there is.
+void Stepper::takeReceived() {
+  for (std::size_t left = newest_state_ ? inbox_.counts().waiting : 1; left > 0; --left) {
+    std::optional<ReceivedState> state = inbox_.take();
+    if (!state) return;
+    if (state->after_restart) player_.restart();
+    newest_received_s_ = state->received_s;
+    if (player_.triggers(state->topic)) {
+      receipts_.note(state->topic, {state->sample.stamp_ns, state->received_s, state->age_s});
+    }
+    player_.push(state->topic, std::move(state->sample));
+  }
+}
+
+/// Plays and publishes one moment; false when none is ready.
+bool Stepper::playNext() {
+  const long steps_before = simulator_.stepCount();
+  const double start_s = pace();
+  const std::optional<PlayedSample> played = player_.playNext();
+  if (played) {
+    const auto steps = static_cast<int>(simulator_.stepCount() - (played->was_reset ? 0 : steps_before));
+    const double step_time_s = steps > 0 ? (steadySeconds() - start_s) / steps : 0.0;
+    const bool is_moment = played->verdict == Verdict::kAccepted && !played->interrupted;
+    const std::optional<Receipt> receipt = is_moment ? receipts_.take(played->stamp_ns) : std::nullopt;
+    if (health_.note(*played, steps, pacing_.stepCost())) publish(*played, receipt, steps, step_time_s);
+    if (receipt) {
+      pacing_.notePlayed(receipt->received_s);
+      choosePolicy(*played, *receipt);
+    }
+  }
+  health_.noteWork(std::nullopt);
+  return played.has_value();
+}
+
+void Stepper::publish(const PlayedSample& played, const std::optional<Receipt>& receipt, int steps,
+                      double step_time_s) {
+  played_stamp_ns_ = played.stamp_ns;
+  if (played.interrupted) return;
+  outputs_.publishWrenches(played);
+  if (!played.instruments.empty()) {
+    health_.noteWrenches(played.instruments.size(),
+                         receipt ? std::optional(steadySeconds() - receipt->received_s) : std::nullopt);
+  }
+  outputs_.publishState(played, steps, step_time_s);
+  health_.noteSnapshotsDropped(outputs_.snapshotsDropped());
+}
+
+void Stepper::choosePolicy(const PlayedSample& played, const Receipt& receipt) {
+  if (played.was_reset) chooser_.startAgain();
+  const std::optional<PolicyChoice> choice = chooser_.note(receipt.age_s, receipt.received_s);
+  if (!choice) return;
+  newest_state_ = choice->policy == StatePolicy::kNewestState;
+  player_.setPolicy(choice->policy);
+  if (!newest_state_) {
+    player_.setLimits(limits(0));
+    simulator_.setSolverDeadline(std::numeric_limits<double>::infinity());
+  }
+  health_.notePolicy(newest_state_);
+  if (newest_state_) {
+    ROS_INFO_STREAM("newest_state: steps to the newest joint state and merges older ones, lagging by at most "
+                    << simulator_.scene().step.max_lag_s << " s (step.max_lag_s), because " << choice->reason
+                    << "; step.joint_states: every_state in the scene overrides it");
+  } else {
+    ROS_INFO_STREAM("every_state: steps to every joint state, however long it takes, because "
+                    << choice->reason << "; step.joint_states: newest_state in the scene overrides it");
+  }
+}
+
+/// Sets what the interval that may begin now may cost.
+/// @return the time.
+double Stepper::pace() {
+  const double now_s = steadySeconds();
+  const std::optional<std::int64_t> next_ns = player_.nextStamp();
+  const std::optional<Receipt> receipt = next_ns ? receipts_.find(*next_ns) : std::nullopt;
+  const double received_s = receipt ? receipt->received_s : newest_received_s_;
+  const double motion_s = 1e-9 * static_cast<double>(next_ns.value_or(played_stamp_ns_) - played_stamp_ns_);
+  constexpr double kMost = 1e6;  // fits an int; a gap is cut to less
+  const double steps =
+      std::ceil(std::clamp(motion_s / longestStep(newest_state_, simulator_.scene().step.max_step_s), 1.0, kMost));
+  pacing_.begin(now_s, received_s, static_cast<int>(steps));
+  health_.noteWork(received_s);
+  if (newest_state_) {
+    player_.setLimits(limits(pacing_.mostSteps()));
+    simulator_.setSolverDeadline(pacing_.deadline(now_s), pacing_.promptDeadline(now_s));
+  }
+  return now_s;
+}
+
+void Stepper::noteStep() {
+  const double now_s = steadySeconds();
+  pacing_.noteStep(now_s);
+  if (newest_state_) simulator_.setSolverDeadline(pacing_.deadline(now_s), pacing_.promptDeadline(now_s));
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,70 @@
+/// @file
+/// Room `ros`, private: the thread that steps: joint states from the inbox into the player, wrenches out at once.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <thread>
+
+#include "ros/node/health.h"
+#include "ros/node/joint_state_inbox.h"
+#include "ros/node/joint_state_policy.h"
+#include "ros/node/live_pacing.h"
+#include "ros/node/receipt_times.h"
+#include "ros/publish/outputs.h"
+#include "tissue_contact/simulation/joint_state_player.h"
+#include "tissue_contact/simulation/simulator.h"
+
+namespace tissue_contact {
+
+/// From start() until stop() has returned, its thread alone touches simulator, player and outputs.
+class Stepper {
+ public:
+  /// All must outlive this.
+  /// @param simulated_time whether ROS time comes from /clock.
+  Stepper(Simulator& simulator, JointStatePlayer& player, JointStateInbox& inbox, Outputs& outputs, Health& health,
+          bool simulated_time);
+  ~Stepper();
+  Stepper(const Stepper&) = delete;
+  Stepper& operator=(const Stepper&) = delete;
+
+  void start();
+
+  /// Ends the thread once the step it is at is done.
+  void stop();
+
+  /// Whether the thread ended by itself, after one fatal message. Any thread.
+  bool failed() const { return failed_; }
+
+ private:
+  void run();
+  AdvanceLimits limits(int most_steps) const;
+  void takeReceived();
+  bool playNext();
+  void publish(const PlayedSample& played, const std::optional<Receipt>& receipt, int steps, double step_time_s);
+  void choosePolicy(const PlayedSample& played, const Receipt& receipt);
+  void awaitStates();
+  double pace();
+  void noteStep();
+
+  Simulator& simulator_;
+  JointStatePlayer& player_;
+  JointStateInbox& inbox_;
+  Outputs& outputs_;
+  Health& health_;
+
+  // The thread's alone.
+  PolicyChooser chooser_;
+  LivePacing pacing_;
+  ReceiptTimes receipts_;
+  bool newest_state_ = false;
+  double newest_received_s_ = 0.0;  ///< of the last state handed to the player
+  std::int64_t played_stamp_ns_ = 0;
+
+  std::atomic<bool> stop_{false};
+  std::atomic<bool> failed_{false};
+  std::thread thread_;
+};
+
+}  // namespace tissue_contact

@@ -1,0 +1,25 @@
+#include "ros/publish/publish_options.h"
+
+#include <utility>
+
+#include "scene/yaml_reader.h"
+#include "tissue_contact/core/range.h"
+
+namespace tissue_contact {
+
+PublishOptions parsePublish(const YamlMap& file) {
+  constexpr Range kRate{0.0, 10000.0, "Hz", "0 switches the topic off"};
+  PublishOptions publish;
+  const YamlCursor* section = file.find("publish");
+  if (section == nullptr) return publish;
+  const YamlMap map = section->map();
+  for (const auto& [key, rate] :
+       {std::pair("mesh_rate_hz", &publish.mesh_rate_hz), std::pair("contacts_rate_hz", &publish.contacts_rate_hz),
+        std::pair("status_rate_hz", &publish.status_rate_hz), std::pair("markers_rate_hz", &publish.markers_rate_hz)}) {
+    if (const YamlCursor* value = map.find(key)) *rate = value->number(kRate);
+  }
+  if (const YamlCursor* value = map.find("tf")) publish.tf = value->boolean();
+  return publish;
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,86 @@
+#include "ros/publish/snapshot_publisher.h"
+
+#include <visualization_msgs/MarkerArray.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "ros/conversions.h"
+
+namespace tissue_contact {
+namespace {
+
+/// Per subscriber, in roscpp: they are samples of a state, so who stalls wants the newest.
+constexpr int kStateQueue = 10;
+
+/// Between the threads: a second of markers or so, for a machine that is busy for that long.
+constexpr std::size_t kMostSnapshots = 32;
+
+}  // namespace
+
+SnapshotPublisher::SnapshotPublisher(const Simulator& simulator, const PublishOptions& options,
+                                     const MarkerStyle& style)
+    : simulator_(simulator),
+      options_(options),
+      queue_(kMostSnapshots),
+      scene_markers_(simulator, style, options.markers_rate_hz > 0.0) {
+  for (const Tissue& tissue : simulator.tissues()) {
+    meshes_.emplace_back();
+    meshes_.back().header.frame_id = simulator.scene().world_frame;
+    meshes_.back().tissue = tissue.name();
+  }
+  contacts_.header.frame_id = simulator.scene().world_frame;
+}
+
+SnapshotPublisher::~SnapshotPublisher() {
+  queue_.close();
+  if (thread_.joinable()) thread_.join();
+}
+
+void SnapshotPublisher::start(ros::NodeHandle private_node, std::function<void()> on_newcomer) {
+  if (options_.mesh_rate_hz > 0.0) {
+    for (const Tissue& tissue : simulator_.tissues()) {
+      mesh_publishers_.push_back(private_node.advertise<TissueMesh>(tissue.name() + "/mesh", kStateQueue));
+    }
+  }
+  if (options_.contacts_rate_hz > 0.0) {
+    contacts_publisher_ = private_node.advertise<ContactArray>("contacts", kStateQueue);
+  }
+  if (options_.status_rate_hz > 0.0) status_publisher_ = private_node.advertise<Status>("status", kStateQueue);
+  if (options_.markers_rate_hz > 0.0) {
+    const auto note_newcomer = [this, tell = std::move(on_newcomer)](const ros::SingleSubscriberPublisher&) {
+      newcomer_ = true;
+      tell();
+    };
+    markers_publisher_ = private_node.advertise<visualization_msgs::MarkerArray>("markers", kStateQueue, note_newcomer);
+  }
+  thread_ = std::thread([this] { run(); });
+}
+
+bool SnapshotPublisher::meshIsWanted() const {
+  return std::any_of(mesh_publishers_.begin(), mesh_publishers_.end(),
+                     [](const ros::Publisher& publisher) { return publisher.getNumSubscribers() > 0; });
+}
+
+void SnapshotPublisher::run() {
+  while (std::unique_ptr<SceneSnapshot> snapshot = queue_.take()) {
+    publish(*snapshot);
+    queue_.recycle(std::move(snapshot));
+  }
+}
+
+void SnapshotPublisher::publish(const SceneSnapshot& snapshot) {
+  if (snapshot.with_status) status_publisher_.publish(snapshot.status);
+  if (snapshot.contact_array) {
+    fillContacts(simulator_, snapshot, contacts_);
+    contacts_publisher_.publish(contacts_);
+  }
+  for (std::size_t t = 0; snapshot.mesh && t < mesh_publishers_.size(); ++t) {
+    if (mesh_publishers_[t].getNumSubscribers() == 0) continue;
+    fillMesh(snapshot, static_cast<int>(t), meshes_[t]);
+    mesh_publishers_[t].publish(meshes_[t]);
+  }
+  if (snapshot.markers) markers_publisher_.publish(scene_markers_.update(snapshot));
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,50 @@
+#include <cstdint>
+
+#include "ros/replay/replay.h"
+#include "tissue_contact/core/command_line.h"
+
+namespace tissue_contact {
+std::string replayUsage() {
+  return "usage: tissue_contact_replay --scene SCENE.yaml --bag IN.bag --csv OUT.csv [--urdf ROBOT.urdf]\n"
+         "         [--timing TIMES.csv] [--dump-step N --dump-file PROBLEM.txt]\n"
+         "\n"
+         "Plays the joint states of a bag through a scene, with the stepping of tissue_contact_node but without a\n"
+         "roscore, and writes one CSV line per state of an arm: the same bytes every time.\n"
+         "\n"
+         "  --scene FILE  the scene (doc/scene.md)\n"
+         "  --bag FILE    a ROS bag with the scene's joint-state topics; tf frames are taken from its /tf_static and "
+         "/tf\n"
+         "  --csv FILE    the result; replaced when the replay is complete, untouched when it fails or is interrupted\n"
+         "  --urdf FILE   text for the robot_description parameter that the scene takes its URDF from\n"
+         "  --timing FILE   wall times of this run, one line per simulated interval; replaced or untouched as the CSV\n"
+         "  --dump-step N   with --dump-file: write the contact problem of implicit step N (from 1), for "
+         "tissue_contact_solve\n"
+         "  --dump-file FILE  where to; replaced when that step is taken\n"
+         "  --help        this text\n"
+         "\n"
+         "Results replace regular files only, and keep their permissions: no input, link, device, FIFO or folder.\n"
+         "Inputs must be regular files.\n"
+         "Exit code: 0 when the CSV was written, 1 with a message on stderr otherwise.\n";
+}
+
+ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
+  const CommandLine line(arguments,
+                         {{"--scene", "--bag", "--csv", "--urdf", "--timing", "--dump-step", "--dump-file"}, {}, {}});
+  ReplayOptions options;
+  options.help = line.help();
+  if (options.help) return options;
+  options.scene_file = line.required("--scene");
+  options.bag_file = line.required("--bag");
+  options.csv_file = line.required("--csv");
+  options.urdf_file = line.value("--urdf");
+  options.timing_file = line.value("--timing");
+  if (line.has("--dump-step") || line.has("--dump-file")) {
+    constexpr std::int64_t kMost = 999'999'999'999'999;
+    options.dump_file = line.required("--dump-file");
+    line.required("--dump-step");
+    options.dump_step = static_cast<long>(line.integer("--dump-step", 0, 1, kMost));
+  }
+  return options;
+}
+
+}  // namespace tissue_contact

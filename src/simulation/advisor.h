@@ -1,0 +1,25 @@
+/// @file
+/// Room `simulation`, private: the model advisor: which of the cheaper models suit a scene. Scene in; choices, and a
+/// line about each with its reason, out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simulation/fold_watch.h"
+#include "tissue_contact/simulation/scene.h"
+
+namespace tissue_contact {
+
+/// Whether nodes at rest may be left out: the scene lets them, and its method is the one meant for use. The others are
+/// there to be compared with, and solve all.
+bool advisedSleep(const Scene& scene);
+
+/// Whether parts of a tissue may sleep, or only all of it: each change of the nodes awake would cost a Cholesky
+/// relaxation its factor.
+bool advisedSleepByParts(const Scene& scene);
+
+/// One line per choice: what it is about, what was chosen, why.
+std::vector<std::string> adviceLines(const Scene& scene, const FoldWatch& folds);
+
+}  // namespace tissue_contact

@@ -1,0 +1,34 @@
+/// @file
+/// Room `simulation`, private: which tissue pairs cannot touch. Pairs and positions in; those that cannot touch out.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "tissue_contact/contact/tissue_pair_detector.h"
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/mesh/convex_body.h"
+#include "tissue_contact/tissue/tissue.h"
+
+namespace tissue_contact {
+
+/// Folds of a volume that is convex at rest, while it is not deformed far enough (see convex_body.h). No contact is
+/// missed in a step in which no node moves farther than the travel that is given.
+class FoldWatch {
+ public:
+  FoldWatch() = default;
+  FoldWatch(const std::vector<TouchingTissues>& pairs, const std::vector<Tissue>& tissues);
+
+  /// Per pair, whether it can be left out; empty if none ever can. No allocation.
+  /// @param travel_m the way any node may go in the coming step.
+  const std::vector<bool>& apart(const std::vector<NodalVectors>& positions, double travel_m);
+
+  bool watches(std::size_t pair) const { return !bodies_.empty() && bodies_[pair].has_value(); }
+
+ private:
+  std::vector<int> tissue_;                        ///< per pair
+  std::vector<std::optional<ConvexBody>> bodies_;  ///< per pair
+  std::vector<bool> apart_;
+};
+
+}  // namespace tissue_contact

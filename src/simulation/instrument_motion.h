@@ -1,0 +1,73 @@
+/// @file
+/// Room `simulation`, private: where the instruments are during an interval. Joint targets in; link poses at both ends
+/// of each implicit step, velocities of material points and the number of steps the motion needs out.
+#pragma once
+
+#include <vector>
+
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/instrument/instrument.h"
+
+namespace tissue_contact {
+
+class InstrumentMotion {
+ public:
+  /// @param instruments must outlive this object.
+  explicit InstrumentMotion(const std::vector<Instrument>& instruments);
+
+  void reset();                                          ///< all instruments at their initial joint positions
+  void place(int instrument, const VectorX& positions);  ///< there at once, at rest
+
+  /// Prepares the interval to `targets` and returns the number of equal steps to cut it into: none longer than
+  /// max_step_s, none in which a shape moves more than half its smallest half extent, so that it cannot pass through a
+  /// feature thinner than itself, and none in which a joint turns by more than 1 rad (a full turn ends where it began).
+  /// A motion that would need more than kMaxTravelSteps steps, or kMaxTravelStepsPerSecond for its duration, is a jump:
+  /// the instruments are placed at the targets. With most_steps > 0 there are no more than that, however long they get.
+  /// Precondition: sizes of `targets`; duration_s <= kMostSteps * max_step_s.
+  int begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets, int most_steps = 0);
+  bool jumped() const { return jumped_; }  ///< by the last begin()
+
+  /// Sets the poses at the end of a step to those at this fraction (0..1] of the interval.
+  void moveTo(double fraction);
+  void finishStep();  ///< the end of the step becomes the start of the next
+
+  const VectorX& positions(int instrument) const { return states_[instrument].positions; }
+  const std::vector<std::vector<Pose>>& startPoses() const { return X_WL_; }  ///< [instrument][link of its model]
+
+  /// Mean velocity (m/s, world) over the step of the material point of a touching link that is at p_W at its start.
+  Vector3 pointVelocity(int instrument, int contact_link, const Vector3& p_W, double dt_s) const;
+
+  /// Bound on how far any point of any shape moves in the step, m.
+  double longestTravel() const { return longestTravel(false); }
+  double smallestHalfExtent(int instrument, int contact_link, int shape) const;
+
+  static constexpr double kMostSteps = 1e9;  ///< an int holds them; no interval that anyone means has more
+  static constexpr double kMaxTravelSteps = 2000.0;
+  /// And so many for each second of it: a shaft of 5 mm may move at 250 m/s, a blade of 0.5 mm at 25; robots stay below
+  /// 10.
+  static constexpr double kMaxTravelStepsPerSecond = 2e5;
+
+ private:
+  struct MovingShape {
+    Vector3 center;               ///< in the link frame
+    double smallest_half_extent;  ///< m
+    double bounding_radius;       ///< of the shape about `center`, m
+  };
+  struct MovingLink {
+    int link;  ///< index into the model's links
+    std::vector<MovingShape> shapes;
+  };
+  struct State {
+    std::vector<MovingLink> links;
+    VectorX start, target, positions;
+  };
+  double longestTravel(bool per_half_extent) const;
+  double longestTravelOver(double steps);  ///< the same over the whole interval cut into so many steps
+
+  const std::vector<Instrument>& instruments_;
+  std::vector<State> states_;
+  std::vector<std::vector<Pose>> X_WL_, X_WL_end_, X_WL_before_;
+  bool jumped_ = false;
+};
+
+}  // namespace tissue_contact

@@ -1,0 +1,95 @@
+#include "simulation/moving_tissue.h"
+
+#include "simulation/advisor.h"
+
+namespace tissue_contact {
+
+double meanSurfaceEdge(const Tissue* tissues, std::size_t count) {
+  double sum = 0.0;
+  double edges = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const NodalVectors& x = tissues[k].restPositions();
+    double own = 0.0;
+    for (const Triangle& t : tissues[k].surface()) own += (x.col(t[0]) - x.col(t[1])).norm();
+    sum += own;
+    edges += static_cast<double>(tissues[k].surface().size());
+  }
+  return edges > 0.0 ? sum / edges : 0.0;
+}
+
+MovingTissue::MovingTissue(const Scene& scene, const Tissue& tissue, NodalVectors& x, NodalVectors& v,
+                           BodySystem& system)
+    : scene_(scene), tissue_(tissue), x_(x), v_(v), system_(system), loads_(NodalVectors::Zero(3, tissue.nodeCount())) {
+  reset();
+  if (!advisedSleep(scene)) return;
+  sleep_.emplace(tissue.fixed(), system, meanSurfaceEdge(&tissue, 1), advisedSleepByParts(scene));
+  system_.fixed = &sleep_->still();
+}
+
+void MovingTissue::reset() {
+  x_ = tissue_.restPositions();
+  stop();
+}
+
+void MovingTissue::stop() {
+  v_.setZero(3, tissue_.nodeCount());
+  elastic_state_.reset();  // or else a large tissue would hold two for a moment
+  elastic_state_ = tissue_.elasticity().makeState();
+  elastic_state_->adapt_rotations = scene_.advisor.adapt_rotations;
+  system_.K = &elastic_state_->stiffness;
+  system_.D = elastic_state_->damping.rows() > 0 ? &elastic_state_->damping : nullptr;
+  system_.fixed = sleep_ ? &sleep_->still() : &tissue_.fixed();
+  if (sleep_) sleep_->wakeAll();
+  still_changed_ = false;
+}
+
+void MovingTissue::wake(const std::vector<int>& touched) {
+  const int before = sleepers();
+  if (before == 0) return;
+  for (const int node : touched) sleep_->touch(node);
+  if (sleepers() != before) still_changed_ = true;
+}
+
+void MovingTissue::assemble(double dt) {
+  system_.asleep = sleep_ && sleep_->allAsleep();
+  if (system_.asleep) return;
+  if (still_changed_) tissue_.elasticity().holdStill(sleep_->still(), x_, *elastic_state_);
+  still_changed_ = false;
+  tissue_.elasticity().update(x_, *elastic_state_, loads_);
+  system_.stiffness_scale = dt * (dt + tissue_.damping().stiffness_s);
+  system_.damping_scale = system_.D != nullptr ? dt : 0.0;
+  system_.mass = (1.0 + dt * tissue_.damping().mass_per_s) * tissue_.nodeMasses();
+  system_.b = v_ * tissue_.nodeMasses().asDiagonal();
+  system_.b += dt * loads_;
+  system_.b += (dt * scene_.gravity_m_per_s2) * tissue_.nodeMasses().transpose();
+  if (sleep_) loads_ += scene_.gravity_m_per_s2 * tissue_.nodeMasses().transpose();
+  for (int i = 0; i < tissue_.nodeCount(); ++i) {
+    if ((*system_.fixed)[i]) system_.b.col(i).setZero();
+  }
+}
+
+bool MovingTissue::wakeHeld(std::optional<double> pressing_n, double dt, int repeats) {
+  if (!sleep_ || !sleep_->wakeHeld(loads_, v_, dt, allowedHeldForce(pressing_n), repeats, woken_)) return false;
+  for (const int node : woken_) system_.b.col(node) = dt * loads_.col(node);  // they were at rest
+  still_changed_ = true;
+  return true;
+}
+
+/// What the sleepers may be held by in all, N.
+double MovingTissue::allowedHeldForce(std::optional<double> pressing_n) const {
+  return scene_.advisor.sleep_error * (pressing_n ? *pressing_n : sleep_->ownForce());
+}
+
+void MovingTissue::move(double dt) {
+  if (!system_.asleep) x_ += dt * v_;
+}
+
+void MovingTissue::fallAsleep(std::optional<double> pressing_n, const std::vector<int>& touched) {
+  if (!sleep_->rest(x_, loads_, allowedHeldForce(pressing_n), touched)) return;
+  still_changed_ = true;
+  for (int i = 0; i < tissue_.nodeCount(); ++i) {
+    if (sleep_->still()[i]) v_.col(i).setZero();
+  }
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,80 @@
+/// @file
+/// Room `simulation`, private: one tissue in motion: positions, velocities, elastic state, loads, its linear system,
+/// and which of its nodes sleep. What contacts touch and how hard they press in; the system of each step and new
+/// positions out.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "simulation/tissue_sleep.h"
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/simulation/scene.h"
+#include "tissue_contact/solver/contact_problem.h"
+#include "tissue_contact/tissue/elasticity.h"
+#include "tissue_contact/tissue/tissue.h"
+
+namespace tissue_contact {
+
+class MovingTissue {
+ public:
+  /// At rest, undeformed. All arguments must outlive this. The last three are this tissue's among those of all, which
+  /// detectors and solvers take together; they are written here alone, but for v, which is also the solver's answer.
+  /// @param x positions, 3 x nodes, m, world frame.
+  /// @param v velocities, 3 x nodes, m/s.
+  /// @param system A and b of the step.
+  MovingTissue(const Scene& scene, const Tissue& tissue, NodalVectors& x, NodalVectors& v, BodySystem& system);
+  MovingTissue(const MovingTissue&) = delete;
+  MovingTissue& operator=(const MovingTissue&) = delete;
+
+  /// Undeformed, at rest, awake.
+  void reset();
+  /// At rest where it is, awake, with a fresh elastic state: what was not finite may have got into tangents.
+  void stop();
+
+  /// Ends a step of `dt`, s.
+  /// @return whether it is time to call fallAsleep().
+  bool isTimeToSleep(double dt) { return sleep_ && sleep_->isTimeToCheck(dt); }
+  /// Lets nodes sleep that have come to rest.
+  /// @param pressing_n as in wakeHeld().
+  /// @param touched nodes with contacts.
+  void fallAsleep(std::optional<double> pressing_n, const std::vector<int>& touched);
+  /// Contacts act on these nodes: they wake before anything is computed with them.
+  void wake(const std::vector<int>& touched);
+
+  /// Writes the system of an implicit Euler step of `dt`, s: doc/method.md, "Equation solved each step".
+  void assemble(double dt);
+
+  /// After a solve: wakes sleepers that must move.
+  /// @param pressing_n the weakest net force of what presses on the tissue, N; none: nothing does.
+  /// @param repeats how often this step was solved before.
+  /// @return whether any woke: the step is to be solved again.
+  bool wakeHeld(std::optional<double> pressing_n, double dt, int repeats);
+
+  bool isFinite() const { return system_.asleep || v_.allFinite(); }  ///< the answer of the step
+  void move(double dt);                                               ///< x += dt v
+
+  bool canSleep() const { return sleep_.has_value(); }
+  int sleepers() const { return sleep_ ? sleep_->sleepers() : 0; }
+  double heldForce() const { return sleep_ ? sleep_->heldForce() : 0.0; }  ///< see TissueSleep::heldForce()
+
+ private:
+  double allowedHeldForce(std::optional<double> pressing_n) const;
+
+  const Scene& scene_;
+  const Tissue& tissue_;
+  NodalVectors& x_;
+  NodalVectors& v_;
+  BodySystem& system_;
+  std::unique_ptr<Elasticity::State> elastic_state_;
+  NodalVectors loads_;                ///< elastic forces, and weight if nodes can sleep, N
+  std::optional<TissueSleep> sleep_;  ///< none: no node ever sleeps
+  bool still_changed_ = false;        ///< sleepers have changed since the elasticity was told
+  std::vector<int> woken_;            ///< scratch
+};
+
+/// Mean length of the edges of `count` tissues' surfaces at rest, m; 0 without any.
+double meanSurfaceEdge(const Tissue* tissues, std::size_t count);
+
+}  // namespace tissue_contact

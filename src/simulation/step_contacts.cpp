@@ -1,0 +1,200 @@
+#include "simulation/step_contacts.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "tissue_contact/mesh/tissue_surface.h"
+
+namespace tissue_contact {
+namespace {
+
+/// A deep contact is pushed out by at most this share of the shape's smallest half extent per step: an instrument that
+/// starts inside the tissue is then freed over some steps instead of by an explosion.
+constexpr double kRecoveryPerStep = 0.1;
+
+/// More of a static contact's slip than this share of an edge is no error of the solver any more and is let go.
+constexpr double kMostSlipPerEdge = 0.01;
+
+/// The share of the step that is over when a contact without a history touches, by the velocities `v` of the tissues at
+/// the start of the step: tissue and tool go on with them until then. If they would not touch that way, something else
+/// brings them together (weight, say, on tissue that lies on a table but for round-off), and the gap counts for as long
+/// as it takes to move by it in any direction.
+double shareBeforeTouch(const ContactRow& row, const std::vector<NodalVectors>& v, double dt) {
+  if (!(row.gap_m > 0.0)) return 0.0;
+  const Vector3 u = relativeVelocity(row, v);
+  const double way = -dt * u[0] > row.gap_m ? -dt * u[0] : dt * u.norm();
+  return way > row.gap_m ? row.gap_m / way : 1.0;
+}
+
+}  // namespace
+
+void sumImpulsesOn(int tissue, const std::vector<SolvedContact>& contacts, const std::vector<Vector3>& impulses,
+                   std::vector<NetImpulse>& net) {
+  net.clear();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const ContactKey& key = contacts[c].contact.key;
+    const bool on_tissue = key.tissue == tissue;  // else on the side that n points away from
+    if (on_tissue == (key.other_tissue == tissue) || impulses[c].isZero(0.0)) continue;
+    const int other = on_tissue ? key.other_tissue : key.tissue;
+    const auto is_same = [&](const NetImpulse& one) {
+      return one.instrument == key.instrument && one.other_tissue == other;
+    };
+    auto of_partner = std::find_if(net.begin(), net.end(), is_same);
+    if (of_partner == net.end()) of_partner = net.insert(net.end(), {key.instrument, other, Vector3::Zero()});
+    const Vector3 impulse_W = contacts[c].contact.R_WC * impulses[c];
+    if (on_tissue) {
+      of_partner->impulse_W += impulse_W;
+    } else {
+      of_partner->impulse_W -= impulse_W;
+    }
+  }
+}
+
+void StepContacts::clear() {
+  memory_.clear();
+  contacts_.clear();
+}
+
+void StepContacts::begin(const ContactDetector& detector, const std::vector<NodalVectors>& x, double margin_m,
+                         std::vector<Contact>& found) {
+  memory_.addKeptPoints(detector, x, motion_.startPoses(), margin_m, found);
+  memory_.recall(found, motion_.longestTravel() + mean_edge_m_, contacts_);
+}
+
+void StepContacts::touchedNodes(int tissue, std::vector<int>& nodes) const {
+  nodes.clear();
+  for (const SolvedContact& solved : contacts_) {
+    const Contact& contact = solved.contact;
+    for (int i = 0; i < 3; ++i) {
+      if (contact.key.tissue == tissue && contact.weights[i] != 0.0) nodes.push_back(contact.nodes[i]);
+      if (contact.key.other_tissue == tissue && contact.other_weights[i] != 0.0) {
+        nodes.push_back(contact.other_nodes[i]);
+      }
+    }
+  }
+}
+
+void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, double last_dt,
+                            std::vector<ContactRow>& rows, ContactSolution& solution) {
+  rows.resize(contacts_.size());
+  solution.impulses.resize(contacts_.size());
+  solution.states.resize(contacts_.size());
+  u_besides_.resize(contacts_.size());
+  back_time_s_ = std::max(dt, last_dt);  // not faster than it came: a short step after a long one could not hold it
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const SolvedContact& before = contacts_[c];
+    const Matrix3& R_WC = before.contact.R_WC;
+    ContactRow& row = rows[c];
+    placeRow(before.contact, dt, row);
+    row.was_sliding = before.state == ContactState::kKinetic;
+    const double sliding_speed = row.was_sliding && last_dt > 0.0 ? before.slip_W.norm() / last_dt : 0.0;
+    row.law = friction_.at(before.contact, x, motion_.startPoses(), sliding_speed);
+    u_besides_[c].setZero();
+    if (before.state == ContactState::kStatic) {
+      u_besides_[c] = -(R_WC.rightCols<2>().transpose() * before.slip_W) / back_time_s_;
+      row.u_tool.tail<2>() += u_besides_[c];
+    }
+    solution.impulses[c] = dt * (R_WC.transpose() * before.force_on_tissue_n);
+    solution.states[c] = before.state;
+  }
+  land(solution.v, dt, rows);
+}
+
+/// A contact that begins within the step slides from then on only: what it moved tangentially before it touched goes
+/// into the velocity of its tool, for every solver alike (doc/method.md, "Landing").
+void StepContacts::land(const std::vector<NodalVectors>& v, double dt, std::vector<ContactRow>& rows) {
+  touch_shares_.resize(contacts_.size());
+  patches_.clear();
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const bool touched = contacts_[c].state != ContactState::kOpen;
+    touch_shares_[c] = touched ? 0.0 : shareBeforeTouch(rows[c], v, dt);
+    double& first = firstTouch(contacts_[c].contact.key);
+    first = std::min(first, touch_shares_[c]);
+  }
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    if (touch_shares_[c] == 0.0) continue;
+    const double share = 0.5 * (firstTouch(contacts_[c].contact.key) + touch_shares_[c]);
+    u_besides_[c] = share * relativeVelocity(rows[c], v).tail<2>();
+    rows[c].u_tool.tail<2>() += u_besides_[c];
+  }
+}
+
+/// When the patch of a contact touches first, as a share of the step; 1 for a new patch.
+double& StepContacts::firstTouch(const ContactKey& key) {
+  const auto same = [&](const Patch& patch) { return sameShapes(patch.key, key); };
+  const auto known = std::find_if(patches_.rbegin(), patches_.rend(), same);  // contacts of a shape follow one another
+  if (known != patches_.rend()) return known->first_touch;
+  patches_.push_back({key, 1.0});
+  return patches_.back().first_touch;
+}
+
+/// Nodes, frame, gap and tool velocity of a contact.
+void StepContacts::placeRow(const Contact& contact, double dt, ContactRow& row) const {
+  const ContactKey& key = contact.key;
+  row.node_count = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (contact.weights[i] != 0.0) row.nodes[row.node_count++] = {key.tissue, contact.nodes[i], contact.weights[i]};
+  }
+  row.R_WC = contact.R_WC;
+  row.gap_m = contact.gap_m;
+  double recovery = 0.0;
+  if (key.instrument >= 0) {
+    const double to_shape = contact.gap_m + 0.5 * tissues_[key.tissue].thickness();
+    const Vector3 p_tool = contact.p_WC - to_shape * contact.R_WC.col(0);
+    row.u_tool = contact.R_WC.transpose() * motion_.pointVelocity(key.instrument, key.link, p_tool, dt);
+    recovery = kRecoveryPerStep * motion_.smallestHalfExtent(key.instrument, key.link, key.shape);
+  } else {
+    for (int i = 0; i < 3; ++i) {
+      if (contact.other_weights[i] == 0.0) continue;
+      row.nodes[row.node_count++] = {key.other_tissue, contact.other_nodes[i], -contact.other_weights[i]};
+    }
+    row.u_tool.setZero();
+    recovery = kRecoveryPerStep * mean_edge_m_;
+  }
+  row.required_u_n = std::min(-contact.gap_m, recovery) / dt;
+}
+
+std::optional<double> StepContacts::weakestNetForce(int tissue, const std::vector<Vector3>& impulses, double dt) {
+  sumImpulsesOn(tissue, contacts_, impulses, net_);
+  std::optional<double> weakest;
+  for (const NetImpulse& net : net_) {
+    weakest = std::min(weakest.value_or(std::numeric_limits<double>::infinity()), net.impulse_W.norm() / dt);
+  }
+  return weakest;
+}
+
+void StepContacts::record(const std::vector<NodalVectors>& x, const ContactProblem& problem,
+                          const ContactSolution& solution) {
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    SolvedContact& solved = contacts_[c];
+    Contact& contact = solved.contact;
+    contact.p_WC = pointOf(x[contact.key.tissue], contact.nodes, contact.weights);
+    solved.slip_W = slipOf(c, problem, solution);
+    solved.state = solution.states[c];
+    solved.force_on_tissue_n = contact.R_WC * solution.impulses[c] / problem.dt_s;
+  }
+  memory_.remember(contacts_);
+}
+
+/// Tangential way of a contact in this step, m, world frame; of a static one since it touched, with what earlier steps
+/// have left.
+Vector3 StepContacts::slipOf(std::size_t c, const ContactProblem& problem, const ContactSolution& solution) const {
+  const auto tangents = contacts_[c].contact.R_WC.rightCols<2>();
+  const ContactState before = contacts_[c].state;
+  const bool held = solution.states[c] == ContactState::kStatic;
+  const bool lands = before == ContactState::kOpen;
+  Vector2 u_t = relativeVelocity(problem.contacts[c], solution.v).tail<2>();
+  if (!held || !lands) u_t += u_besides_[c];
+  Vector3 slip = problem.dt_s * (tangents * u_t);
+  if (!held) return slip;
+  if (before == ContactState::kStatic) slip -= tangents * u_besides_[c] * back_time_s_;
+  const double most = kMostSlipPerEdge * mean_edge_m_;
+  return slip.norm() > most ? Vector3(slip * (most / slip.norm())) : slip;
+}
+
+int StepContacts::count(ContactState state) const {
+  return static_cast<int>(std::count_if(contacts_.begin(), contacts_.end(),
+                                        [state](const SolvedContact& contact) { return contact.state == state; }));
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,96 @@
+/// @file
+/// Room `simulation`, private: the contacts of a step, from detection to their answers: what they inherit, their rows
+/// in the contact problem, friction, landing, and what they hand on to the next step. Contacts and answers of the
+/// solver in; rows, warm start and solved contacts out.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "simulation/contact_memory.h"
+#include "simulation/friction_table.h"
+#include "simulation/instrument_motion.h"
+#include "tissue_contact/contact/contact_detector.h"
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/simulation/solved_contact.h"
+#include "tissue_contact/solver/contact_problem.h"
+#include "tissue_contact/tissue/tissue.h"
+
+namespace tissue_contact {
+
+/// What one instrument or one other tissue does to a tissue.
+struct NetImpulse {
+  int instrument = -1;    ///< -1: another tissue
+  int other_tissue = -1;  ///< -1: an instrument
+  Vector3 impulse_W = Vector3::Zero();
+};
+
+/// Sums up what acts on a tissue, by partner; its own folds do not count. Overwrites `net`, without those that do
+/// nothing.
+/// @param impulses per contact, contact frame, N s.
+void sumImpulsesOn(int tissue, const std::vector<SolvedContact>& contacts, const std::vector<Vector3>& impulses,
+                   std::vector<NetImpulse>& net);
+
+/// No allocation once vectors have grown.
+class StepContacts {
+ public:
+  /// @param mean_edge_m of all tissue surfaces. The other arguments must outlive this.
+  StepContacts(const std::vector<Tissue>& tissues, const InstrumentMotion& motion, const FrictionTable& friction,
+               double mean_edge_m)
+      : tissues_(tissues), motion_(motion), friction_(friction), mean_edge_m_(mean_edge_m) {}
+
+  void clear();  ///< no contacts and no history
+
+  /// Begins a step with the contacts that `detector` has found (sorted by key): adds the points that are kept and lets
+  /// each contact inherit.
+  /// @param x per tissue, m.
+  void begin(const ContactDetector& detector, const std::vector<NodalVectors>& x, double margin_m,
+             std::vector<Contact>& found);
+
+  /// The nodes of a tissue that contacts act on, some more than once; overwrites `nodes`.
+  void touchedNodes(int tissue, std::vector<int>& nodes) const;
+
+  /// Writes the row of each contact and its warm start.
+  /// @param last_dt of the step before, s; 0: there was none.
+  /// @param solution its v: of the tissues at the start of the step; its impulses and states are overwritten.
+  void assemble(const std::vector<NodalVectors>& x, double dt, double last_dt, std::vector<ContactRow>& rows,
+                ContactSolution& solution);
+
+  /// The weakest of the net forces of instruments and other tissues on a tissue, N; none: nothing presses.
+  /// @param impulses per contact, contact frame, N s, of a step of `dt`, s.
+  std::optional<double> weakestNetForce(int tissue, const std::vector<Vector3>& impulses, double dt);
+
+  /// Ends the step with its answer.
+  /// @param x at its end.
+  void record(const std::vector<NodalVectors>& x, const ContactProblem& problem, const ContactSolution& solution);
+
+  const std::vector<SolvedContact>& solved() const { return contacts_; }
+  int count(ContactState state) const;
+
+ private:
+  /// Contacts of one shape (or tissue) on a tissue.
+  struct Patch {
+    ContactKey key;            ///< of one of them
+    double first_touch = 1.0;  ///< share of the step that is over then
+  };
+  void placeRow(const Contact& contact, double dt, ContactRow& row) const;
+  void land(const std::vector<NodalVectors>& v, double dt, std::vector<ContactRow>& rows);
+  double& firstTouch(const ContactKey& key);
+  Vector3 slipOf(std::size_t contact, const ContactProblem& problem, const ContactSolution& solution) const;
+
+  const std::vector<Tissue>& tissues_;
+  const InstrumentMotion& motion_;
+  const FrictionTable& friction_;
+  const double mean_edge_m_;
+  ContactMemory memory_;
+  std::vector<SolvedContact> contacts_;  ///< before the solve with what they inherit, after it with what was found
+  /// Per contact, what is in its row's u_tool besides the instrument's motion, contact plane, m/s: the way back of a
+  /// held contact, or what a contact without a history slid before it touched; each contact has one of them or none.
+  std::vector<Vector2> u_besides_;
+  double back_time_s_ = 0.0;          ///< over which slips are taken back
+  std::vector<Patch> patches_;        ///< scratch of land()
+  std::vector<double> touch_shares_;  ///< per contact, the same
+  std::vector<NetImpulse> net_;       ///< scratch
+};
+
+}  // namespace tissue_contact

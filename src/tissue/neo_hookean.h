@@ -1,0 +1,68 @@
+/// @file
+/// Room `tissue`, private: stable neo-Hookean elasticity on four-node tetrahedra, for large strain. Positions in; elastic forces
+/// and a positive semidefinite stiffness out.
+///
+/// Per element, with F as in tet_elasticity.h, I = F : F and J = det F, the energy per volume is
+///   psi = mu/2 (I - 3) - mu/2 log((I + 1)/4) + lambda/2 (J - alpha)^2 - lambda/2 (1 - alpha)^2,
+///   alpha = 1 + 3 mu / (4 lambda),
+/// and the first Piola-Kirchhoff stress
+///   P = mu (1 - 1/(I + 1)) F + (lambda (J - 1) - 3/4 mu) dJ/dF.
+/// It is finite and smooth for every F, flat and inverted ones included, and an inverted element comes back. So that
+/// small strains follow Young's modulus and Poisson's ratio exactly, mu = 4/3 mu_Lame and
+/// lambda = lambda_Lame + 5/6 mu_Lame.
+///
+/// Stiffness: the exact second derivative with its negative eigenvalues set to zero, element by element, in closed form
+/// from the singular values of F (one 3 x 3 eigenproblem is left).
+/// Source: Smith, de Goes, Kim, "Stable Neo-Hookean Flesh Simulation", ACM TOG 37(2), 2018, eq. 14 and what follows.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/tissue/elasticity.h"
+#include "tissue_contact/tissue/element_materials.h"
+
+namespace tissue_contact {
+
+struct BatchRange;
+struct TetElement;
+struct TetElements;
+
+/// Model: const after construction. Thread-safe for different states.
+class NeoHookean : public Elasticity {
+ public:
+  /// @param rest 3 x n, m.
+  /// @throws std::invalid_argument for a material out of range.
+  NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
+             const ElementMaterials& materials);
+  ~NeoHookean() override;
+
+  std::unique_ptr<State> makeState() const override;
+
+  /// An element's share of the stiffness is recomputed only when its F has changed by more than kTangentChange since;
+  /// forces are always exact.
+  void update(const NodalVectors& x, State& state, NodalVectors& forces) const override;
+
+  void holdStill(const std::vector<bool>& still, const NodalVectors& x, State& state) const override;
+
+  double energy(const NodalVectors& x) const override;
+
+  /// Frobenius norm of the change of F: a turn of 0.4 degrees or a strain of 1 %. As for TetElasticity, this is below
+  /// the first-order error of the implicit Euler step itself.
+  static constexpr double kTangentChange = 0.01;
+
+ private:
+  struct DeformationState;
+
+  void evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, DeformationState& state,
+                NodalVectors& forces) const;
+  template <typename Call>
+  void forEachChanged(const std::vector<BatchRange>& ranges, const DeformationState& state, const Call& call) const;
+  void rebuildStiffness(DeformationState& state) const;
+  void refreshStiffness(const std::vector<BatchRange>& ranges, DeformationState& state) const;
+
+  std::unique_ptr<const TetElements> tets_;
+};
+
+}  // namespace tissue_contact

@@ -1,0 +1,86 @@
+#!/usr/bin/python3
+"""doc/example as another package builds it: against this build, installed into a folder of its own.
+
+usage: example_test.py SOURCE_DIRECTORY BUILD_DIRECTORY
+"""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+SOURCE, BUILD = pathlib.Path(), pathlib.Path()
+# Nothing of the workspace this was built in.
+ENVIRONMENT = {name: value for name, value in os.environ.items()
+               if not re.match("ROS_|CMAKE_PREFIX_PATH|LD_LIBRARY_PATH|PYTHONPATH|PKG_CONFIG_PATH|CATKIN_", name)}
+
+
+def run(*command, **environment):
+    return subprocess.run(list(map(str, command)), env={**ENVIRONMENT, **environment}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, timeout=500)
+
+
+class ExamplePackage(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        # Not --prefix: catkin installs its setup files by absolute paths.
+        cache = (BUILD / "CMakeCache.txt").read_text(encoding="utf-8")
+        prefix = re.search("^CMAKE_INSTALL_PREFIX:PATH=/(.*)$", cache, re.MULTILINE).group(1)
+        cls.prefix = pathlib.Path(cls.folder.name) / prefix
+        done = run("cmake", "--install", BUILD, DESTDIR=cls.folder.name)
+        assert done.returncode == 0, done.stdout
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def configure(self, source, build, *options):
+        return run("cmake", "-S", source, "-B", build, "-DCMAKE_PREFIX_PATH=%s" % self.prefix,
+                   "-DPYTHON_EXECUTABLE=" + sys.executable, *options)
+
+    def test_builds_and_prints_a_force(self):
+        build = pathlib.Path(self.folder.name) / "build"
+        # Every public header beside those that the example includes: all of them must be there, and what they include.
+        headers = sorted(self.prefix.glob("include/tissue_contact/*/*.h"))
+        self.assertGreater(len(headers), 20)
+        everything = build.parent / "everything.h"
+        everything.write_text("".join('#include "%s"\n' % header for header in headers), encoding="utf-8")
+        options = build.parent / "options.cmake"
+        options.write_text("add_compile_options(-include %s)\n" % everything, encoding="utf-8")
+        done = self.configure(SOURCE / "doc/example", build, "-DCMAKE_PROJECT_tissue_contact_example_INCLUDE=%s" % options)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        done = run("cmake", "--build", build)
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+        press = next(build.rglob("press"))
+        self.assertIn(str(self.prefix / "lib/libtissue_contact_core.so"), run("ldd", press).stdout)
+        done = run(press, ROS_PACKAGE_PATH=str(self.prefix / "share"))
+        self.assertEqual(done.returncode, 0, done.stdout)
+        version = xml.etree.ElementTree.parse(SOURCE / "package.xml").findtext("version")
+        self.assertIn("tissue_contact %s," % version, done.stdout)
+        forces = re.findall(r"^(.*): force on the probe (\S+) (\S+) (\S+) N$", done.stdout, re.MULTILINE)
+        self.assertEqual([force[0] for force in forces], ["joint states", "advance"], done.stdout)
+        self.assertEqual(forces[0][1:], forces[1][1:])  # the same motion
+        self.assertGreater(float(forces[0][3]), 0.1)  # N, upwards: the block pushes back
+
+    def test_a_later_version_is_refused(self):
+        copy = pathlib.Path(self.folder.name) / "later"
+        copy.mkdir()
+        for file in (SOURCE / "doc/example").iterdir():
+            text = file.read_text(encoding="utf-8")
+            (copy / file.name).write_text(text.replace("tissue_contact 0.1 ", "tissue_contact 99 "), encoding="utf-8")
+        done = self.configure(copy, copy / "build")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("compatible", done.stdout)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    BUILD = pathlib.Path(sys.argv.pop())
+    SOURCE = pathlib.Path(sys.argv.pop())
+    unittest.main()

@@ -1,0 +1,85 @@
+// What triangles share, and surfaces that follow their nodes.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "mesh/surface/moving_surface.h"
+#include "unit/contact/contact_test_utilities.h"
+
+namespace tissue_contact {
+namespace {
+
+using contact_test::boxSurface;
+using contact_test::Random;
+using contact_test::Surface;
+
+TEST(EdgeTable, NamesBothTrianglesOfAnEdgeAndTheWayTheyRunIt) {
+  const EdgeTable table({{0, 1, 2}, {2, 1, 3}});
+  ASSERT_EQ(table.size(), 5u);
+  for (int t = 0; t < 2; ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const EdgeTable::Edge& edge = table[table.edgesOf(t)[k]];
+      const EdgeUse* const own = table.usesOf(edge).begin() + (edge.count == 2 ? t : 0);
+      EXPECT_EQ(own->triangle, t);
+      EXPECT_EQ(own->side, k);
+    }
+  }
+  const EdgeTable::Edge& shared = table[table.edgesOf(0)[1]];
+  EXPECT_EQ(shared.nodes, (std::array<int, 2>{1, 2}));
+  ASSERT_EQ(table.usesOf(shared).size(), 2);
+  EXPECT_TRUE(table.usesOf(shared)[0].forward);
+  EXPECT_FALSE(table.usesOf(shared)[1].forward);
+  for (std::size_t i = 1; i < table.size(); ++i) {
+    EXPECT_LT(table[static_cast<int>(i) - 1].nodes, table[static_cast<int>(i)].nodes);
+  }
+}
+
+TEST(TriangleTree, FindsExactlyTheOverlappingBoxesAfterRefit) {
+  Surface block = boxSurface({0.1, 0.1, 0.03}, {12, 9, 4});
+  TriangleTree tree(block.nodes, block.triangles);
+  Random random(42);
+  std::size_t found_total = 0;
+  for (int i = 0; i < 50; ++i) {
+    for (Eigen::Index n = 0; n < block.nodes.cols(); ++n) block.nodes.col(n) += random.vector(2e-3);
+    tree.refit(block.nodes);
+    const Vector3 low = random.vector(0.1);
+    const Eigen::AlignedBox3d box(low, Vector3(low + Vector3::Constant(0.06)));
+    std::vector<int> expected;
+    for (std::size_t t = 0; t < block.triangles.size(); ++t) {
+      Eigen::AlignedBox3d around;
+      for (const int node : block.triangles[t]) around.extend(Vector3(block.nodes.col(node)));
+      if (around.intersects(box)) expected.push_back(static_cast<int>(t));
+    }
+    std::vector<int> found;
+    tree.overlapping(box, found);
+    EXPECT_EQ(found, expected);
+    found_total += found.size();
+  }
+  EXPECT_GT(found_total, 500u);
+}
+
+TEST(MovingSurface, IsWhereItWasPlacedLastWhateverCameBefore) {
+  const Surface block = boxSurface({0.1, 0.1, 0.03}, {4, 4, 2});
+  const SharedSurfaces shared = shareSurfaces({{block.triangles, block.fixed()}}, {block.nodes});
+  MovingSurface& surface = shared->front();
+  Random random(44);
+  NodalVectors x = block.nodes;
+  for (int i = 0; i < 10; ++i) {
+    for (Eigen::Index n = 0; n < x.cols(); ++n) x.col(n) += random.vector(2e-3);
+    for (int again = 0; again < 2; ++again) {
+      surface.place(x);
+      MovingSurface fresh(0, {block.triangles, block.fixed()}, block.nodes);
+      fresh.place(x);
+      EXPECT_EQ(surface.box().min(), x.rowwise().minCoeff());
+      EXPECT_EQ(surface.box().max(), x.rowwise().maxCoeff());
+      EXPECT_EQ(surface.tree().nodes().front().box.sizes(), surface.box().sizes());
+      for (int t = 0; t < static_cast<int>(block.triangles.size()); ++t) EXPECT_EQ(surface.normal(t), fresh.normal(t));
+    }
+  }
+  EXPECT_EQ(surface.rest(), block.nodes);
+  EXPECT_THROW(surface.place(NodalVectors::Zero(3, 2)), std::invalid_argument);
+  EXPECT_THROW(placeAll(*shared, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tissue_contact

@@ -1,0 +1,61 @@
+/// @file
+/// The section `publish` of a scene: what the ros room reads beside the core.
+#include "ros/publish/publish_options.h"
+
+#include "unit/scene/scene_fixture.h"
+
+namespace tissue_contact {
+namespace {
+
+class PublishTest : public SceneTest {
+ protected:
+  PublishOptions read(const std::string& yaml) const {
+    PublishOptions options;
+    parseScene(yaml, path("scene.yaml"), nullptr, [&](const YamlMap& file) { options = parsePublish(file); });
+    return options;
+  }
+
+  std::string refusal(const std::string& publish) const {
+    try {
+      read(kSmallestScene + ("publish: " + publish));
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what()).substr(path("").size());
+    }
+    return "";
+  }
+};
+
+TEST_F(PublishTest, FillsTheSection) {
+  const PublishOptions options = read(std::string(kSmallestScene) +
+                                      "publish: {mesh_rate_hz: 1, contacts_rate_hz: 2, status_rate_hz: 3, "
+                                      "markers_rate_hz: 0, tf: true}\n");
+  EXPECT_EQ(options.mesh_rate_hz, 1.0);
+  EXPECT_EQ(options.contacts_rate_hz, 2.0);
+  EXPECT_EQ(options.status_rate_hz, 3.0);
+  EXPECT_EQ(options.markers_rate_hz, 0.0);
+  EXPECT_TRUE(options.tf);
+}
+
+TEST_F(PublishTest, DefaultsAreThoseOfTheDocument) {
+  for (const char* scene : {"", "publish: {}\n"}) {
+    const PublishOptions options = read(kSmallestScene + std::string(scene));
+    EXPECT_EQ(options.mesh_rate_hz, 30.0);
+    EXPECT_EQ(options.contacts_rate_hz, 100.0);
+    EXPECT_EQ(options.status_rate_hz, 10.0);
+    EXPECT_EQ(options.markers_rate_hz, 30.0);
+    EXPECT_FALSE(options.tf);
+  }
+}
+
+TEST_F(PublishTest, RefusesBadValuesWithTheirPlace) {
+  EXPECT_EQ(refusal("{tf: yes}"), "scene.yaml:9: publish.tf: is \"yes\"; it must be true or false");
+  EXPECT_EQ(refusal("{tf: \"true\"}"), "scene.yaml:9: publish.tf: is \"true\"; it must be true or false");
+  EXPECT_EQ(refusal("{markers_rate_hz: -1}"),
+            "scene.yaml:9: publish.markers_rate_hz: is \"-1\"; it must be a number >= 0 and <= 10000 Hz; "
+            "0 switches the topic off");
+  EXPECT_EQ(refusal("{rate_hz: 1}").find("scene.yaml:9: publish.rate_hz: unknown key; "), 0U);
+  EXPECT_EQ(refusal("30").find("scene.yaml:9: publish: is \"30\"; it must be a map"), 0U);
+}
+
+}  // namespace
+}  // namespace tissue_contact

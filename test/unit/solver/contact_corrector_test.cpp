@@ -1,0 +1,52 @@
+/// What the corrector remembers of a contact within a step.
+#include "solver/contact_corrector.h"
+
+#include <gtest/gtest.h>
+
+namespace tissue_contact {
+namespace {
+
+const Matrix3 kW = 0.5 * Matrix3::Identity();
+const Vector2 kNoSliding = Vector2::Zero();
+
+TEST(ContactCorrector, HoldsAContactThatKeepsChangingToTheKineticLimit) {
+  ContactCorrector corrector;
+  ContactState state = ContactState::kStatic;
+  const auto solve = [&](double tangential) {
+    return state = corrector.solve(0, kW, Vector3(-1.0, tangential, 0.0), {0.5, 0.3}, false, state).state;
+  };
+  for (int step = 0; step < 2; ++step) {
+    corrector.prepare(1, [](std::size_t) { return kNoSliding; });
+    state = ContactState::kStatic;
+    for (int change = 0; change < 2; ++change) {
+      EXPECT_EQ(solve(2.0), ContactState::kKinetic);
+      EXPECT_EQ(solve(0.4), ContactState::kStatic);  // between the limits
+    }
+    EXPECT_EQ(solve(2.0), ContactState::kKinetic);
+    EXPECT_EQ(solve(0.4), ContactState::kKinetic);
+    EXPECT_EQ(solve(0.2), ContactState::kStatic);
+    EXPECT_EQ(solve(0.4), ContactState::kKinetic);
+  }
+}
+
+TEST(ContactCorrector, AContactThatWasSlidingHasTheKineticLimit) {
+  ContactCorrector corrector;
+  corrector.prepare(1, [](std::size_t) { return kNoSliding; });
+  const Vector3 q(-1.0, 0.4, 0.0);
+  EXPECT_EQ(corrector.solve(0, kW, q, {0.5, 0.3}, false, ContactState::kOpen).state, ContactState::kStatic);
+  EXPECT_EQ(corrector.solve(0, kW, q, {0.5, 0.3}, true, ContactState::kOpen).state, ContactState::kKinetic);
+}
+
+TEST(ContactCorrector, ARivalIsToldHowTheContactSlidBefore) {
+  Vector2 told = kNoSliding;
+  ContactCorrector corrector([&](const Matrix3&, const Vector3&, const CoulombLaw&, bool, const Vector2& previous) {
+    told = previous;
+    return ContactAnswer();
+  });
+  corrector.prepare(2, [](std::size_t c) { return Vector2(1.0, static_cast<double>(c)); });
+  corrector.solve(1, kW, Vector3::Zero(), {}, false, ContactState::kOpen);
+  EXPECT_EQ(told, Vector2(1.0, 1.0));
+}
+
+}  // namespace
+}  // namespace tissue_contact
