@@ -119,7 +119,7 @@ class BadStartup(harness.TestCase):
         self.assert_refused(["_scene:=" + harness.SCENE, "_gravity:=9.81"], "/tissue_contact/gravity", "tf_timeout_s")
 
     def test_extra_argument(self):
-        for extra in [harness.SCENE, "--scene", "_scene=" + harness.SCENE, ""]:
+        for extra in ["press.yaml", "--scene", "_scene=press.yaml", ""]:
             self.assert_refused(["_scene:=" + harness.SCENE, extra], "'" + extra + "'", "_scene:=")
 
     def test_parameters_of_others_are_a_warning(self):
