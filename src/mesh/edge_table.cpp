@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "tissue_contact/mesh/tissue_surface.h"
+
 namespace tissue_contact {
 
 EdgeTable::EdgeTable(const std::vector<Triangle>& triangles) : edges_of_(triangles.size()) {
@@ -26,6 +28,15 @@ EdgeTable::EdgeTable(const std::vector<Triangle>& triangles) : edges_of_(triangl
     ++edges_.back().count;
     edges_of_[uses_[i].triangle][uses_[i].side] = static_cast<int>(edges_.size()) - 1;
   }
+}
+
+EdgeLengths edgeLengths(const NodalVectors& x, const std::vector<Triangle>& triangles) {
+  EdgeLengths lengths;
+  for (const EdgeTable::Edge& edge : EdgeTable(triangles)) {
+    lengths.sum_m += (x.col(edge.nodes[0]) - x.col(edge.nodes[1])).norm();
+    ++lengths.count;
+  }
+  return lengths;
 }
 
 }  // namespace tissue_contact

@@ -4,19 +4,6 @@
 
 namespace tissue_contact {
 
-double meanSurfaceEdge(const Tissue* tissues, std::size_t count) {
-  double sum = 0.0;
-  double edges = 0.0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const NodalVectors& x = tissues[k].restPositions();
-    double own = 0.0;
-    for (const Triangle& t : tissues[k].surface()) own += (x.col(t[0]) - x.col(t[1])).norm();
-    sum += own;
-    edges += static_cast<double>(tissues[k].surface().size());
-  }
-  return edges > 0.0 ? sum / edges : 0.0;
-}
-
 MovingTissue::MovingTissue(const Scene& scene, const Tissue& tissue, NodalVectors& x, NodalVectors& v,
                            BodySystem& system)
     : scene_(scene), tissue_(tissue), x_(x), v_(v), system_(system), loads_(NodalVectors::Zero(3, tissue.nodeCount())) {

@@ -74,7 +74,4 @@ class MovingTissue {
   std::vector<int> woken_;            ///< scratch
 };
 
-/// Mean length of the edges of `count` tissues' surfaces at rest, m; 0 without any.
-double meanSurfaceEdge(const Tissue* tissues, std::size_t count);
-
 }  // namespace tissue_contact

@@ -7,6 +7,7 @@
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/mesh/tet_mesh.h"
+#include "tissue_contact/mesh/tissue_surface.h"
 #include "tissue_contact/mesh/triangle_mesh.h"
 #include "tissue_contact/tissue/make_elasticity.h"
 #include "tissue_contact/tissue/membrane.h"
@@ -131,6 +132,16 @@ Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
   fixed_ = std::move(placed.fixed);
   surface_regions_ = std::move(placed.surface_regions);
   surface_fibres_ = std::move(placed.surface_fibres);
+}
+
+double meanSurfaceEdge(const Tissue* tissues, std::size_t count) {
+  EdgeLengths all;
+  for (std::size_t k = 0; k < count; ++k) {
+    const EdgeLengths own = edgeLengths(tissues[k].restPositions(), tissues[k].surface());
+    all.sum_m += own.sum_m;
+    all.count += own.count;
+  }
+  return all.count > 0 ? all.sum_m / static_cast<double>(all.count) : 0.0;
 }
 
 }  // namespace tissue_contact

@@ -91,7 +91,7 @@ class CheckRoomsTest(unittest.TestCase):
         self.assert_one("include/tissue_contact/contact/a.h", '#include "contact/private.h"\n', "public headers only")
 
     def test_third_party_in_public_header(self):
-        for target in ("urdf_model/model.h", "assimp/scene.h", "yaml-cpp/yaml.h"):
+        for target in ("fcl/fcl.h", "urdf_model/model.h", "assimp/scene.h", "yaml-cpp/yaml.h"):
             self.assert_one("include/tissue_contact/contact/a.h", f"#include <{target}>\n", target, "public header")
 
     def test_ros_outside_its_room(self):

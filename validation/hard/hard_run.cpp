@@ -21,19 +21,6 @@ void worsen(double& worst, double value) {
   if (!(value <= worst)) worst = value;
 }
 
-double meanEdgeOf(const Simulator& simulator) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const Tissue& tissue : simulator.tissues()) {
-    const NodalVectors& x = tissue.restPositions();
-    for (const Triangle& t : tissue.surface()) {
-      for (int i = 0; i < 3; ++i) sum += (x.col(t[i]) - x.col(t[(i + 1) % 3])).norm();
-      count += 3.0;
-    }
-  }
-  return sum / count;
-}
-
 /// Force on the tissue, N, summed for each instrument, from impulses in the order of `contacts`.
 template <typename ImpulseOf>
 std::vector<Vector3> forcesOf(const Simulator& simulator, const ImpulseOf& impulse) {
@@ -58,7 +45,9 @@ bool letsGoElse(const ContactSolution& a, const DelassusSolution& b) {
 }  // namespace
 
 HardRun::HardRun(Simulator& simulator, int reference_every)
-    : simulator_(simulator), reference_every_(reference_every), edge_(meanEdgeOf(simulator)) {
+    : simulator_(simulator),
+      reference_every_(reference_every),
+      edge_(meanSurfaceEdge(simulator.tissues().data(), simulator.tissues().size())) {
   for (std::size_t i = 0; i < simulator.instruments().size(); ++i) {
     X_WL_.push_back(simulator.linkPoses(static_cast<int>(i)));
   }

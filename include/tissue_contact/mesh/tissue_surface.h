@@ -2,6 +2,7 @@
 /// Room `mesh`: surfaces of tissues, for what detects contacts on them.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -28,6 +29,13 @@ using SharedSurfaces = std::shared_ptr<std::vector<MovingSurface>>;
 /// @throws std::invalid_argument when the sizes differ, a triangle refers to a missing node or twice to the same, or a
 ///   thickness is not finite or < 0.
 SharedSurfaces shareSurfaces(std::vector<TissueSurface> surfaces, const std::vector<NodalVectors>& rest);
+
+/// Of the edges of triangles, each counted once however many triangles share it.
+struct EdgeLengths {
+  double sum_m = 0.0;
+  std::size_t count = 0;
+};
+EdgeLengths edgeLengths(const NodalVectors& x, const std::vector<Triangle>& triangles);
 
 /// Point of a triangle, m.
 /// @param weights barycentric.

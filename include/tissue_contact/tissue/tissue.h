@@ -74,4 +74,7 @@ class Tissue {
   std::unique_ptr<const Elasticity> elasticity_;
 };
 
+/// Mean length of the edges of the surfaces of `count` tissues at rest, m; 0 without any.
+double meanSurfaceEdge(const Tissue* tissues, std::size_t count);
+
 }  // namespace tissue_contact

@@ -1,13 +1,41 @@
 #include "mesh/surface/triangle_tree.h"
 
+#if __has_include(<fcl/geometry/bvh/BVH_model.h>)
+// First: BVH_model.h uses fit() without declaring it.
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/math/bv/utility.h>
+#else  // FCL 0.5: Ubuntu 20.04
+#include <fcl/BVH/BVH_model.h>
+#endif
+
 #include <algorithm>
-#include <numeric>
+#include <memory>
 #include <utility>
 
 namespace tissue_contact {
 namespace {
 
-constexpr int kLeafSize = 4;
+#if __has_include(<fcl/geometry/bvh/BVH_model.h>)
+using FclTree = fcl::BVHModel<fcl::AABBd>;
+using FclPoint = fcl::Vector3d;
+#else
+using FclTree = fcl::BVHModel<fcl::AABB>;
+using FclPoint = fcl::Vec3f;
+#endif
+
+std::unique_ptr<FclTree> buildTree(const std::vector<Vector3>& corners) {
+  std::vector<FclPoint> vertices;
+  std::vector<fcl::Triangle> triangles;
+  vertices.reserve(corners.size());
+  triangles.reserve(corners.size() / 3);
+  for (const Vector3& p : corners) vertices.emplace_back(p[0], p[1], p[2]);
+  for (std::size_t k = 0; k < corners.size(); k += 3) triangles.emplace_back(k, k + 1, k + 2);
+  auto tree = std::make_unique<FclTree>();
+  tree->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
+  tree->addSubModel(vertices, triangles);
+  tree->endModel();
+  return tree;
+}
 
 double squaredDistanceToBox(const Eigen::AlignedBox3d& box, const Vector3& p) {
   return (box.min() - p).cwiseMax(p - box.max()).cwiseMax(0.0).squaredNorm();
@@ -40,54 +68,39 @@ double squaredDistanceToTriangle(const Vector3& a, const Vector3& b, const Vecto
 }  // namespace
 
 TriangleTree::TriangleTree(const NodalVectors& x, std::vector<Triangle> triangles)
-    : triangles_(std::move(triangles)),
-      order_(triangles_.size()),
-      corners_(3 * triangles_.size()),
-      boxes_(triangles_.size()) {
+    : triangles_(std::move(triangles)), corners_(3 * triangles_.size()) {
   if (triangles_.empty()) return;
-  std::vector<Vector3> middles;
-  middles.reserve(triangles_.size());
-  for (const Triangle& t : triangles_) middles.emplace_back((x.col(t[0]) + x.col(t[1]) + x.col(t[2])) / 3.0);
-  std::iota(order_.begin(), order_.end(), 0);
-  nodes_.emplace_back();
-  build(0, 0, static_cast<int>(order_.size()), middles);
+  placeCorners(x);
+  const std::unique_ptr<FclTree> built = buildTree(corners_);
+  for (int n = 0; n < built->getNumBVs(); ++n) {
+    const auto& node = built->getBV(n);
+    nodes_.emplace_back();
+    if (node.isLeaf()) {
+      nodes_.back().triangle = node.primitiveId();
+    } else {
+      nodes_.back().children = node.leftChild();
+    }
+  }
   refit(x);
 }
 
-void TriangleTree::build(int node, int begin, int end, const std::vector<Vector3>& middles) {
-  if (end - begin <= kLeafSize) {
-    nodes_[node].first = begin;
-    nodes_[node].count = end - begin;
-    return;
+void TriangleTree::placeCorners(const NodalVectors& x) {
+  Vector3* corner = corners_.data();
+  for (const Triangle& triangle : triangles_) {
+    for (const int node : triangle) *corner++ = x.col(node);
   }
-  Eigen::AlignedBox3d around;
-  for (int i = begin; i < end; ++i) around.extend(middles[order_[i]]);
-  int axis = 0;
-  around.sizes().maxCoeff(&axis);
-  const int half = begin + (end - begin) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end, [&](int s, int t) {
-    return std::make_pair(middles[s][axis], s) < std::make_pair(middles[t][axis], t);
-  });
-  const int children = nodes_[node].first = static_cast<int>(nodes_.size());
-  nodes_.resize(nodes_.size() + 2);
-  build(children, begin, half, middles);
-  build(children + 1, half, end, middles);
 }
 
 void TriangleTree::refit(const NodalVectors& x) {
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    Vector3* const c = &corners_[3 * i];
-    for (std::size_t k = 0; k < 3; ++k) c[k] = x.col(triangles_[order_[i]][k]);
-    boxes_[i] = Eigen::AlignedBox3d(c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2]));
-  }
+  placeCorners(x);
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     Node& node = nodes_[n];
-    if (node.count == 0) {
-      node.box = nodes_[node.first].box.merged(nodes_[node.first + 1].box);
-      continue;
+    if (node.triangle < 0) {
+      node.box = nodes_[node.children].box.merged(nodes_[node.children + 1].box);
+    } else {
+      const Vector3* const c = corners(node.triangle);
+      node.box = Eigen::AlignedBox3d(c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2]));
     }
-    node.box = boxes_[node.first];
-    for (int i = 1; i < node.count; ++i) node.box.extend(boxes_[node.first + i]);
   }
 }
 
@@ -101,12 +114,12 @@ void TriangleTree::overlapping(const Eigen::AlignedBox3d& box, std::vector<int>&
 void TriangleTree::collect(int node, const Eigen::AlignedBox3d& box, std::vector<int>& triangles) const {
   const Node& here = nodes_[node];
   if (!here.box.intersects(box)) return;
-  for (int i = here.first; i < here.first + here.count; ++i) {
-    if (box.intersects(boxes_[i])) triangles.push_back(order_[i]);
+  if (here.triangle >= 0) {
+    triangles.push_back(here.triangle);
+    return;
   }
-  if (here.count > 0) return;
-  collect(here.first, box, triangles);
-  collect(here.first + 1, box, triangles);
+  collect(here.children, box, triangles);
+  collect(here.children + 1, box, triangles);
 }
 
 double TriangleTree::squaredDistance(const Vector3& p, double bound_squared) const {
@@ -117,15 +130,13 @@ double TriangleTree::squaredDistance(const Vector3& p, double bound_squared) con
 
 void TriangleTree::descend(int node, const Vector3& p, double& best) const {
   const Node& here = nodes_[node];
-  if (here.count > 0) {
-    for (int i = here.first; i < here.first + here.count; ++i) {
-      const Vector3* const c = corners(i);
-      best = std::min(best, squaredDistanceToTriangle(c[0], c[1], c[2], p));
-    }
+  if (here.triangle >= 0) {
+    const Vector3* const c = corners(here.triangle);
+    best = std::min(best, squaredDistanceToTriangle(c[0], c[1], c[2], p));
     return;
   }
-  int near = here.first;
-  int far = here.first + 1;
+  int near = here.children;
+  int far = here.children + 1;
   double to_near = squaredDistanceToBox(nodes_[near].box, p);
   double to_far = squaredDistanceToBox(nodes_[far].box, p);
   if (to_far < to_near) {

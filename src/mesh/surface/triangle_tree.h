@@ -1,11 +1,9 @@
 /// @file
 /// Room `mesh`, private: a binary tree of axis-aligned boxes over triangles.
 ///
-/// Split at the median of the triangles' middles along the axis on which these are spread most, down to leaves of four,
-/// whose corners lie side by side. When the triangles move, the boxes are refitted and the structure stays.
-/// Not FCL's: of its BVHModel only the construction was of use. Its traversals test triangle against triangle and run a
-/// narrow phase at every leaf, where here a box (a shape's, or that around a vertex) asks for the triangles near it; and
-/// its collision managers sort many bodies, of which a scene has a few.
+/// FCL builds the tree, once. Its nodes are kept here, because FCL's refit and its questions cost more than the step can
+/// spare: a refit takes 28 us for 720 triangles, and at every leaf a traversal runs a narrow phase, where a box only asks
+/// which triangles are near.
 #pragma once
 
 #include <vector>
@@ -18,8 +16,8 @@ class TriangleTree {
  public:
   struct Node {
     Eigen::AlignedBox3d box;
-    int first = 0;  ///< place of a leaf's first triangle, else left child; the right child follows it
-    int count = 0;  ///< of triangles, 0: not a leaf
+    int triangle = -1;  ///< of a leaf, else -1
+    int children = -1;  ///< the left one, the right one follows it; -1 for a leaf
   };
 
   /// @param x 3 x n, m.
@@ -37,18 +35,15 @@ class TriangleTree {
 
   /// Root first, parents before children. Empty without triangles.
   const std::vector<Node>& nodes() const { return nodes_; }
-  /// The three corners of the triangle at a place.
-  const Vector3* corners(int place) const { return &corners_[3 * static_cast<std::size_t>(place)]; }
+  const Vector3* corners(int triangle) const { return &corners_[3 * static_cast<std::size_t>(triangle)]; }
 
  private:
-  void build(int node, int begin, int end, const std::vector<Vector3>& middles);
+  void placeCorners(const NodalVectors& x);
   void collect(int node, const Eigen::AlignedBox3d& box, std::vector<int>& triangles) const;
   void descend(int node, const Vector3& p, double& best) const;
 
   std::vector<Triangle> triangles_;
-  std::vector<int> order_;                  ///< triangles by place
-  std::vector<Vector3> corners_;            ///< three per triangle, by place
-  std::vector<Eigen::AlignedBox3d> boxes_;  ///< of each triangle, by place
+  std::vector<Vector3> corners_;  ///< three per triangle
   std::vector<Node> nodes_;
 };
 

@@ -22,15 +22,14 @@ WindingTree::WindingTree(const TriangleMesh& mesh)
     const TriangleTree::Node& node = triangles_.nodes()[n];
     Dipole& made = dipoles_[n];
     Vector3 moment = Vector3::Zero();
-    for (int i = node.first; i < node.first + node.count; ++i) {
-      const Vector3* const c = triangles_.corners(i);
-      const Vector3 normal = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]);
-      made.area_normal += normal;
-      made.area += normal.norm();
-      moment += normal.norm() * Vector3((c[0] + c[1] + c[2]) / 3.0);
+    if (node.triangle >= 0) {
+      const Vector3* const c = triangles_.corners(node.triangle);
+      made.area_normal = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]);
+      made.area = made.area_normal.norm();
+      moment = made.area * Vector3((c[0] + c[1] + c[2]) / 3.0);
     }
-    for (int i = 0; node.count == 0 && i < 2; ++i) {
-      const Dipole& child = dipoles_[node.first + i];
+    for (int i = 0; node.triangle < 0 && i < 2; ++i) {
+      const Dipole& child = dipoles_[node.children + i];
       made.area_normal += child.area_normal;
       made.area += child.area;
       moment += child.area * child.centre;
@@ -48,13 +47,9 @@ double WindingTree::solidAngle(int node, const Vector3& p) const {
     return dipole.area_normal.dot(way) / (squared * std::sqrt(squared));
   }
   const TriangleTree::Node& here = triangles_.nodes()[node];
-  if (here.count == 0) return solidAngle(here.first, p) + solidAngle(here.first + 1, p);
-  double sum = 0.0;
-  for (int i = here.first; i < here.first + here.count; ++i) {
-    const Vector3* const c = triangles_.corners(i);
-    sum += solidAngleOfTriangle(c[0] - p, c[1] - p, c[2] - p);
-  }
-  return sum;
+  if (here.triangle < 0) return solidAngle(here.children, p) + solidAngle(here.children + 1, p);
+  const Vector3* const c = triangles_.corners(here.triangle);
+  return solidAngleOfTriangle(c[0] - p, c[1] - p, c[2] - p);
 }
 
 }  // namespace tissue_contact

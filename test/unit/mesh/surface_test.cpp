@@ -34,6 +34,18 @@ TEST(EdgeTable, NamesBothTrianglesOfAnEdgeAndTheWayTheyRunIt) {
   }
 }
 
+TEST(EdgeTable, LengthsCountEachEdgeOnceWhateverTheOrderOfCorners) {
+  // A 3-4-5 triangle and its mirror image over the longest side: four outer sides of 3 and 4, the shared one of 5.
+  NodalVectors x(3, 4);
+  x << 0, 4, 0, 4, 0, 0, 3, 3, 0, 0, 0, 0;
+  for (const Triangle& first : {Triangle{0, 1, 2}, Triangle{1, 2, 0}, Triangle{2, 0, 1}}) {
+    const EdgeLengths lengths = edgeLengths(x, {first, {2, 1, 3}});
+    EXPECT_EQ(lengths.count, 5u);
+    EXPECT_DOUBLE_EQ(lengths.sum_m, 19.0);
+  }
+  EXPECT_EQ(edgeLengths(x, {}).count, 0u);
+}
+
 TEST(TriangleTree, FindsExactlyTheOverlappingBoxesAfterRefit) {
   Surface block = boxSurface({0.1, 0.1, 0.03}, {12, 9, 4});
   TriangleTree tree(block.nodes, block.triangles);
