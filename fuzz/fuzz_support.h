@@ -3,18 +3,16 @@
 /// allows two ends only: an answer that holds what its header promises, or std::invalid_argument.
 #pragma once
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
+
+#include "support/temporary_directory.h"
 
 /// libFuzzer calls it with every input; run_files.cpp with every stored one.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
@@ -56,30 +54,14 @@ class Bytes {
 /// A file that holds one input after another, in a directory that nobody else can write to; both are removed at the end.
 class InputFile {
  public:
-  InputFile() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "fuzz_XXXXXX").string();
-    require(mkdtemp(pattern.data()) != nullptr, "a temporary directory");
-    directory_ = pattern;
-  }
-  ~InputFile() {
-    std::error_code ignored;
-    std::filesystem::remove_all(directory_, ignored);
-  }
-  InputFile(const InputFile&) = delete;
-  InputFile& operator=(const InputFile&) = delete;
-
-  /// @return path of a file named `name` with this content and no other.
+  /// @return path of a file named `name` with this content.
   const std::string& hold(const std::string& name, std::string_view content) {
-    path_ = (directory_ / name).string();
-    std::ofstream stream(path_, std::ios::binary | std::ios::trunc);
-    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-    stream.close();
-    require(stream.good(), "a temporary file that can be written");
+    path_ = directory_.write(name, std::string(content));
     return path_;
   }
 
  private:
-  std::filesystem::path directory_;
+  TemporaryDirectory directory_;
   std::string path_;
 };
 

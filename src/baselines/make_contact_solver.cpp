@@ -4,9 +4,9 @@
 
 #include "baselines/rival_contact.h"
 #include "baselines/step_solvers.h"
+#include "core/name_table.h"
 #include "solver/iterative_predictor_corrector.h"
 #include "tissue_contact/core/check.h"
-#include "tissue_contact/core/name_table.h"
 
 namespace tissue_contact {
 

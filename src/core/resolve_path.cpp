@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "tissue_contact/core/text.h"
+
 namespace tissue_contact {
 namespace {
 
@@ -29,10 +31,9 @@ fs::path inPackage(const std::string& uri, const std::string& rest, const Packag
 }  // namespace
 
 std::string resolvePath(const std::string& uri, const std::string& base_directory, const PackagePath& package_path) {
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
   if (uri.empty()) refuse(uri, "is empty; give a file");
   // A NUL would silently cut the path short in the system calls that follow.
-  if (std::any_of(uri.begin(), uri.end(), is_control)) {
+  if (std::any_of(uri.begin(), uri.end(), isControl)) {
     throw std::invalid_argument("a path holds control characters; remove them");
   }
   fs::path path;

@@ -16,8 +16,7 @@ std::string printable(const std::string& text, std::size_t most) {
   std::size_t end = std::min(text.size(), most);
   while (end < text.size() && end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
   std::string shown = text.substr(0, end);
-  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
-  std::replace_if(shown.begin(), shown.end(), is_control, '?');
+  std::replace_if(shown.begin(), shown.end(), isControl, '?');
   return end < text.size() ? shown + "..." : shown;
 }
 

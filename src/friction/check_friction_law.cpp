@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/name_table.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/entry_error.h"
-#include "tissue_contact/core/name_table.h"
 
 namespace tissue_contact {
 namespace {

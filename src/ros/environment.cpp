@@ -17,12 +17,15 @@
 
 #include "ros/bag/bag_frames.h"
 #include "ros/conversions.h"
-#include "tissue_contact/core/check.h"
+#include "ros/number_parameter.h"
+#include "tissue_contact/core/range.h"
 #include "tissue_contact/core/read_file.h"
 #include "tissue_contact/instrument/parse_urdf.h"
 
 namespace tissue_contact {
 namespace {
+
+constexpr Range kTimeoutRange{0.0, 1e6, "s"};
 
 /// $XDG_CACHE_HOME/tissue_contact, else ~/.cache/tissue_contact; empty (no cache) when neither is set.
 std::string cacheDirectory() {
@@ -89,17 +92,8 @@ std::string packagePath(const std::string& package) {
   return rospack.find(package, path) ? path : std::string();
 }
 
-double numberParameter(const ros::NodeHandle& node, const std::string& name, double otherwise) {
-  double value = otherwise;
-  if (node.hasParam(name) && !node.getParam(name, value)) {
-    throw std::invalid_argument("parameter '" + node.resolveName(name) + "' is not a number");
-  }
-  return value;
-}
-
 SceneEnvironment nodeEnvironment(const ros::NodeHandle& private_node, const std::string& world_frame) {
-  const double timeout_s = numberParameter(private_node, "tf_timeout_s", 10.0);
-  requireNonNegative("parameter '" + private_node.resolveName("tf_timeout_s") + "'", timeout_s, "s");
+  const double timeout_s = numberParameter(private_node, "tf_timeout_s", 10.0, kTimeoutRange);
   SceneEnvironment environment;
   environment.package_path = packagePath;
   environment.clock = steadySeconds;

@@ -4,6 +4,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "scene/read_more.h"
 #include "scene/scene_sections.h"
 #include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/core/read_file.h"
@@ -104,10 +105,8 @@ void parseSections(const YamlMap& map, const PathContext& paths, Scene& scene) {
   if (const YamlCursor* value = map.find("publish")) value->map();  // read by whoever publishes
 }
 
-}  // namespace
-
-Scene parseScene(const std::string& yaml, const std::string& file, const PackagePath& package_path,
-                 const ReadMore& read_more) {
+Scene parse(const std::string& yaml, const std::string& file, const PackagePath& package_path,
+            const ReadMore& read_more) {
   const YamlMap map = parseYaml(yaml, file).map();
   const PathContext paths{fs::path(file).parent_path().string(), package_path};
   Scene scene;
@@ -123,11 +122,21 @@ Scene parseScene(const std::string& yaml, const std::string& file, const Package
   return scene;
 }
 
+}  // namespace
+
+Scene parseScene(const std::string& yaml, const std::string& file, const PackagePath& package_path) {
+  return parse(yaml, file, package_path, nullptr);
+}
+
+Scene loadScene(const std::string& file, const PackagePath& package_path) {
+  return loadScene(file, package_path, nullptr);
+}
+
 Scene loadScene(const std::string& file, const PackagePath& package_path, const ReadMore& read_more) {
   // Only URIs: messages and Scene::file keep a plain path as it was given.
   const bool is_uri = file.find("://") != std::string::npos;
   const std::string path = is_uri ? resolvePath(file, "", package_path) : file;
-  return parseScene(readFile(path, "scene file", kMaxSceneBytes), path, package_path, read_more);
+  return parse(readFile(path, "scene file", kMaxSceneBytes), path, package_path, read_more);
 }
 
 }  // namespace tissue_contact

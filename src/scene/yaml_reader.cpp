@@ -141,8 +141,7 @@ std::string YamlCursor::text() const {
   if (value.size() > kMaxTextBytes) {
     fail("has " + std::to_string(value.size()) + " bytes; at most " + std::to_string(kMaxTextBytes) + " are allowed");
   }
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
-  if (std::any_of(value.begin(), value.end(), is_control)) {
+  if (std::any_of(value.begin(), value.end(), isControl)) {
     fail("is " + inQuotes(value) + "; it must not hold control characters or line breaks");
   }
   return value;

@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
+#include "core/name_table.h"
 #include "tissue_contact/core/check.h"
-#include "tissue_contact/core/name_table.h"
 
 namespace tissue_contact {
 

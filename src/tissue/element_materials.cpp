@@ -1,7 +1,7 @@
 #include "tissue_contact/tissue/element_materials.h"
 
+#include "core/name_table.h"
 #include "tissue_contact/core/check.h"
-#include "tissue_contact/core/name_table.h"
 
 namespace tissue_contact {
 

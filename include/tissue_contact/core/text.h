@@ -11,6 +11,9 @@
 
 namespace tissue_contact {
 
+/// Of ASCII, whatever the locale of the process.
+inline bool isControl(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
+
 /// The first `most` bytes of `text` (fewer where that would cut a character of UTF-8), "..." where there are more; '?' for
 /// every control character.
 std::string printable(const std::string& text, std::size_t most = 60);

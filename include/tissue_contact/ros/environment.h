@@ -16,10 +16,6 @@ double steadySeconds();
 /// Directory of a package through rospack; empty where it is not found.
 std::string packagePath(const std::string& package);
 
-/// A parameter that is a number; `otherwise` where it is not set.
-/// @throws std::invalid_argument when it is something else.
-double numberParameter(const ros::NodeHandle& node, const std::string& name, double otherwise);
-
 /// For a running node: packages through rospack, URDF text from the parameter server, frames through tf2.
 ///
 /// URDF parameters are looked up in the private namespace first, then in the node's namespace and upwards to the global
@@ -27,7 +23,7 @@ double numberParameter(const ros::NodeHandle& node, const std::string& name, dou
 /// time; default 10 s: a robot's own start-up takes about that long).
 /// @param private_node handle of the private namespace.
 /// @param world_frame frame the poses are wanted in.
-/// @throws std::invalid_argument when ~tf_timeout_s is not a number >= 0; the members throw it, naming what they tried.
+/// @throws std::invalid_argument when ~tf_timeout_s is no number from 0 to 1e6; the members throw it, naming what they tried.
 SceneEnvironment nodeEnvironment(const ros::NodeHandle& private_node, const std::string& world_frame);
 
 /// For offline replay: packages through rospack, URDF text from a file, frames from the bag's /tf_static and /tf, each

@@ -2,7 +2,6 @@
 /// Room `scene`: YAML file in, checked Scene out. No ROS.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -12,21 +11,15 @@
 
 namespace tissue_contact {
 
-class YamlMap;
-
-/// Reads what a scene file says of matters that are none of the core's ("publish"): the map of the whole file in.
-using ReadMore = std::function<void(const YamlMap& file)>;
-
 /// Reads, checks and completes a scene.
 /// @param file a path or a `package://` or `file://` URI. Paths in it may be those, or relative to the file.
-/// @param read_more called last; what it finds wrong is refused like all else. Without it unknown keys alone are.
+///   Of `publish`, which is for whoever publishes, only the keys are checked.
 /// @throws std::invalid_argument "<file>:<line>: <key path>: <what is wrong, the allowed range and the fix>" for unknown
 ///   keys, wrong types, values out of range, duplicate or unknown names and missing files.
-Scene loadScene(const std::string& file, const PackagePath& package_path, const ReadMore& read_more = nullptr);
+Scene loadScene(const std::string& file, const PackagePath& package_path);
 
 /// As loadScene, from text; `file` is used in messages and as the base of relative paths.
-Scene parseScene(const std::string& yaml, const std::string& file, const PackagePath& package_path,
-                 const ReadMore& read_more = nullptr);
+Scene parseScene(const std::string& yaml, const std::string& file, const PackagePath& package_path);
 
 /// Every key the loader knows, by where its map stands, "[]" for any element of a list: "tissues[].material". Maps of joint
 /// names have free keys and are not among them; tissues[].pose also stands for instruments[].base_pose,

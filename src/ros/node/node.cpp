@@ -17,9 +17,9 @@
 #include "ros/node/logger_service.h"
 #include "ros/node/private_parameters.h"
 #include "ros/publish/publish_options.h"
+#include "scene/read_more.h"
 #include "tissue_contact/core/whole_file.h"
 #include "tissue_contact/ros/environment.h"
-#include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/simulation/scene.h"
 
 namespace tissue_contact {

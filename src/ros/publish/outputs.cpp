@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "tissue_contact/ros/environment.h"
+#include "ros/number_parameter.h"
 
 namespace tissue_contact {
 namespace {
@@ -15,11 +15,16 @@ namespace {
 /// Wrenches must not be lost to a subscriber that stalls: 20 s of 500 Hz.
 constexpr int kWrenchQueue = 10000;
 
+// What RViz can draw of a scene of some centimetres and newtons, and a thousand times more.
+constexpr Range kFullScaleRange{1e-9, 1e3, "m"};
+constexpr Range kForceArrowRange{1e-9, 1e6, "m/N"};
+
 MarkerStyle markerStyle(const ros::NodeHandle& node) {
   MarkerStyle style;
   style.displacement_full_scale_m =
-      numberParameter(node, "markers/displacement_full_scale_m", style.displacement_full_scale_m);
-  style.force_arrow_m_per_n = numberParameter(node, "markers/force_arrow_m_per_n", style.force_arrow_m_per_n);
+      numberParameter(node, "markers/displacement_full_scale_m", style.displacement_full_scale_m, kFullScaleRange);
+  style.force_arrow_m_per_n =
+      numberParameter(node, "markers/force_arrow_m_per_n", style.force_arrow_m_per_n, kForceArrowRange);
   return style;
 }
 

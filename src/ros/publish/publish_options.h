@@ -16,7 +16,7 @@ struct PublishOptions {
 };
 
 /// The section `publish`, defaults for what it does not name.
-/// @throws as loadScene(), whose `read_more` may call it.
+/// @throws as loadScene(), which may call it (scene/read_more.h).
 PublishOptions parsePublish(const YamlMap& file);
 
 }  // namespace tissue_contact

@@ -2,6 +2,7 @@
 /// The section `publish` of a scene: what the ros room reads beside the core.
 #include "ros/publish/publish_options.h"
 
+#include "scene/read_more.h"
 #include "unit/scene/scene_fixture.h"
 
 namespace tissue_contact {
@@ -11,7 +12,8 @@ class PublishTest : public SceneTest {
  protected:
   PublishOptions read(const std::string& yaml) const {
     PublishOptions options;
-    parseScene(yaml, path("scene.yaml"), nullptr, [&](const YamlMap& file) { options = parsePublish(file); });
+    write("scene.yaml", yaml);
+    loadScene(path("scene.yaml"), nullptr, [&](const YamlMap& file) { options = parsePublish(file); });
     return options;
   }
 
