@@ -1,6 +1,9 @@
 #include "tissue_contact/core/block_matrix.h"
 
 #include <algorithm>
+#include <cstring>
+
+#include "core/lanes.h"
 
 namespace tissue_contact {
 
@@ -35,6 +38,23 @@ void BlockMatrix::setZero() {
 void BlockMatrix::copyBlocks(const BlockMatrix& from) {
   std::copy(from.diagonal.begin(), from.diagonal.end(), diagonal.begin());
   std::copy(from.values.begin(), from.values.end(), values.begin());
+}
+
+TISSUE_CONTACT_CLONES
+Vector3 BlockMatrix::offDiagonalProduct(int i, const NodalVectors& v) const {
+  const double* const velocity = v.data();
+  Lanes sum = {0.0, 0.0, 0.0, 0.0};  // the last lane is of no use to anyone
+  for (int k = row_start[i]; k < row_start[i + 1]; ++k) {
+    const double* const m = values[k].data();
+    const double* const w = velocity + 3 * static_cast<std::ptrdiff_t>(columns[k]);
+    Lanes x, y, z;
+    std::memcpy(&x, m, sizeof(Lanes));
+    std::memcpy(&y, m + 3, sizeof(Lanes));
+    std::memcpy(&z, m + 5, sizeof(Lanes));  // not beyond the block
+    z = Lanes{z[1], z[2], z[3], z[3]};
+    sum += x * w[0] + y * w[1] + z * w[2];
+  }
+  return {sum[0], sum[1], sum[2]};
 }
 
 }  // namespace tissue_contact

@@ -149,7 +149,7 @@ TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches
                                         const Material& material, double tangent_angle, double share, const double* x,
                                         const std::vector<RotationBatch>& tangents,
                                         std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
-                                        double* forces) {
+                                        ElementValues* traces, double* forces) {
   for (std::size_t b = range.begin; b < range.end; ++b) {
     LaneMatrix F, R, S;
     LaneQuaternion q, t;
@@ -164,6 +164,7 @@ TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches
     }
     material.get(b, lambda, mu);
     addForces(batches[b], lambda, mu, &R, S, forces);
+    if (traces != nullptr) store(S.m[0] + S.m[4] + S.m[8], traces[b]);
     store(q.w, rotations[b][0]);
     store(q.x, rotations[b][1]);
     store(q.y, rotations[b][2]);
@@ -200,16 +201,18 @@ TISSUE_CONTACT_CLONES
 void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
                            double tangent_angle, double share, const double* x,
                            const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
-                           std::vector<unsigned char>& turned, double* forces) {
-  corotational(batches, range, UniformMaterial{material}, tangent_angle, share, x, tangents, rotations, turned, forces);
+                           std::vector<unsigned char>& turned, ElementValues* traces, double* forces) {
+  corotational(batches, range, UniformMaterial{material}, tangent_angle, share, x, tangents, rotations, turned, traces,
+               forces);
 }
 
 TISSUE_CONTACT_CLONES
 void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range,
                            const std::vector<BatchMaterial>& materials, double tangent_angle, double share,
                            const double* x, const std::vector<RotationBatch>& tangents,
-                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces) {
-  corotational(batches, range, VaryingMaterial{materials}, tangent_angle, share, x, tangents, rotations, turned,
+                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
+                           ElementValues* traces, double* forces) {
+  corotational(batches, range, VaryingMaterial{materials}, tangent_angle, share, x, tangents, rotations, turned, traces,
                forces);
 }
 
@@ -226,6 +229,23 @@ void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range,
                      double* turn_squared) {
   turn_squared == nullptr ? linear<false>(batches, range, VaryingMaterial{materials}, x, forces, nullptr)
                           : linear<true>(batches, range, VaryingMaterial{materials}, x, forces, turn_squared);
+}
+
+TISSUE_CONTACT_CLONES
+void addPressureForces(const std::vector<ElementBatch>& batches, BatchRange range,
+                       const std::vector<RotationBatch>& rotations,
+                       const std::vector<std::array<int, kLanes>>& group_of, const std::vector<double>& pressures,
+                       double* forces) {
+  for (std::size_t b = range.begin; b < range.end; ++b) {
+    Lanes pressure;
+    for (int lane = 0; lane < kLanes; ++lane) pressure[lane] = pressures[group_of[b][lane]];
+    LaneQuaternion q;
+    LaneMatrix P;
+    loadQuaternion(rotations[b], q);
+    rotationMatrix(q, P);
+    for (Lanes& entry : P.m) entry *= pressure;
+    addStressForces(batches[b], P, forces);
+  }
 }
 
 }  // namespace tissue_contact

@@ -15,17 +15,21 @@ namespace tissue_contact {
 /// Quaternions (w, x, y, z) of four elements; need not be of unit length.
 using RotationBatch = std::array<std::array<double, kLanes>, 4>;
 
+/// A number for each of four elements.
+using ElementValues = std::array<double, kLanes>;
+
 /// For the batches of `range`: brings `rotations` up to date with positions x (3 x n) and adds the elastic forces to `forces` (3 x n).
 /// `turned[b]` gets bit `lane` set where the rotation is more than `tangent_angle` (rad, small) away from `tangents`.
-/// The forces are those of `share` (0 to 1) of each rotation.
+/// The forces are those of `share` (0 to 1) of each rotation. `traces`, unless null, gets tr(R'F) of every element, by batch.
 void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
                            double tangent_angle, double share, const double* x,
                            const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
-                           std::vector<unsigned char>& turned, double* forces);
+                           std::vector<unsigned char>& turned, ElementValues* traces, double* forces);
 void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range,
                            const std::vector<BatchMaterial>& materials, double tangent_angle, double share,
                            const double* x, const std::vector<RotationBatch>& tangents,
-                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces);
+                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
+                           ElementValues* traces, double* forces);
 
 /// The same without rotations. `turn_squared`, unless null, is raised to the square of the largest turn, rad, where small.
 void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
@@ -33,5 +37,12 @@ void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range,
 void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range,
                      const std::vector<BatchMaterial>& materials, const double* x, double* forces,
                      double* turn_squared);
+
+/// Adds the forces of a mean stress p I, turned by each element's rotation: -V p R grad N. `group_of` names for each
+/// element of a batch its place in `pressures`, Pa.
+void addPressureForces(const std::vector<ElementBatch>& batches, BatchRange range,
+                       const std::vector<RotationBatch>& rotations,
+                       const std::vector<std::array<int, kLanes>>& group_of, const std::vector<double>& pressures,
+                       double* forces);
 
 }  // namespace tissue_contact

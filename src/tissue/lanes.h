@@ -1,8 +1,5 @@
 /// @file
 /// Room `tissue`, private: four tetrahedra at a time: how they are laid out, and the parts that force kernels share.
-///
-/// Every lane does the same IEEE operations in the same order whatever the processor's vector width, so the bits do not
-/// depend on the machine.
 #pragma once
 
 #include <array>
@@ -10,20 +7,11 @@
 #include <cstring>
 #include <vector>
 
+#include "core/lanes.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/tissue/element_materials.h"
 
-// One build of the kernel for AVX2 and one for any processor, chosen when the library is loaded.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define TISSUE_CONTACT_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define TISSUE_CONTACT_CLONES
-#endif
-#define TISSUE_CONTACT_INLINE inline __attribute__((always_inline))
-
 namespace tissue_contact {
-
-constexpr int kLanes = 4;
 
 /// Four elements side by side; the last batch of a mesh repeats its last element in the lanes beyond `used`.
 struct ElementBatch {
@@ -44,7 +32,6 @@ struct BatchMaterial {
   std::array<double, kLanes> mu;
 };
 
-using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 using Mask = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
 
 /// Column-major, as Eigen: element (r, c) is m[r + 3 c].

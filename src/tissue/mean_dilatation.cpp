@@ -22,13 +22,16 @@ struct MeanDilatation::Patch {
   double volume = 0.0;     ///< m^3
   double bulk = 0.0;       ///< mean over the volume, Pa
   double damping_s = 0.0;  ///< likewise
-  std::size_t first = 0;   ///< of its nodes in PatchState::tangent_gradients
+  std::size_t first = 0;   ///< of its nodes in PatchState::gradients
 };
 
 struct MeanDilatation::PatchState : RotationState {
-  std::vector<Vector3> gradients;          ///< b of every patch's nodes, patch after patch, m^2
-  std::vector<Vector3> tangent_gradients;  ///< those `stiffness` was computed with
-  std::vector<bool> still;                 ///< per patch: its forces are among the held ones; empty: none is
+  std::vector<Vector3>
+      gradients;            ///< b of every patch's nodes, patch after patch, that `stiffness` was computed with, m^2
+  std::vector<bool> still;  ///< per patch: its forces are among the held ones; empty: none is
+  std::vector<BatchRange> pressed;  ///< batches with elements of the other patches
+  std::vector<double> pressures;    ///< scratch, per patch: kappa tbar, Pa
+  std::vector<int> turned_patches;  ///< scratch
 };
 
 namespace {
@@ -87,6 +90,10 @@ MeanDilatation::MeanDilatation(const NodalVectors& rest, const std::vector<Tetra
     patch.bulk += volume * bulkModulus(materials.of(e));
     patch.damping_s += volume * materials.dampingOf(e);
   }
+  for (std::size_t e = 0; e < kLanes * tets().batches.size(); ++e) {
+    if (e % kLanes == 0) patch_of_.emplace_back();
+    patch_of_.back()[e % kLanes] = patch_of[std::min(e, patch_of.size() - 1)];
+  }
   std::size_t first = 0;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     Patch& patch = patches_[p];
@@ -113,7 +120,12 @@ std::unique_ptr<Elasticity::State> MeanDilatation::makeState() const {
     addGradients(patch, *state, &state->gradients[patch.first]);
     addStiffness(patch, &state->gradients[patch.first], 1.0, *state);
   }
-  state->tangent_gradients = state->gradients;
+  state->pressed = {{0, tets().batches.size()}};
+  state->pressures.resize(patches_.size());
+  if (corotational_) {
+    state->traces.resize(tets().batches.size());
+    state->turned_patches.reserve(tets().batches.size() * kLanes);
+  }
   return state;
 }
 
@@ -153,54 +165,92 @@ void MeanDilatation::addStiffness(const Patch& patch, const Vector3* gradients, 
   }
 }
 
-/// Whether TetElasticity has refreshed the tangent of an element of the patch.
-bool MeanDilatation::turned(const Patch& patch, const RotationState& state) const {
-  return std::any_of(patch.members.begin(), patch.members.end(), [&](const Patch::Member& member) {
-    return (state.turned[member.element / kLanes] >> (member.element % kLanes) & 1) != 0;
-  });
+/// Brings the share of patches in line with the rotations of their elements, wherever TetElasticity has just refreshed that
+/// of an element in these batches.
+void MeanDilatation::refreshStiffness(const std::vector<BatchRange>& ranges, PatchState& state) const {
+  std::vector<int>& turned = state.turned_patches;
+  turned.clear();
+  for (const BatchRange range : ranges) {
+    for (std::size_t b = range.begin; b < range.end; ++b) {
+      for (std::size_t lane = 0; lane < kLanes && state.turned[b] >> lane != 0; ++lane) {
+        const bool is_element = b * kLanes + lane < tets().elements.size();
+        if (is_element && (state.turned[b] >> lane & 1) != 0) turned.push_back(patch_of_[b][lane]);
+      }
+    }
+  }
+  std::sort(turned.begin(), turned.end());
+  turned.erase(std::unique(turned.begin(), turned.end()), turned.end());
+  for (const int p : turned) {
+    const Patch& patch = patches_[p];
+    Vector3* const gradients = &state.gradients[patch.first];
+    addStiffness(patch, gradients, -1.0, state);
+    std::fill(gradients, gradients + patch.nodes.size(), Vector3::Zero());
+    addGradients(patch, state, gradients);
+    addStiffness(patch, gradients, 1.0, state);
+  }
 }
 
-/// Brings the gradients of a patch, and its share of the stiffness, in line with the rotations of its elements.
-void MeanDilatation::follow(const Patch& patch, PatchState& state) const {
-  Vector3* const gradients = &state.gradients[patch.first];
-  std::fill(gradients, gradients + patch.nodes.size(), Vector3::Zero());
-  addGradients(patch, state, gradients);
-  if (!turned(patch, state)) return;
-  Vector3* const tangent = &state.tangent_gradients[patch.first];
-  addStiffness(patch, tangent, -1.0, state);
-  addStiffness(patch, gradients, 1.0, state);
-  std::copy(gradients, gradients + patch.nodes.size(), tangent);
-}
-
-void MeanDilatation::addForces(const Patch& patch, const NodalVectors& x, const PatchState& state,
-                               NodalVectors& forces) {
-  const Vector3* const gradients = &state.gradients[patch.first];
-  const double pressure = patch.bulk * dilatation(patch, gradients, x);
-  for (std::size_t i = 0; i < patch.nodes.size(); ++i) forces.col(patch.nodes[i]) -= pressure * gradients[i];
+/// Adds the forces of the patches that are still, or of those that are not.
+/// @param ranges batches that hold all their elements.
+void MeanDilatation::addForces(const NodalVectors& x, const std::vector<BatchRange>& ranges, bool still,
+                               PatchState& state, NodalVectors& forces) const {
+  const auto wanted = [&](std::size_t p) { return state.still.empty() ? !still : state.still[p] == still; };
+  if (!corotational_) {
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
+      if (!wanted(p)) continue;
+      const Patch& patch = patches_[p];
+      const Vector3* const gradients = &state.gradients[patch.first];
+      const double pressure = patch.bulk * dilatation(patch, gradients, x);
+      for (std::size_t i = 0; i < patch.nodes.size(); ++i) forces.col(patch.nodes[i]) -= pressure * gradients[i];
+    }
+    return;
+  }
+  std::fill(state.pressures.begin(), state.pressures.end(), 0.0);
+  for (const BatchRange range : ranges) {
+    for (std::size_t b = range.begin; b < range.end; ++b) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        state.pressures[patch_of_[b][lane]] += tets().batches[b].volume[lane] * (state.traces[b][lane] - 3.0);
+      }
+    }
+  }
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    state.pressures[p] = wanted(p) ? patches_[p].bulk / patches_[p].volume * state.pressures[p] : 0.0;
+  }
+  for (const BatchRange range : ranges) {
+    addPressureForces(tets().batches, range, state.rotations, patch_of_, state.pressures, forces.data());
+  }
 }
 
 void MeanDilatation::update(const NodalVectors& x, State& any_state, NodalVectors& forces) const {
   TetElasticity::update(x, any_state, forces);
   auto& state = static_cast<PatchState&>(any_state);  // made by makeState()
-  for (std::size_t p = 0; p < patches_.size(); ++p) {
-    if (!state.still.empty() && state.still[p]) continue;
-    if (corotational_) follow(patches_[p], state);
-    addForces(patches_[p], x, state, forces);
-  }
+  if (corotational_) refreshStiffness(state.held.moving, state);
+  addForces(x, state.pressed, false, state, forces);
 }
 
 void MeanDilatation::holdStill(const std::vector<bool>& still, const NodalVectors& x, State& any_state) const {
   TetElasticity::holdStill(still, x, any_state);
   auto& state = static_cast<PatchState&>(any_state);
-  state.still.assign(state.held.forces.cols() > 0 ? patches_.size() : 0, false);
-  for (std::size_t p = 0; p < state.still.size(); ++p) {
-    const std::vector<int>& nodes = patches_[p].nodes;
-    state.still[p] = std::all_of(nodes.begin(), nodes.end(), [&](int node) { return static_cast<bool>(still[node]); });
-    if (corotational_) follow(patches_[p], state);  // also those that move: some of their elements may be still
-    if (state.still[p]) addForces(patches_[p], x, state, state.held.forces);
+  if (corotational_) refreshStiffness(state.held.still, state);
+  state.still.clear();
+  state.pressed = {{0, tets().batches.size()}};
+  if (state.held.forces.cols() == 0) return;
+  // A patch is still when all batches that hold its elements are: their rotations and traces are then those at x.
+  state.still.assign(patches_.size(), true);
+  for (const BatchRange range : state.held.moving) {
+    for (std::size_t b = range.begin; b < range.end; ++b) {
+      for (const int p : patch_of_[b]) state.still[p] = false;
+    }
   }
-  for (const BatchRange range : state.held.still) {
-    std::fill_n(state.turned.data() + range.begin, range.end - range.begin, 0);
+  addForces(x, state.held.still, true, state, state.held.forces);
+  state.pressed.clear();
+  for (std::size_t b = 0; b < patch_of_.size(); ++b) {
+    if (std::all_of(patch_of_[b].begin(), patch_of_[b].end(), [&](int p) { return state.still[p]; })) continue;
+    if (!state.pressed.empty() && state.pressed.back().end == b) {
+      ++state.pressed.back().end;
+    } else {
+      state.pressed.push_back({b, b + 1});
+    }
   }
 }
 

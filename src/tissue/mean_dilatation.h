@@ -5,11 +5,13 @@
 /// Per element e of a patch p, with the rotation R and strain e of TetElasticity and t = tr(R'F) - 3:
 ///   energy  sum_e V mu |dev e|^2  +  1/2 kappa_p V_p tbar^2,   tbar = sum_e V t / V_p,   kappa = lambda + 2/3 mu.
 /// With b = sum_e V R grad N (per node of the patch) tbar = (b . x)/V_p - 3, so the volumetric force is -kappa_p tbar b and
-/// its tangent kappa_p / V_p b b'. Couples all nodes of a patch: about twice the blocks of plain tetrahedra.
+/// its tangent kappa_p / V_p b b'. Couples all nodes of a patch: about twice the blocks of plain tetrahedra. The force is that
+/// of a mean stress kappa_p tbar R in every element, which is how it is computed where elements turn.
 /// Source: mean dilatation, Nagtegaal, Parks & Rice, CMAME 4 (1974) 153-177; on patches of simplices, de Souza Neto, Andrade
 /// Pires & Owen, IJNME 62 (2005) 353-383 (there for finite strains).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -38,13 +40,14 @@ class MeanDilatation : public TetElasticity {
   void addGradients(const Patch& patch, const RotationState& state, Vector3* gradients) const;
   static double dilatation(const Patch& patch, const Vector3* gradients, const NodalVectors& x);
   void addStiffness(const Patch& patch, const Vector3* gradients, double sign, State& state) const;
-  bool turned(const Patch& patch, const RotationState& state) const;
-  void follow(const Patch& patch, PatchState& state) const;
-  static void addForces(const Patch& patch, const NodalVectors& x, const PatchState& state, NodalVectors& forces);
+  void refreshStiffness(const std::vector<BatchRange>& ranges, PatchState& state) const;
+  void addForces(const NodalVectors& x, const std::vector<BatchRange>& ranges, bool still, PatchState& state,
+                 NodalVectors& forces) const;
 
   bool corotational_;
   std::vector<Patch> patches_;
-  std::size_t most_nodes_ = 0;  ///< of a patch
+  std::vector<std::array<int, 4>> patch_of_;  ///< by batch
+  std::size_t most_nodes_ = 0;                ///< of a patch
 };
 
 }  // namespace tissue_contact

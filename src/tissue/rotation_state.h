@@ -15,6 +15,7 @@ struct TetElasticity::RotationState : State {
   std::vector<RotationBatch> rotations;          ///< of each element at the last update
   std::vector<RotationBatch> tangent_rotations;  ///< those `stiffness` was computed with
   std::vector<unsigned char> turned;             ///< scratch: elements to refresh, a bit each
+  std::vector<ElementValues> traces;             ///< tr(R'F) at the last update; empty: nobody asks
   TetElements::Held held;
   int blend = kBlendUpdates;  ///< of kBlendUpdates parts: how much of each rotation counts
   int blend_to = kBlendUpdates;

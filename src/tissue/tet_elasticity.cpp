@@ -168,7 +168,8 @@ void TetElasticity::evaluate(const NodalVectors& x, const std::vector<BatchRange
       return;
     }
     addCorotationalForces(tets_->batches, range, material, kTangentAngle, state.blend / double{kBlendUpdates}, x.data(),
-                          state.tangent_rotations, state.rotations, state.turned, forces.data());
+                          state.tangent_rotations, state.rotations, state.turned,
+                          state.traces.empty() ? nullptr : state.traces.data(), forces.data());
     for (std::size_t batch = range.begin; batch < range.end; ++batch) {
       if (state.turned[batch] != 0) refreshStiffness(batch, state);
     }

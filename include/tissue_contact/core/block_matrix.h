@@ -44,18 +44,7 @@ struct BlockMatrix {
   void copyBlocks(const BlockMatrix& from);
 
   /// Sum over off-diagonal blocks of row `i`: sum_j values * v_j.
-  Vector3 offDiagonalProduct(int i, const NodalVectors& v) const {
-    double a = 0.0, b = 0.0, c = 0.0;
-    const double* const velocity = v.data();
-    for (int k = row_start[i]; k < row_start[i + 1]; ++k) {
-      const double* const m = values[k].data();
-      const double* const w = velocity + 3 * static_cast<std::ptrdiff_t>(columns[k]);
-      a += m[0] * w[0] + m[3] * w[1] + m[6] * w[2];
-      b += m[1] * w[0] + m[4] * w[1] + m[7] * w[2];
-      c += m[2] * w[0] + m[5] * w[1] + m[8] * w[2];
-    }
-    return {a, b, c};
-  }
+  Vector3 offDiagonalProduct(int i, const NodalVectors& v) const;
 
  private:
   /// @param neighbours of each node; may name a node twice. Sorted on the way.

@@ -1,0 +1,22 @@
+/// @file
+/// Room `core`, private: four doubles at a time, for the loops that a step spends its time in.
+///
+/// Every lane does the same IEEE operations in the same order whatever the processor's vector width, so the bits do not
+/// depend on the machine.
+#pragma once
+
+// One build of a function for AVX2 and one for any processor, chosen when the library is loaded.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define TISSUE_CONTACT_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define TISSUE_CONTACT_CLONES
+#endif
+#define TISSUE_CONTACT_INLINE inline __attribute__((always_inline))
+
+namespace tissue_contact {
+
+constexpr int kLanes = 4;
+
+using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
+
+}  // namespace tissue_contact
