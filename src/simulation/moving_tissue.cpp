@@ -48,8 +48,10 @@ void MovingTissue::assemble(double dt) {
   system_.mass = (1.0 + dt * tissue_.damping().mass_per_s) * tissue_.nodeMasses();
   system_.b = v_ * tissue_.nodeMasses().asDiagonal();
   system_.b += dt * loads_;
-  system_.b += (dt * scene_.gravity_m_per_s2) * tissue_.nodeMasses().transpose();
-  if (sleep_) loads_ += scene_.gravity_m_per_s2 * tissue_.nodeMasses().transpose();
+  // Lazy: Eigen's outer product would allocate.
+  const Vector3 fall = dt * scene_.gravity_m_per_s2;
+  system_.b += fall.lazyProduct(tissue_.nodeMasses().transpose());
+  if (sleep_) loads_ += scene_.gravity_m_per_s2.lazyProduct(tissue_.nodeMasses().transpose());
   for (int i = 0; i < tissue_.nodeCount(); ++i) {
     if ((*system_.fixed)[i]) system_.b.col(i).setZero();
   }

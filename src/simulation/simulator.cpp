@@ -285,8 +285,10 @@ void Simulator::requireJointPositions(int instrument, const VectorX& joint_posit
                   static_cast<double>(joint_positions.size()), "", std::to_string(joints.size()));
   }
   for (std::size_t j = 0; j < joints.size(); ++j) {
-    requireFinite("instrument '" + target.name() + "': position of joint '" + joints[j].name + "'",
-                  joint_positions[static_cast<Eigen::Index>(j)], "rad or m");
+    const double position = joint_positions[static_cast<Eigen::Index>(j)];
+    if (std::isfinite(position)) continue;  // the message would allocate
+    throwBadValue("instrument '" + target.name() + "': position of joint '" + joints[j].name + "'", position,
+                  "rad or m", "finite");
   }
 }
 

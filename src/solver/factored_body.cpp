@@ -53,8 +53,16 @@ void FactoredBody::relax(const NodalVectors& defect, NodalVectors& v) {
     return;
   }
   system_.gather(defect, right_);
-  left_ = factor_.solve(right_);
+  solve();
   system_.scatterAdd(left_, v);
+}
+
+/// left_ = P^-1 right_. What factor_.solve() does, without the vectors that it allocates.
+void FactoredBody::solve() {
+  permuted_.noalias() = factor_.permutationP() * right_;
+  factor_.matrixL().solveInPlace(permuted_);
+  factor_.matrixU().solveInPlace(permuted_);
+  left_.noalias() = factor_.permutationPinv() * permuted_;
 }
 
 void FactoredBody::beginTouching() {
@@ -75,7 +83,7 @@ int FactoredBody::touch(int node) {
   for (int axis = 0; axis < 3; ++axis) {
     right_.setZero();
     right_[row + axis] = 1.0;
-    left_ = factor_.solve(right_);
+    solve();
     for (Eigen::Index b = 0; b <= added; ++b) {
       const Vector3 column = left_.segment<3>(system_.firstRow(touched_[b]));
       C_.block<3, 1>(3 * b, 3 * added + axis) = column;

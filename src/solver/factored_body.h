@@ -35,6 +35,7 @@ class FactoredBody {
 
  private:
   void forget();
+  void solve();
 
   SparseSystem system_;
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;
@@ -45,6 +46,7 @@ class FactoredBody {
   double damping_scale_ = 0.0;
   double total_mass_ = 0.0;
   VectorX right_;
+  VectorX permuted_;
   VectorX left_;
   std::vector<int> index_of_;  ///< per node: index into touched_, else -1
   std::vector<int> touched_;   ///< S

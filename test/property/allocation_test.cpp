@@ -1,0 +1,114 @@
+// A step allocates nothing once it has done the like before: memory that is asked for in a step may come late.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "support/text_scene.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
+#define TISSUE_CONTACT_OWN_MALLOC 1
+#endif
+
+namespace {
+
+bool counting = false;
+long allocations = 0;
+
+#ifndef TISSUE_CONTACT_OWN_MALLOC
+void note() { allocations += counting ? 1 : 0; }
+#endif
+
+}  // namespace
+
+#ifndef TISSUE_CONTACT_OWN_MALLOC
+// Also what Eigen and the standard library allocate comes by here.
+extern "C" {
+void* __libc_malloc(std::size_t size);                           // NOLINT(bugprone-reserved-identifier)
+void* __libc_calloc(std::size_t count, std::size_t size);        // NOLINT(bugprone-reserved-identifier)
+void* __libc_realloc(void* old, std::size_t size);               // NOLINT(bugprone-reserved-identifier)
+void* __libc_memalign(std::size_t alignment, std::size_t size);  // NOLINT(bugprone-reserved-identifier)
+void* malloc(std::size_t size) {
+  note();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) {
+  note();
+  return __libc_calloc(count, size);
+}
+void* realloc(void* old, std::size_t size) {
+  note();
+  return __libc_realloc(old, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  note();
+  return __libc_memalign(alignment, size);
+}
+}
+#endif
+
+namespace tissue_contact {
+namespace {
+
+/// Of one block that a probe presses and drags over, there and back.
+struct Case {
+  const char* name;
+  const char* material;  ///< more keys of it
+  const char* sections;  ///< more of the scene
+};
+
+void PrintTo(const Case& value, std::ostream* out) { *out << value.name; }
+
+class Allocation : public testing::TestWithParam<Case> {
+ protected:
+  static Simulator makeScene() {
+    std::string block = blockScene("[0.06, 0.06, 0.02]", "[6, 6, 3]");
+    const std::string key = "density_kg_per_m3: 1000";
+    block.insert(block.find(key) + key.size(), GetParam().material);
+    return makeSimulator(block + "instruments:\n" + probeEntry("probe", "/js", "[0, 0, 0.0255]") +
+                         "friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}]\n" +
+                         GetParam().sections);
+  }
+
+  /// @return steps that allocated.
+  static int run(Simulator& simulator) {
+    std::vector<VectorX> joints = {simulator.jointPositions(0)};
+    int with = 0;
+    for (int i = 0; i < 200; ++i) {
+      joints[0][2] -= i < 50 ? 5e-5 : 0.0;
+      joints[0][0] += i < 50 ? 0.0 : (i < 120 ? 4e-5 : -4e-5);
+      allocations = 0;
+      counting = true;
+      simulator.advance(0.001, joints);
+      counting = false;
+      with += allocations > 0 ? 1 : 0;
+    }
+    return with;
+  }
+};
+
+TEST_P(Allocation, NoneInAStepThatHasBeenDoneBefore) {
+#ifdef TISSUE_CONTACT_OWN_MALLOC
+  GTEST_SKIP() << "this build has a malloc of its own";
+#endif
+  Simulator simulator = makeScene();
+  EXPECT_GT(run(simulator), 0) << "allocations are not counted here";
+  EXPECT_FALSE(simulator.contacts().empty());
+  simulator.reset();
+  EXPECT_EQ(run(simulator), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(, Allocation,
+                         testing::Values(Case{"Corotational", "", ""},                                                //
+                                         Case{"AveragedDilatation", ", model: corotational, dilatation: patch", ""},  //
+                                         Case{"NeoHookean", ", model: neo_hookean", ""},                              //
+                                         Case{"Linear", ", model: linear", ""},                                       //
+                                         Case{"MassSpring", ", model: mass_spring", ""},                              //
+                                         Case{"NeverAsleep", "", "advisor: {sleep: never}\n"}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace tissue_contact
