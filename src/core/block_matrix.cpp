@@ -1,6 +1,7 @@
 #include "tissue_contact/core/block_matrix.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 
 #include "core/lanes.h"
@@ -19,9 +20,13 @@ BlockMatrix BlockMatrix::fromNeighbours(std::vector<std::vector<int>>& neighbour
   matrix.diagonal.resize(neighbours.size());
   matrix.row_start.reserve(neighbours.size() + 1);
   matrix.row_start.push_back(0);
+  matrix.row_middle.reserve(neighbours.size());
   for (std::vector<int>& row : neighbours) {
     std::sort(row.begin(), row.end());
     row.erase(std::unique(row.begin(), row.end()), row.end());
+    const int node = static_cast<int>(matrix.row_middle.size());
+    const auto before = std::lower_bound(row.begin(), row.end(), node) - row.begin();
+    matrix.row_middle.push_back(static_cast<int>(static_cast<std::ptrdiff_t>(matrix.columns.size()) + before));
     matrix.columns.insert(matrix.columns.end(), row.begin(), row.end());
     matrix.row_start.push_back(static_cast<int>(matrix.columns.size()));
   }
@@ -40,13 +45,15 @@ void BlockMatrix::copyBlocks(const BlockMatrix& from) {
   std::copy(from.values.begin(), from.values.end(), values.begin());
 }
 
-TISSUE_CONTACT_CLONES
-Vector3 BlockMatrix::offDiagonalProduct(int i, const NodalVectors& v) const {
+namespace {
+
+/// Sum of values * v_j over offsets [begin, end).
+TISSUE_CONTACT_INLINE Vector3 product(const BlockMatrix& matrix, int begin, int end, const NodalVectors& v) {
   const double* const velocity = v.data();
   Lanes sum = {0.0, 0.0, 0.0, 0.0};  // the last lane is of no use to anyone
-  for (int k = row_start[i]; k < row_start[i + 1]; ++k) {
-    const double* const m = values[k].data();
-    const double* const w = velocity + 3 * static_cast<std::ptrdiff_t>(columns[k]);
+  for (int k = begin; k < end; ++k) {
+    const double* const m = matrix.values[k].data();
+    const double* const w = velocity + 3 * static_cast<std::ptrdiff_t>(matrix.columns[k]);
     Lanes x, y, z;
     std::memcpy(&x, m, sizeof(Lanes));
     std::memcpy(&y, m + 3, sizeof(Lanes));
@@ -55,6 +62,23 @@ Vector3 BlockMatrix::offDiagonalProduct(int i, const NodalVectors& v) const {
     sum += x * w[0] + y * w[1] + z * w[2];
   }
   return {sum[0], sum[1], sum[2]};
+}
+
+}  // namespace
+
+TISSUE_CONTACT_CLONES
+Vector3 BlockMatrix::offDiagonalProduct(int i, const NodalVectors& v) const {
+  return product(*this, row_start[i], row_start[i + 1], v);
+}
+
+TISSUE_CONTACT_CLONES
+Vector3 BlockMatrix::lowerProduct(int i, const NodalVectors& v) const {
+  return product(*this, row_start[i], row_middle[i], v);
+}
+
+TISSUE_CONTACT_CLONES
+Vector3 BlockMatrix::upperProduct(int i, const NodalVectors& v) const {
+  return product(*this, row_middle[i], row_start[i + 1], v);
 }
 
 }  // namespace tissue_contact

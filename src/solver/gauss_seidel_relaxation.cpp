@@ -1,8 +1,10 @@
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <type_traits>
+#include <utility>
 
 #include "solver/anderson.h"
-#include "solver/momentum_defect.h"
 #include "solver/relaxation.h"
 
 namespace tissue_contact {
@@ -36,8 +38,10 @@ class GaussSeidelRelaxation : public Relaxation {
   void prepareBodies(const ContactProblem& problem);
   void prepareContacts(const ContactProblem& problem, ContactSolution& solution);
   void findNodeContacts(const ContactProblem& problem);
+  void findTouched(const ContactProblem& problem);
+  void followTouched(const ContactProblem& problem, const std::vector<NodalVectors>& v);
   template <class Hold>
-  double sweep(const BodySystem& body, std::size_t k, bool forward, NodalVectors& v, const Hold& hold) const;
+  double sweep(const BodySystem& body, std::size_t k, bool forward, NodalVectors& v, const Hold& hold);
   bool project(const ContactProblem& problem, int contact, ContactCorrector& corrector, ContactSolution& solution);
   double correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution);
   void apply(const ContactRow& row, const Vector3& impulse_W, std::vector<NodalVectors>& v);
@@ -46,6 +50,13 @@ class GaussSeidelRelaxation : public Relaxation {
 
   std::vector<std::vector<Matrix3>> block_inverse_;  ///< P_i^-1 per body and node; 0 for fixed nodes
   std::vector<NodalVectors> contact_impulses_;       ///< J'lambda per body
+  std::vector<NodalVectors> lower_;                  ///< per body: sum_{j<i} A_ij v_j after the sweep forth, N s
+  struct Touched {
+    int body;
+    int node;
+    Vector3 v;  ///< after the sweep forth, m/s
+  };
+  std::vector<Touched> touched_;                ///< nodes that contacts may move between the sweeps, each once
   std::vector<Matrix3> W_;                      ///< W_P per contact, contact frame, 1/kg; W(0, 0) = 0: it cannot move
   std::vector<std::vector<int>> node_contact_;  ///< per body and node: the contact that alone holds it, else -1
   bool holding_ = false;                        ///< some node_contact_ is a contact
@@ -58,11 +69,13 @@ void GaussSeidelRelaxation::prepare(const ContactProblem& problem, ContactSoluti
   prepareBodies(problem);
   prepareContacts(problem, solution);
   findNodeContacts(problem);
+  findTouched(problem);
 }
 
 void GaussSeidelRelaxation::prepareBodies(const ContactProblem& problem) {
   block_inverse_.resize(problem.bodies.size());
   contact_impulses_.resize(problem.bodies.size());
+  lower_.resize(problem.bodies.size());
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     const BodySystem& body = problem.bodies[k];
     if (body.asleep) continue;
@@ -79,6 +92,7 @@ void GaussSeidelRelaxation::prepareBodies(const ContactProblem& problem) {
       block_inverse_[k][i] = block.inverse();
     }
     contact_impulses_[k].setZero(3, nodes);
+    lower_[k].resize(3, nodes);
   }
 }
 
@@ -131,39 +145,74 @@ void GaussSeidelRelaxation::findNodeContacts(const ContactProblem& problem) {
   }
 }
 
-/// Gauss-Seidel step of node i with the impulses held.
-/// @return its squared defect before it, (N s)^2.
-template <bool kDamped>
-[[gnu::always_inline]] inline double relaxNode(const BodySystem& body, const Matrix3& block_inverse,
-                                               const NodalVectors& impulses, int i, NodalVectors& v) {
-  const Vector3 v_i = v.col(i);
-  const Vector3 defect = nodeDefect<kDamped>(body, impulses, i, v);
-  v.col(i) = v_i + block_inverse * defect;
-  return defect.squaredNorm();
+void GaussSeidelRelaxation::findTouched(const ContactProblem& problem) {
+  touched_.clear();
+  for (const ContactRow& row : problem.contacts) {
+    for (int a = 0; a < row.node_count; ++a)
+      touched_.push_back({row.nodes[a].body, row.nodes[a].node, Vector3::Zero()});
+  }
+  const auto key = [](const Touched& at) { return std::make_pair(at.body, at.node); };
+  std::sort(touched_.begin(), touched_.end(), [&](const Touched& a, const Touched& b) { return key(a) < key(b); });
+  const auto same = [&](const Touched& a, const Touched& b) { return key(a) == key(b); };
+  touched_.erase(std::unique(touched_.begin(), touched_.end(), same), touched_.end());
 }
 
-/// Every free node of a body.
+/// Brings lower_ in line with what contacts have changed since the sweep forth.
+void GaussSeidelRelaxation::followTouched(const ContactProblem& problem, const std::vector<NodalVectors>& v) {
+  for (const Touched& at : touched_) {
+    const BodySystem& body = problem.bodies[at.body];
+    const Vector3 change = v[at.body].col(at.node) - at.v;
+    if (body.asleep || change.isZero(0.0)) continue;
+    const auto add = [&](const BlockMatrix& matrix, double scale) {
+      const Vector3 scaled = scale * change;
+      for (int k = matrix.row_middle[at.node]; k < matrix.row_start[at.node + 1]; ++k) {
+        lower_[at.body].col(matrix.columns[k]) += matrix.values[k].transpose() * scaled;  // A is symmetric
+      }
+    };
+    add(*body.K, body.stiffness_scale);
+    if (body.D != nullptr) add(*body.D, body.damping_scale);
+  }
+}
+
+/// Gauss-Seidel step of every free node of a body, with the impulses held. A sweep forth leaves sum_{j<i} A_ij v_j of every
+/// node in `lower`, which the sweep back then need not compute (Conrad & Wallach, "Alternating Methods for Sets of
+/// Linear Equations", Numer. Math. 32 (1979) 105-108).
 /// @param hold called with each node after its step; true: its contact holds it, so that its defect does not count.
 /// @return |defects met|^2, (N s)^2.
-template <bool kDamped, class Hold>
+template <bool kDamped, bool kForward, class Hold>
 double sweepBody(const BodySystem& body, const std::vector<Matrix3>& block_inverse, const NodalVectors& impulses,
-                 bool forward, NodalVectors& v, const Hold& hold) {
+                 NodalVectors& lower, NodalVectors& v, const Hold& hold) {
   double change = 0.0;
   const int nodes = body.K->rows();
   for (int step = 0; step < nodes; ++step) {
-    const int i = forward ? step : nodes - 1 - step;
+    const int i = kForward ? step : nodes - 1 - step;
     if ((*body.fixed)[i]) continue;
-    const double node_change = relaxNode<kDamped>(body, block_inverse[i], impulses, i, v);
-    if (!hold(i)) change += node_change;
+    const Vector3 v_i = v.col(i);
+    if (kForward) {
+      Vector3 sum = body.stiffness_scale * body.K->lowerProduct(i, v);
+      if (kDamped) sum += body.damping_scale * body.D->lowerProduct(i, v);
+      lower.col(i) = sum;
+    }
+    const Vector3 elastic = body.K->upperProduct(i, v) + body.K->diagonal[i] * v_i;
+    Vector3 defect =
+        body.b.col(i) + impulses.col(i) - lower.col(i) - body.mass[i] * v_i - body.stiffness_scale * elastic;
+    if (kDamped) defect -= body.damping_scale * (body.D->upperProduct(i, v) + body.D->diagonal[i] * v_i);
+    v.col(i) = v_i + block_inverse[i] * defect;
+    if (!hold(i)) change += defect.squaredNorm();
   }
   return change;
 }
 
 template <class Hold>
 double GaussSeidelRelaxation::sweep(const BodySystem& body, std::size_t k, bool forward, NodalVectors& v,
-                                    const Hold& hold) const {
-  return body.D == nullptr ? sweepBody<false>(body, block_inverse_[k], contact_impulses_[k], forward, v, hold)
-                           : sweepBody<true>(body, block_inverse_[k], contact_impulses_[k], forward, v, hold);
+                                    const Hold& hold) {
+  const auto run = [&](auto damped, auto forth) {
+    return sweepBody<damped.value, forth.value>(body, block_inverse_[k], contact_impulses_[k], lower_[k], v, hold);
+  };
+  using Yes = std::true_type;
+  using No = std::false_type;
+  if (body.D == nullptr) return forward ? run(No{}, Yes{}) : run(No{}, No{});
+  return forward ? run(Yes{}, Yes{}) : run(Yes{}, No{});
 }
 
 /// A node whose own contact is static is projected at once: its tangential velocity becomes the tool's, its impulse the
@@ -183,6 +232,7 @@ double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration
   const bool forward = iteration % 2 == 0;
   if (iteration == kPlainIterations) beginMixing(problem, solution.v);
   if (forward && iteration > kPlainIterations) mix(problem, solution.v);
+  if (!forward) followTouched(problem, solution.v);
   double change = 0.0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     const BodySystem& body = problem.bodies[k];
@@ -190,6 +240,9 @@ double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration
     const auto never = [](int) { return false; };
     const auto hold = [&](int i) { return project(problem, node_contact_[k][i], corrector, solution); };
     change += holding_ ? sweep(body, k, forward, solution.v[k], hold) : sweep(body, k, forward, solution.v[k], never);
+  }
+  if (forward) {
+    for (Touched& at : touched_) at.v = solution.v[at.body].col(at.node);
   }
   return std::sqrt(change);
 }

@@ -12,6 +12,7 @@ namespace tissue_contact {
 struct BlockMatrix {
   std::vector<Matrix3> diagonal;  ///< one per node
   std::vector<int> row_start;     ///< nodes + 1 offsets into `columns` and `values`
+  std::vector<int> row_middle;    ///< per node the offset of its first column beyond the diagonal
   std::vector<int> columns;       ///< ascending within a row, never the row itself
   std::vector<Matrix3> values;
 
@@ -45,6 +46,8 @@ struct BlockMatrix {
 
   /// Sum over off-diagonal blocks of row `i`: sum_j values * v_j.
   Vector3 offDiagonalProduct(int i, const NodalVectors& v) const;
+  Vector3 lowerProduct(int i, const NodalVectors& v) const;  ///< over j < i only
+  Vector3 upperProduct(int i, const NodalVectors& v) const;  ///< over j > i only
 
  private:
   /// @param neighbours of each node; may name a node twice. Sorted on the way.

@@ -19,6 +19,7 @@ struct TwoMasses {
   TwoMasses() {
     K.diagonal = {2.0 * Matrix3::Identity(), 2.0 * Matrix3::Identity(), Matrix3::Identity()};
     K.row_start = {0, 1, 2, 2};
+    K.row_middle = {0, 2, 2};
     K.columns = {1, 0};
     K.values = {-Matrix3::Identity(), -Matrix3::Identity()};
     contacts.dt_s = 0.1;

@@ -67,6 +67,7 @@ TEST(BlockMatrix, HasABlockForEveryPairOfFreeNeighbours) {
   ASSERT_EQ(K.rows(), 5);
   EXPECT_EQ(K.columns, (std::vector<int>{1, 2, 3, 0, 2, 3, 0, 1, 3, 0, 1, 2}));
   EXPECT_EQ(K.row_start, (std::vector<int>{0, 3, 6, 9, 12, 12}));
+  EXPECT_EQ(K.row_middle, (std::vector<int>{0, 4, 8, 12, 12}));
   EXPECT_EQ(K.find(2, 3), 8);
   EXPECT_EQ(K.find(1, 4), -1);
   EXPECT_EQ(K.find(4, 1), -1);
@@ -83,6 +84,8 @@ TEST(BlockMatrix, RowProductIsTheDenseOne) {
     expected += K.values[k] * v.col(K.columns[k]);
   }
   EXPECT_LE((K.offDiagonalProduct(2, v) - expected).norm(), 1e-14 * expected.norm());
+  EXPECT_EQ(K.upperProduct(2, v), K.values[K.row_start[3] - 1] * v.col(3));
+  EXPECT_LE((K.lowerProduct(2, v) + K.upperProduct(2, v) - expected).norm(), 1e-14 * expected.norm());
   K.setZero();
   EXPECT_EQ(K.offDiagonalProduct(2, v), Vector3::Zero());
 }

@@ -23,6 +23,7 @@ struct OneNode {
   explicit OneNode(const Vector3& free_velocity, const CoulombLaw& law) {
     K.diagonal = {Matrix3::Zero()};
     K.row_start = {0, 0};
+    K.row_middle = {0};
     BodySystem body;
     body.K = &K;
     body.fixed = &fixed;
