@@ -141,7 +141,7 @@ DelassusProblem readContactProblem(const std::string& file) {
   problem.W = readMatrix(words, 3 * contacts);
   words.expect("q");
   problem.q.resize(problem.W.rows());
-  for (double& value : problem.q) value = words.number("an entry of q");
+  for (Eigen::Index i = 0; i < problem.q.size(); ++i) problem.q[i] = words.number("an entry of q");
   words.expect("mu");
   problem.laws.resize(contacts);
   for (CoulombLaw& law : problem.laws) {

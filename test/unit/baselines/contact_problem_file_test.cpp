@@ -69,7 +69,7 @@ TEST_F(ContactProblemFile, RoundTripIsExact) {
       if (!sparse || i % 7 == 0) problem.W(i) = anyDouble();
     }
     problem.q.resize(3 * n);
-    for (double& value : problem.q) value = anyDouble();
+    for (Eigen::Index i = 0; i < problem.q.size(); ++i) problem.q[i] = anyDouble();
     problem.laws.resize(n);
     for (CoulombLaw& law : problem.laws) law.mu_static = law.mu_kinetic = std::abs(anyDouble());
     problem.was_sliding.assign(n, false);
