@@ -1,6 +1,7 @@
 #include "validation/joint_path.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -18,6 +19,7 @@ JointPath loadJointPath(const std::string& file) {
   JointPath path;
   std::string line;
   for (int number = 1; std::getline(text, line); ++number) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
     std::istringstream words(line);
     std::string word;
     if (number == 1) {
@@ -27,13 +29,16 @@ JointPath loadJointPath(const std::string& file) {
     std::vector<double>& row = path.rows.emplace_back();
     while (std::getline(words, word, ',')) {
       const std::optional<double> value = toDouble(word);
-      if (value) row.push_back(*value);
+      if (value && std::isfinite(*value)) row.push_back(*value);
     }
-    if (row.size() != path.joints.size() ||
-        std::count(line.begin(), line.end(), ',') + 1 != static_cast<std::ptrdiff_t>(row.size())) {
-      throw std::invalid_argument(file + ":" + std::to_string(number) + ": must have one number for each of the " +
-                                  std::to_string(path.joints.size()) +
-                                  " columns of the first line, separated by commas; it is " + inQuotes(line));
+    const bool complete = row.size() == path.joints.size() && !row.empty() &&
+                          std::count(line.begin(), line.end(), ',') + 1 == static_cast<std::ptrdiff_t>(row.size());
+    const std::size_t rows = path.rows.size();
+    if (!complete || (rows > 1 && !(row.front() > path.rows[rows - 2].front()))) {
+      throw std::invalid_argument(
+          file + ":" + std::to_string(number) + ": must have one finite number for each of the " +
+          std::to_string(path.joints.size()) +
+          " columns of the first line, separated by commas, and times that rise; it is " + inQuotes(line));
     }
   }
   if (path.rows.size() < 2) throw std::invalid_argument(file + ": has fewer than two rows");

@@ -26,9 +26,8 @@ struct MeanDilatation::Patch {
 };
 
 struct MeanDilatation::PatchState : RotationState {
-  std::vector<Vector3>
-      gradients;            ///< b of every patch's nodes, patch after patch, that `stiffness` was computed with, m^2
-  std::vector<bool> still;  ///< per patch: its forces are among the held ones; empty: none is
+  std::vector<Vector3> gradients;   ///< b of every patch's nodes, patch after patch, as in `stiffness`, m^2
+  std::vector<bool> still;          ///< per patch: its forces are among the held ones; empty: none is
   std::vector<BatchRange> pressed;  ///< batches with elements of the other patches
   std::vector<double> pressures;    ///< scratch, per patch: kappa tbar, Pa
   std::vector<int> turned_patches;  ///< scratch
@@ -234,7 +233,7 @@ void MeanDilatation::holdStill(const std::vector<bool>& still, const NodalVector
   if (corotational_) refreshStiffness(state.held.still, state);
   state.still.clear();
   state.pressed = {{0, tets().batches.size()}};
-  if (state.held.forces.cols() == 0) return;
+  if (state.held.still.empty()) return;
   // A patch is still when all batches that hold its elements are: their rotations and traces are then those at x.
   state.still.assign(patches_.size(), true);
   for (const BatchRange range : state.held.moving) {

@@ -147,7 +147,7 @@ void TetElasticity::adaptRotations(const NodalVectors& x, RotationState& state) 
   }
   if (state.blend == state.blend_to) return;
   state.blend += state.blend < state.blend_to ? 1 : -1;
-  if (state.held.forces.cols() == 0) return;
+  if (state.held.still.empty()) return;
   state.held.forces.setZero();
   evaluate(x, state.held.still, state, state.held.forces);
 }

@@ -69,7 +69,7 @@ void TetElements::split(const std::vector<bool>& still, Held& held) const {
       ranges.push_back({b, b + 1});
     }
   }
-  held.forces.setZero(3, held.still.empty() ? 0 : static_cast<Eigen::Index>(still.size()));
+  held.forces.setZero(3, static_cast<Eigen::Index>(still.size()));
 }
 
 void TetElements::prepare(Elasticity::State& state) const {

@@ -42,10 +42,10 @@ struct TetElements {
   struct Held {
     std::vector<BatchRange> moving;  ///< ranges of batches, ascending
     std::vector<BatchRange> still;
-    NodalVectors forces;  ///< of the batches in `still`, N; no columns: nothing is still
+    NodalVectors forces;  ///< of the batches in `still`, N
 
     void startForces(NodalVectors& all) const {
-      if (forces.cols() == 0) {
+      if (still.empty()) {
         all.setZero();
       } else {
         all = forces;

@@ -22,7 +22,7 @@ ROS_ROOMS = {"ros", "benchmark"}
 API = {"scene/load_scene.h", "simulation/joint_state_player.h", "simulation/simulator.h"}
 PRIVATE_LIBRARIES = {"fcl", "urdf_model", "urdf_parser", "urdf_world", "console_bridge", "assimp", "yaml-cpp"}
 OPERATING_SYSTEM = {"fcntl.h", "sys", "unistd.h"}
-LINKED = re.compile(r"^(lib(fcl|urdfdom_model|console_bridge|assimp|yaml-cpp|stdc\+\+|gcc_s|m|c)|ld-linux.*)\.so(\.[0-9.]+)?$")
+LINKED = re.compile(r"^(lib(pthread|fcl|urdfdom_model|console_bridge|assimp|yaml-cpp|stdc\+\+|gcc_s|m|c)|ld-linux.*)\.so(\.[0-9.]+)?$")
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 

@@ -36,7 +36,8 @@ TEST_F(JointPathTest, ReadsWhatItsFirstLineNames) {
 TEST_F(JointPathTest, RefusesARowThatIsNotOneNumberPerColumn) {
   const std::string good = "time_s,insertion,jaw\n0,1,2\n";
   EXPECT_EQ(refusal(good + "1,2,3\n"), "");
-  for (const std::string bad : {"1,2,3,abc", "1,2", "1,2,3,4", "1,2 3", "1,,3", "", "abc,1,2,3", "1,2,3,"}) {
+  for (const std::string bad :
+       {"1,2,3,abc", "1,2", "1,2,3,4", "1,2 3", "1,,3", "", "abc,1,2,3", "1,2,3,", "1,nan,3", "0,1,2"}) {
     const std::string why = refusal(good + bad + "\n1,2,3\n");
     EXPECT_NE(why.find("path.csv:3: "), std::string::npos) << bad << ": " << why;
     EXPECT_NE(why.find("each of the 3 columns"), std::string::npos) << why;

@@ -8,7 +8,7 @@
 
 namespace tissue_contact {
 
-/// Rows and columns are nodes. Both triangles are stored, so that a row is all a Gauss-Seidel sweep needs to read.
+/// Rows and columns are nodes. The four vectors of indices and blocks belong together; forElements() makes them. Both triangles are stored, so that a row is all a Gauss-Seidel sweep needs to read.
 struct BlockMatrix {
   std::vector<Matrix3> diagonal;  ///< one per node
   std::vector<int> row_start;     ///< nodes + 1 offsets into `columns` and `values`

@@ -14,7 +14,8 @@
 
 namespace tissue_contact {
 
-/// Linear system of one tissue, A = diag(mass) + stiffness_scale * K + damping_scale * D. K is not copied, so a change
+/// Linear system of one tissue, A = diag(mass) + stiffness_scale * K + damping_scale * D, with K and D symmetric, which
+/// solvers rely on. K is not copied, so a change
 /// of dt costs nothing. For an implicit Euler step with Rayleigh damping D = alpha M + beta K:
 /// mass_i = (1 + alpha dt) m_i, stiffness_scale = dt (dt + beta), b = M v0 + dt f(x0).
 struct BodySystem {

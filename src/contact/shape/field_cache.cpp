@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kFormat = 1;  // raise it when the samples or this file change
+constexpr std::uint64_t kFormat = 2;  // raise it when the samples or this file change
 constexpr std::uintmax_t kMostBytes = 256u << 20;
 constexpr const char* kExtension = ".field";
 constexpr std::size_t kKeyDigits = 32;

@@ -1,7 +1,7 @@
 #include "mesh/surface/triangle_tree.h"
 
 #if __has_include(<fcl/geometry/bvh/BVH_model.h>)
-// First: BVH_model.h uses fit() without declaring it.
+// utility.h declares the fit() that BVH_model.h uses.
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/utility.h>
 #else  // FCL 0.5: Ubuntu 20.04
@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <new>
 #include <utility>
 
 namespace tissue_contact {
@@ -31,9 +32,9 @@ std::unique_ptr<FclTree> buildTree(const std::vector<Vector3>& corners) {
   for (const Vector3& p : corners) vertices.emplace_back(p[0], p[1], p[2]);
   for (std::size_t k = 0; k < corners.size(); k += 3) triangles.emplace_back(k, k + 1, k + 2);
   auto tree = std::make_unique<FclTree>();
-  tree->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
-  tree->addSubModel(vertices, triangles);
-  tree->endModel();
+  const bool built = tree->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size())) == 0 &&
+                     tree->addSubModel(vertices, triangles) == 0 && tree->endModel() == 0;
+  if (!built) throw std::bad_alloc();  // it has no other reason with triangles of three vertices
   return tree;
 }
 

@@ -15,7 +15,7 @@ namespace {
 /// Wrenches must not be lost to a subscriber that stalls: 20 s of 500 Hz.
 constexpr int kWrenchQueue = 10000;
 
-// What RViz can draw of a scene of some centimetres and newtons, and a thousand times more.
+// Far beyond what RViz can draw on either side.
 constexpr Range kFullScaleRange{1e-9, 1e3, "m"};
 constexpr Range kForceArrowRange{1e-9, 1e6, "m/N"};
 
