@@ -17,7 +17,7 @@ Vector3 ContactCorrector::correct(const ContactProblem& problem, std::size_t con
   Vector3 q = u - W * impulse;
   q[0] -= row.required_u_n;
   const ContactAnswer answer = solve(contact, W, q, row.law, row.was_sliding, state);
-  const Vector3 change = answer.impulse - impulse;
+  Vector3 change = answer.impulse - impulse;
   impulse = answer.impulse;
   state = answer.state;
   return change;

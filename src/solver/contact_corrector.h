@@ -34,8 +34,8 @@ class ContactCorrector {
                       ContactState before) {
     unsigned char& flips = flips_[contact];
     const bool kinetic_limit = was_sliding || flips > kMaxFlips;
-    const ContactAnswer answer = rival_ ? rival_(W, q, law, kinetic_limit, previous_sliding_[contact])
-                                        : solveCoulombContact(W, q, law, kinetic_limit);
+    ContactAnswer answer = rival_ ? rival_(W, q, law, kinetic_limit, previous_sliding_[contact])
+                                  : solveCoulombContact(W, q, law, kinetic_limit);
     const bool both_touch = answer.state != ContactState::kOpen && before != ContactState::kOpen;
     if (both_touch && answer.state != before && flips <= kMaxFlips) ++flips;
     return answer;
