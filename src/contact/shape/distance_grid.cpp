@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/lanes.h"
+
 namespace tissue_contact {
 namespace {
 
@@ -32,7 +34,7 @@ struct DistanceGrid::Neighbours {
   const float* row(int j, int k) const { return first + k * layer_length + j * row_length; }
 };
 
-DistanceGrid::Neighbours DistanceGrid::around(const Vector3& p_S) const {
+TISSUE_CONTACT_INLINE DistanceGrid::Neighbours DistanceGrid::around(const Vector3& p_S) const {
   const Vector3 u = (p_S - origin) / spacing;
   std::array<int, 3> middle{};
   std::array<double, 3> t{};
@@ -44,7 +46,7 @@ DistanceGrid::Neighbours DistanceGrid::around(const Vector3& p_S) const {
   return {&samples[index(middle[0] - 1, middle[1] - 1, middle[2] - 1)], row, row * size[1], t};
 }
 
-double DistanceGrid::valueInside(const Vector3& p_S) const {
+TISSUE_CONTACT_INLINE double DistanceGrid::valueInside(const Vector3& p_S) const {
   const Neighbours here = around(p_S);
   const Weights x = valueWeights(here.t[0]);
   const Weights y = valueWeights(here.t[1]);
@@ -56,7 +58,7 @@ double DistanceGrid::valueInside(const Vector3& p_S) const {
   return value;
 }
 
-GridSample DistanceGrid::inside(const Vector3& p_S) const {
+TISSUE_CONTACT_INLINE GridSample DistanceGrid::inside(const Vector3& p_S) const {
   const Neighbours here = around(p_S);
   const Weights x = valueWeights(here.t[0]);
   const Weights y = valueWeights(here.t[1]);
@@ -81,7 +83,7 @@ GridSample DistanceGrid::inside(const Vector3& p_S) const {
   return {value, Vector3(along_x, along_y, along_z) / spacing};
 }
 
-GridSample DistanceGrid::at(const Vector3& p_S) const {
+TISSUE_CONTACT_CLONES GridSample DistanceGrid::at(const Vector3& p_S) const {
   const Eigen::AlignedBox3d valid = box();
   const Vector3 q = p_S.cwiseMax(valid.min()).cwiseMin(valid.max());
   GridSample sample = inside(q);
@@ -98,7 +100,7 @@ GridSample DistanceGrid::at(const Vector3& p_S) const {
   return sample;
 }
 
-double DistanceGrid::valueAt(const Vector3& p_S) const {
+TISSUE_CONTACT_CLONES double DistanceGrid::valueAt(const Vector3& p_S) const {
   const Eigen::AlignedBox3d valid = box();
   const Vector3 q = p_S.cwiseMax(valid.min()).cwiseMin(valid.max());
   const double there = valueInside(q);

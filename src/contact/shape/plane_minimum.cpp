@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "contact/shape/soft_minimum.h"
+#include "core/lanes.h"
 #include "mesh/surface/triangle_geometry.h"
 
 namespace tissue_contact {
@@ -51,23 +52,27 @@ class Candidates {
   Candidates(const PlaneSet& planes, double tolerance, double ceiling)
       : planes_(planes), minimum_(tolerance, ceiling) {}
 
-  void offer(const Vector3& weights) {
+  TISSUE_CONTACT_INLINE void offer(const Vector3& weights) {
     const double value = planes_.maximumAt(weights);
     if (minimum_.accepts(value)) minimum_.add(weights, value);
   }
 
   /// Whether all functions may be low enough at one point of the line.
-  bool mayAccept(const Line& line) const {
+  TISSUE_CONTACT_INLINE bool mayAccept(const Line& line) const {
     constexpr double kRoundOff = 1e-9;
     const PlaneSet::Values at_from = planes_.valuesOnEdge(line.edge[0], line.u[0]) - minimum_.limit();
     const PlaneSet::Values at_to = planes_.valuesOnEdge(line.edge[1], line.u[1]) - minimum_.limit();
     if (at_from.min(at_to).maxCoeff() >= 0.0) return false;
-    double from = 0.0;
-    double to = 1.0;
-    for (int k = 0; k < planes_.count(); ++k) {
-      if (at_from[k] >= 0.0) from = std::max(from, at_from[k] / (at_from[k] - at_to[k]));
-      if (at_to[k] >= 0.0) to = std::min(to, at_from[k] / (at_from[k] - at_to[k]));
+    // Without a branch per function, which no processor would guess. A crossing is used only where the signs differ.
+    const PlaneSet::Values crossing = at_from / (at_from - at_to);
+    PlaneSet::Values rising;
+    PlaneSet::Values falling;
+    for (int k = 0; k < PlaneSet::kCapacity; ++k) {
+      falling[k] = at_from[k] >= 0.0 ? crossing[k] : 0.0;
+      rising[k] = at_to[k] >= 0.0 ? crossing[k] : 1.0;
     }
+    const double from = falling.maxCoeff();
+    const double to = rising.minCoeff();
     return from <= to + kRoundOff;
   }
 
@@ -78,7 +83,7 @@ class Candidates {
   SoftMinimum minimum_;
 };
 
-void offerInnerCrossing(const Vector3& first, const Vector3& second, Candidates& candidates) {
+TISSUE_CONTACT_INLINE void offerInnerCrossing(const Vector3& first, const Vector3& second, Candidates& candidates) {
   const Vector3 direction = first.cross(second);
   const double sum = direction.sum();
   if (!(sum > 0.0 ? direction.minCoeff() > 0.0 : direction.maxCoeff() < 0.0)) return;
@@ -105,7 +110,7 @@ void PlaneSet::remove(int i) {
   *this = kept;
 }
 
-PlaneMinimum minimiseMaximum(const PlaneSet& all_planes, double tolerance, double ceiling) {
+TISSUE_CONTACT_CLONES PlaneMinimum minimiseMaximum(const PlaneSet& all_planes, double tolerance, double ceiling) {
   const PlaneSet planes = relevant(all_planes);
   Candidates candidates(planes, tolerance, ceiling);
   for (int corner = 0; corner < 3; ++corner) candidates.offer(Vector3::Unit(corner));
