@@ -34,6 +34,17 @@ PlaneRegion parsePlaneRegion(const YamlCursor& cursor) {
   return plane;
 }
 
+std::vector<PronyTerm> parsePronySeries(const YamlCursor& cursor) {
+  constexpr std::size_t kMostTerms = 8;  // more than measurements of tissue support
+  std::vector<PronyTerm> terms;
+  for (const YamlCursor& element : cursor.list(1, kMostTerms)) {
+    const YamlMap map = element.map();
+    terms.push_back(
+        {map.get("modulus_ratio").number(PronyTerm::kModulusRatio), map.get("time_s").number(PronyTerm::kTime)});
+  }
+  return terms;
+}
+
 TissueRegion parseTissueRegion(const YamlCursor& cursor, const TissueDescription& tissue) {
   const YamlMap map = cursor.map();
   TissueRegion region;
@@ -78,6 +89,7 @@ MaterialDescription parseMaterial(const YamlCursor& cursor, bool is_membrane) {
   material.youngs_modulus_pa = map.get("youngs_modulus_pa").number(kYoungRange);
   material.poissons_ratio = map.get("poissons_ratio").number(MaterialDescription::kPoissonsRatio);
   material.density_kg_per_m3 = map.get("density_kg_per_m3").number(kDensityRange);
+  if (const YamlCursor* value = map.find("prony_series")) material.prony_series = parsePronySeries(*value);
   if (const YamlCursor* value = map.find("bending_stiffness_n_m")) {
     if (!is_membrane) value->fail("only a sheet or shell has a bending stiffness of its own; remove the key");
     material.bending_stiffness_n_m = value->number(kBendingRange);

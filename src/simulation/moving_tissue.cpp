@@ -8,7 +8,7 @@ MovingTissue::MovingTissue(const Scene& scene, const Tissue& tissue, NodalVector
                            BodySystem& system)
     : scene_(scene), tissue_(tissue), x_(x), v_(v), system_(system), loads_(NodalVectors::Zero(3, tissue.nodeCount())) {
   reset();
-  if (!advisedSleep(scene)) return;
+  if (!advisedSleep(scene) || tissue.elasticity().hasMemory()) return;
   sleep_.emplace(tissue.fixed(), system, meanSurfaceEdge(&tissue, 1), advisedSleepByParts(scene));
   system_.fixed = &sleep_->still();
 }
@@ -42,6 +42,7 @@ void MovingTissue::assemble(double dt) {
   if (system_.asleep) return;
   if (still_changed_) tissue_.elasticity().holdStill(sleep_->still(), x_, *elastic_state_);
   still_changed_ = false;
+  elastic_state_->step_s = dt;
   tissue_.elasticity().update(x_, *elastic_state_, loads_);
   system_.stiffness_scale = dt * (dt + tissue_.damping().stiffness_s);
   system_.damping_scale = system_.D != nullptr ? dt : 0.0;
@@ -70,7 +71,9 @@ double MovingTissue::allowedHeldForce(std::optional<double> pressing_n) const {
 }
 
 void MovingTissue::move(double dt) {
-  if (!system_.asleep) x_ += dt * v_;
+  if (system_.asleep) return;
+  x_ += dt * v_;
+  elastic_state_->elapsed_s += dt;
 }
 
 void MovingTissue::fallAsleep(std::optional<double> pressing_n, const std::vector<int>& touched) {

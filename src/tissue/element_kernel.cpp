@@ -195,6 +195,75 @@ TISSUE_CONTACT_INLINE void linear(const std::vector<ElementBatch>& batches, Batc
   for (int lane = 0; kWatch && lane < kLanes; ++lane) *turn_squared = std::max(*turn_squared, most[lane]);
 }
 
+TISSUE_CONTACT_INLINE void deviator(const LaneMatrix& S, Lanes* d) {
+  const Lanes mean = (S.m[0] + S.m[4] + S.m[8]) * (1.0 / 3.0);
+  for (int i = 0; i < 3; ++i) d[i] = S.m[4 * i] - mean;
+  d[3] = 0.5 * (S.m[1] + S.m[3]);
+  d[4] = 0.5 * (S.m[5] + S.m[7]);
+  d[5] = 0.5 * (S.m[2] + S.m[6]);
+}
+
+/// Brings what the terms hold up to date with the deviator d.
+/// @param stress gets the sum of their shares.
+TISSUE_CONTACT_INLINE void relax(const Lanes* d, const std::vector<PronyStep>& steps, StrainBatch& last,
+                                 StrainBatch* held, Lanes* stress) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    Lanes before;
+    load(last[i], before);
+    store(d[i], last[i]);
+    stress[i] = Lanes{};
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+      Lanes h;
+      load(held[k][i], h);
+      h = steps[k].decay * h + steps[k].gain * (d[i] - before);
+      store(h, held[k][i]);
+      stress[i] += steps[k].share * h;
+    }
+  }
+}
+
+template <typename Material>
+TISSUE_CONTACT_INLINE void overstress(const std::vector<ElementBatch>& batches, const Material& material, bool turns,
+                                      double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
+                                      std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
+                                      const std::vector<PronyStep>& steps, std::vector<StrainBatch>& strains,
+                                      std::vector<StrainBatch>& held, double* forces) {
+  constexpr std::size_t kPlace[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2};  // of a matrix entry among the six
+  for (std::size_t b = 0; b < batches.size(); ++b) {
+    LaneMatrix F, R, S, P;
+    typename Material::Value lambda, mu;
+    deformationGradients(batches[b], x, F);
+    if (turns) {
+      LaneQuaternion q, t;
+      loadQuaternion(rotations[b], q);
+      loadQuaternion(tangents[b], t);
+      updateRotation(F, q, R, S);
+      store(q.w, rotations[b][0]);
+      store(q.x, rotations[b][1]);
+      store(q.y, rotations[b][2]);
+      store(q.z, rotations[b][3]);
+      turned[b] = turnedLanes(q, t, tangent_angle);
+    } else {
+      S = F;
+    }
+    Lanes d[6], stress[6];
+    deviator(S, d);
+    relax(d, steps, strains[b], &held[b * steps.size()], stress);
+    material.get(b, lambda, mu);
+    for (std::size_t i = 0; i < 9; ++i) P.m[i] = 2.0 * mu * stress[kPlace[i]];
+    if (turns) {
+      LaneMatrix turned_stress;
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t r = 0; r < 3; ++r) {
+          turned_stress.m[r + 3 * c] = R.m[r] * P.m[3 * c] + R.m[r + 3] * P.m[3 * c + 1] + R.m[r + 6] * P.m[3 * c + 2];
+        }
+      }
+      P = turned_stress;
+    }
+    addStressForces(batches[b], P, forces);
+  }
+}
+
 }  // namespace
 
 TISSUE_CONTACT_CLONES
@@ -246,6 +315,26 @@ void addPressureForces(const std::vector<ElementBatch>& batches, BatchRange rang
     for (Lanes& entry : P.m) entry *= pressure;
     addStressForces(batches[b], P, forces);
   }
+}
+
+TISSUE_CONTACT_CLONES
+void addOverstressForces(const std::vector<ElementBatch>& batches, const LameParameters& material, bool turns,
+                         double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
+                         std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
+                         const std::vector<PronyStep>& steps, std::vector<StrainBatch>& strains,
+                         std::vector<StrainBatch>& held, double* forces) {
+  overstress(batches, UniformMaterial{material}, turns, tangent_angle, x, tangents, rotations, turned, steps, strains,
+             held, forces);
+}
+
+TISSUE_CONTACT_CLONES
+void addOverstressForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
+                         bool turns, double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
+                         std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
+                         const std::vector<PronyStep>& steps, std::vector<StrainBatch>& strains,
+                         std::vector<StrainBatch>& held, double* forces) {
+  overstress(batches, VaryingMaterial{materials}, turns, tangent_angle, x, tangents, rotations, turned, steps, strains,
+             held, forces);
 }
 
 }  // namespace tissue_contact

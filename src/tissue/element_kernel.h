@@ -45,4 +45,28 @@ void addPressureForces(const std::vector<ElementBatch>& batches, BatchRange rang
                        const std::vector<std::array<int, kLanes>>& group_of, const std::vector<double>& pressures,
                        double* forces);
 
+/// Symmetric matrices of four elements: xx, yy, zz, xy, yz, zx.
+using StrainBatch = std::array<ElementValues, 6>;
+
+/// How a term of a Prony series goes on.
+struct PronyStep {
+  double decay = 1.0;  ///< of what it holds, over the time since the last update
+  double gain = 1.0;   ///< of the strain that was added in that time
+  double share = 0.0;  ///< of the shear modulus mu, times the decay over the step to come
+};
+
+/// Adds the forces of stress R 2 mu (sum of share h) R', h per term and element: brings rotations up to date as
+/// addCorotationalForces() does (where `turns`; else R = I), takes the deviator d of R'F's strain and h <- decay h + gain
+/// (d - last d). `held` keeps h, term after term for each batch; `strains` the last d.
+void addOverstressForces(const std::vector<ElementBatch>& batches, const LameParameters& material, bool turns,
+                         double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
+                         std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
+                         const std::vector<PronyStep>& steps, std::vector<StrainBatch>& strains,
+                         std::vector<StrainBatch>& held, double* forces);
+void addOverstressForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
+                         bool turns, double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
+                         std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
+                         const std::vector<PronyStep>& steps, std::vector<StrainBatch>& strains,
+                         std::vector<StrainBatch>& held, double* forces);
+
 }  // namespace tissue_contact

@@ -11,6 +11,11 @@ LameParameters lameParameters(const MaterialDescription& material) {
   return {E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))};
 }
 
+LameParameters deviatoricParameters(const MaterialDescription& material) {
+  const double mu = lameParameters(material).mu;
+  return {-2.0 / 3.0 * mu, mu};
+}
+
 LameParameters planeStressParameters(const MaterialDescription& material) {
   const double E = material.youngs_modulus_pa;
   const double nu = material.poissons_ratio;
@@ -20,6 +25,10 @@ LameParameters planeStressParameters(const MaterialDescription& material) {
 void checkMaterial(const MaterialDescription& material, const std::string& owner) {
   requirePositive(owner + "youngs_modulus_pa", material.youngs_modulus_pa, "Pa");
   MaterialDescription::kPoissonsRatio.require(owner + "poissons_ratio", material.poissons_ratio);
+  for (const PronyTerm& term : material.prony_series) {
+    PronyTerm::kModulusRatio.require(owner + "prony_series modulus_ratio", term.modulus_ratio);
+    PronyTerm::kTime.require(owner + "prony_series time_s", term.time_s);
+  }
   requireFinite(owner + "bending_stiffness_n_m", material.bending_stiffness_n_m, "N m");
 }
 

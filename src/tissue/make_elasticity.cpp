@@ -6,6 +6,7 @@
 #include "tissue/mass_spring.h"
 #include "tissue/mean_dilatation.h"
 #include "tissue/neo_hookean.h"
+#include "tissue/viscoelastic.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 namespace tissue_contact {
@@ -16,6 +17,10 @@ bool hasPatches(ElasticModel model) { return model == ElasticModel::kLinear || m
 
 }  // namespace
 
+bool takesPronySeries(ElasticModel model) {
+  return model == ElasticModel::kLinear || model == ElasticModel::kCorotational || model == ElasticModel::kNeoHookean;
+}
+
 bool averagesDilatation(const ElementMaterials& materials) {
   const MaterialDescription& first = materials.materials.at(0);
   if (first.dilatation != Dilatation::kAuto) return first.dilatation == Dilatation::kPatch;
@@ -24,11 +29,11 @@ bool averagesDilatation(const ElementMaterials& materials) {
                      [](const MaterialDescription& one) { return one.poissons_ratio >= kAveragedPoissonsRatio; });
 }
 
-std::unique_ptr<const Elasticity> makeVolumeElasticity(const NodalVectors& rest,
-                                                       const std::vector<Tetrahedron>& tetrahedra,
-                                                       const std::vector<bool>& fixed,
-                                                       const ElementMaterials& materials,
-                                                       const std::vector<int>& patch_of) {
+namespace {
+
+std::unique_ptr<const Elasticity> makeElasticBody(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
+                                                  const std::vector<bool>& fixed, const ElementMaterials& materials,
+                                                  const std::vector<int>& patch_of) {
   const MaterialDescription& first = materials.materials.at(0);
   if (first.dilatation == Dilatation::kPatch && !hasPatches(first.model)) {
     throw std::invalid_argument("dilatation over patches is for the linear and corotational models only");
@@ -49,6 +54,22 @@ std::unique_ptr<const Elasticity> makeVolumeElasticity(const NodalVectors& rest,
   }
   throw std::invalid_argument(
       "model 'membrane' is for a sheet or shell; a volume takes linear, corotational, neo_hookean or mass_spring");
+}
+
+}  // namespace
+
+std::unique_ptr<const Elasticity> makeVolumeElasticity(const NodalVectors& rest,
+                                                       const std::vector<Tetrahedron>& tetrahedra,
+                                                       const std::vector<bool>& fixed,
+                                                       const ElementMaterials& materials,
+                                                       const std::vector<int>& patch_of) {
+  auto body = makeElasticBody(rest, tetrahedra, fixed, materials, patch_of);
+  const MaterialDescription& first = materials.materials.at(0);
+  if (first.prony_series.empty()) return body;
+  if (!takesPronySeries(first.model)) {
+    throw std::invalid_argument("a Prony series is for the models linear, corotational and neo_hookean only");
+  }
+  return std::make_unique<Viscoelastic>(std::move(body), rest, tetrahedra, fixed, materials);
 }
 
 }  // namespace tissue_contact

@@ -35,12 +35,6 @@ struct MeanDilatation::PatchState : RotationState {
 
 namespace {
 
-/// What is left of a material without its resistance to changes of volume.
-LameParameters deviatoric(const MaterialDescription& material) {
-  const double mu = lameParameters(material).mu;
-  return {-2.0 / 3.0 * mu, mu};
-}
-
 double bulkModulus(const MaterialDescription& material) {
   const LameParameters lame = lameParameters(material);
   return lame.lambda + 2.0 / 3.0 * lame.mu;
@@ -71,7 +65,7 @@ MeanDilatation::MeanDilatation(const NodalVectors& rest, const std::vector<Tetra
                                const std::vector<bool>& fixed, const ElementMaterials& materials,
                                const std::vector<int>& patch_of)
     : TetElasticity(materials.materials.at(0).model == ElasticModel::kCorotational,
-                    std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, deviatoric,
+                    std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, deviatoricParameters,
                                                   BlockMatrix::forElements(patchNodes(tetrahedra, patch_of), fixed))),
       corotational_(materials.materials.at(0).model == ElasticModel::kCorotational) {
   const std::vector<std::vector<int>> nodes = patchNodes(tetrahedra, patch_of);

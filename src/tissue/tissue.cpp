@@ -15,6 +15,12 @@
 namespace tissue_contact {
 namespace {
 
+bool sameSeries(const std::vector<PronyTerm>& a, const std::vector<PronyTerm>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const PronyTerm& s, const PronyTerm& t) {
+    return s.modulus_ratio == t.modulus_ratio && s.time_s == t.time_s;
+  });
+}
+
 void checkModel(const TissueDescription& description) {
   const MaterialDescription& material = description.material;
   if ((material.model == ElasticModel::kMembrane) != isMembrane(description)) {
@@ -31,12 +37,23 @@ void checkModel(const TissueDescription& description) {
                          ": dilatation is 'patch', which only the models linear and corotational "
                          "know; remove the key");
   }
+  if (!material.prony_series.empty() && !takesPronySeries(material.model)) {
+    throw EntryError("material.prony_series", tissueLabel(description) + ": model is '" +
+                                                  elasticModelName(material.model) +
+                                                  "', whose stress does not relax; give linear, corotational or "
+                                                  "neo_hookean, or remove the key");
+  }
   for (std::size_t r = 0; r < description.regions.size(); ++r) {
     const TissueRegion& region = description.regions[r];
     const std::string entry = elementOf("regions", r) + ".material";
     if (region.material.dilatation != description.material.dilatation) {
       throw EntryError(entry + ".dilatation", tissueLabel(description) + ", region '" + region.name +
                                                   "': dilatation is not that of the tissue; give all regions the same");
+    }
+    if (!sameSeries(region.material.prony_series, material.prony_series)) {
+      throw EntryError(entry + ".prony_series", tissueLabel(description) + ", region '" + region.name +
+                                                    "': its Prony series is not that of the tissue; give all regions "
+                                                    "the same");
     }
     if (region.material.model == material.model) continue;
     throw EntryError(entry + ".model", tissueLabel(description) + ", region '" + region.name + "': model is '" +

@@ -106,6 +106,12 @@ MaterialDescription averaged(ElasticModel model) {
   return description;
 }
 
+/// Forces from a fresh state are those of all terms at once.
+ElementMaterials viscous(ElementMaterials materials) {
+  for (MaterialDescription& one : materials.materials) one.prony_series = {{0.5, 0.1}, {2.0, 3.0}};
+  return materials;
+}
+
 std::vector<Model> models() {
   using E = ElasticModel;
   return {{"Linear", makeBlock, material(E::kLinear, 5e3, 0.4), false},
@@ -121,6 +127,10 @@ std::vector<Model> models() {
           {"MeanDilatationLinear", makeBlock, averaged(E::kLinear), false},
           {"MeanDilatationCorotational", makeBlock, averaged(E::kCorotational)},
           {"MeanDilatationLayered", makeBlock, layered(E::kCorotational, Dilatation::kPatch)},
+          {"ViscoelasticLinear", makeBlock, viscous(material(E::kLinear, 5e3, 0.4)), false},
+          {"ViscoelasticCorotational", makeBlock, viscous(averaged(E::kCorotational))},
+          {"ViscoelasticNeoHookean", makeBlock, viscous(material(E::kNeoHookean, 5e3, 0.4))},
+          {"ViscoelasticLayered", makeBlock, viscous(layered(E::kCorotational, Dilatation::kPatch))},
           {"LayeredNeoHookean", makeBlock, layered(E::kNeoHookean)},
           {"LayeredMassSpring", makeBlock, layered(E::kMassSpring)},
           {"LayeredMembrane", makeFlat, layered(E::kMembrane)},

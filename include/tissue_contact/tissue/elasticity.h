@@ -21,6 +21,10 @@ class Elasticity {
     BlockMatrix damping;    ///< D, N s/m, where materials damp differently by region; else no rows
     /// Set by the caller: the model may leave out rotations while they are small, where it says that it can.
     bool adapt_rotations = false;
+    /// Set by the caller for models with memory, s: the step that update() prepares, and the time since the last update,
+    /// which update() takes and sets to 0.
+    double step_s = 0.0;
+    double elapsed_s = 0.0;
   };
   virtual ~Elasticity() = default;
 
@@ -34,6 +38,9 @@ class Elasticity {
   /// they are in x, the forces of such elements are what they are now. Models that cannot tell evaluate all elements.
   /// @param still per node; none set: evaluate everything again. Allocates when first used.
   virtual void holdStill(const std::vector<bool>& /*still*/, const NodalVectors& /*x*/, State& /*state*/) const {}
+
+  /// Whether forces depend on more than where the nodes are now: what rests may then be pushed all the same.
+  virtual bool hasMemory() const { return false; }
 
   /// Elastic energy (J), 0 undeformed. For tests and energy reports.
   virtual double energy(const NodalVectors& x) const = 0;

@@ -38,6 +38,9 @@ struct LameParameters {
 /// Lame parameters of a volume: lambda = E nu / ((1 + nu)(1 - 2 nu)), mu = E / (2 (1 + nu)).
 LameParameters lameParameters(const MaterialDescription& material);
 
+/// What is left of these without resistance to changes of volume: lambda = -2/3 mu.
+LameParameters deviatoricParameters(const MaterialDescription& material);
+
 /// Of plane stress: lambda = E nu / (1 - nu^2), mu = E / (2 (1 + nu)).
 LameParameters planeStressParameters(const MaterialDescription& material);
 

@@ -15,6 +15,9 @@ namespace tissue_contact {
 /// coarse cells is locking (validation case coarse-press), for 1.7 times the instructions of a step.
 constexpr double kAveragedPoissonsRatio = 0.3;
 
+/// Whether stress of this model may relax: MaterialDescription::prony_series.
+bool takesPronySeries(ElasticModel model);
+
 /// Whether volume changes of these materials are averaged over patches: what they ask for, or what kAuto chooses.
 bool averagesDilatation(const ElementMaterials& materials);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <utility>
+#include <vector>
 
 #include "tissue_contact/core/range.h"
 
@@ -25,6 +26,15 @@ enum class Dilatation {
   kPatch     ///< the five tetrahedra of a block's cell, or about five neighbours of a mesh: does not
 };
 
+/// One term of a Prony series: a Maxwell element beside the elastic body.
+struct PronyTerm {
+  static constexpr Range kModulusRatio{0.0, 1000.0, "", "the shear modulus of the term over the relaxed one", true};
+  static constexpr Range kTime{1e-4, 1e5, "s", "give seconds"};
+
+  double modulus_ratio = 0.0;  ///< its shear modulus over that of the relaxed body
+  double time_s = 0.0;         ///< in which its stress falls to 1/e while the strain is held
+};
+
 struct MaterialDescription {
   static constexpr Range kPoissonsRatio{-1.0, 0.5, "", "0.5 itself (incompressible) cannot be simulated, 0.49 can",
                                         true, true};
@@ -36,6 +46,9 @@ struct MaterialDescription {
   /// Membranes: bending stiffness per width, N m; negative: that of a plate, E h^3 / (12 (1 - nu^2)).
   double bending_stiffness_n_m = -1.0;
   Dilatation dilatation = Dilatation::kAuto;
+  /// Volumes but for mass-spring: stress relaxation of the deviator. Young's modulus is then that of the relaxed body. The
+  /// terms are those of the whole tissue, times the modulus of each region.
+  std::vector<PronyTerm> prony_series = {};
 };
 
 /// Damping matrix D = mass_per_s * M + stiffness_s * K (Rayleigh; the second part is Kelvin-Voigt's, with

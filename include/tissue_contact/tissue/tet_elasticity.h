@@ -66,12 +66,13 @@ class TetElasticity : public Elasticity {
 
   const TetElements& tets() const { return *tets_; }
   void prepare(RotationState& state) const;
+  /// Of the elements of a batch that have turned.
+  void refreshStiffness(std::size_t batch, RotationState& state) const;
 
  private:
   void evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, RotationState& state,
                 NodalVectors& forces) const;
   static void addStiffness(const TetElement& element, const Quaternion& rotation, double sign, State& state);
-  void refreshStiffness(std::size_t batch, RotationState& state) const;
   void adaptRotations(const NodalVectors& x, RotationState& state) const;
 
   bool corotational_;
