@@ -1,7 +1,8 @@
 /// Form J: closed forms of the models beyond linear elasticity of one material: neo-Hookean bars at finite strain, mass-spring
-/// volumes under uniform strain, layered bars, Kelvin-Voigt creep.
+/// volumes under uniform strain, layered bars, Kelvin-Voigt creep, stress that relaxes.
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <sstream>
 
 #include "tissue_contact/mesh/tet_mesh.h"
@@ -237,16 +238,18 @@ void layeredBarInTension(Report& report) {
 
 /// End displacement after `time` of a bar under a constant end load, by implicit Euler steps of the room's matrices:
 /// (M + dt D + dt^2 K) v = M v0 + dt f(x0) + dt load, D = stiffness_s K or State::damping.
-double creep(const Tissue& tissue, double length, double force, double time, int steps) {
+double creep(const Tissue& tissue, const std::vector<bool>& prescribed, double length, double force, double time,
+             int steps) {
   const double dt = time / steps;
   const NodalVectors loads = endLoads(tissue, length, force);
-  const std::vector<bool> prescribed = lowerEnd(tissue);
   const auto state = tissue.elasticity().makeState();
   NodalVectors x = tissue.restPositions();
   NodalVectors v = NodalVectors::Zero(3, x.cols());
   NodalVectors f(3, x.cols());
   for (int step = 0; step < steps; ++step) {
+    state->step_s = dt;
     tissue.elasticity().update(x, *state, f);
+    state->elapsed_s = dt;
     BlockMatrix A = state->stiffness;
     for (std::size_t i = 0; i < A.values.size(); ++i) {
       A.values[i] *= dt * (dt + tissue.damping().stiffness_s);
@@ -267,11 +270,11 @@ double creep(const Tissue& tissue, double length, double force, double time, int
 }
 
 /// Displacement over the expected one with 20, 40 and 80 steps. Implicit Euler is of first order.
-void creepStudy(const std::string& name, const Tissue& tissue, double force, double expected, Report& report) {
-  const char* const source = "u = F L / (E A) (1 - exp(-t / tau)) per layer";
+void creepStudy(const std::string& name, const Tissue& tissue, const std::vector<bool>& prescribed, double force,
+                double expected, const char* source, Report& report) {
   ConvergenceStudy study{name + ": displacement over the expected one", "", "step (s)", {}, 1.0};
   for (const int steps : {20, 40, 80}) {
-    study.levels.push_back({0.15 / steps, creep(tissue, 0.05, force, 0.15, steps) / expected});
+    study.levels.push_back({0.15 / steps, creep(tissue, prescribed, 0.05, force, 0.15, steps) / expected});
     report.near(name + ", " + std::to_string(steps) + " steps: displacement", "", 1.0, study.levels.back().value,
                 0.4 / steps, source);
   }
@@ -285,17 +288,99 @@ void kelvinVoigt(Report& report) {
   description.material.density_kg_per_m3 = 1e-6;
   description.damping.stiffness_s = 0.2;
   const double F = 1e-3;
-  creepStudy("Kelvin-Voigt bar", Tissue(description, Pose::Identity()), F,
-             F * 0.05 / (kYoung * 4e-4) * (1.0 - std::exp(-0.15 / 0.2)), report);
+  const char* const source = "u = F L / (E A) (1 - exp(-t / tau)) per layer";
+  const Tissue plain(description, Pose::Identity());
+  creepStudy("Kelvin-Voigt bar", plain, lowerEnd(plain), F, F * 0.05 / (kYoung * 4e-4) * (1.0 - std::exp(-0.15 / 0.2)),
+             source, report);
 
   TissueDescription layers = layeredBar(ElasticModel::kCorotational);
   layers.material.density_kg_per_m3 = layers.regions[0].material.density_kg_per_m3 = 1e-6;
   layers.damping.stiffness_s = 0.1;
   layers.regions[0].damping_stiffness_s = 0.4;
+  const Tissue layered(layers, Pose::Identity());
   creepStudy(
-      "Kelvin-Voigt layers", Tissue(layers, Pose::Identity()), 0.1 * F,
+      "Kelvin-Voigt layers", layered, lowerEnd(layered), 0.1 * F,
       0.1 * F / (kYoung * 4e-4) * (0.02 * (1.0 - std::exp(-0.15 / 0.1)) + 5.0 * 0.03 * (1.0 - std::exp(-0.15 / 0.4))),
-      report);
+      source, report);
+}
+
+constexpr double kRelaxedPoisson = 0.45;
+const std::vector<PronyTerm> kTerms = {{0.5, 0.05}, {1.5, 2.0}};
+
+TissueDescription viscoelasticBar(ElasticModel model) {
+  TissueDescription description = bar(model, kRelaxedPoisson, {0.02, 0.02, 0.02}, {2, 2, 2});
+  description.material.density_kg_per_m3 = 1e-6;  // waves cross in no time
+  description.material.prony_series = kTerms;
+  return description;
+}
+
+/// Shear stress over relaxed modulus of a cube sheared uniformly by angle(t) at every dt; the last `count` of `steps`.
+template <typename Angle>
+std::vector<double> shearStresses(const Tissue& tissue, double dt, int steps, int count, const Angle& angle) {
+  const auto state = tissue.elasticity().makeState();
+  NodalVectors f(3, tissue.nodeCount());
+  std::vector<double> stresses;
+  for (int step = 0; step <= steps; ++step) {
+    Matrix3 F = Matrix3::Identity();
+    F(0, 2) = angle(step * dt);
+    tissue.elasticity().update(F * tissue.restPositions(), *state, f);
+    state->elapsed_s = dt;
+    if (step <= steps - count) continue;
+    double force = 0.0;
+    for (int i = 0; i < tissue.nodeCount(); ++i) force -= tissue.restPositions()(2, i) == 0.02 ? f(0, i) : 0.0;
+    stresses.push_back(force / 4e-4 * 2.0 * (1.0 + kRelaxedPoisson) / kYoung);
+  }
+  return stresses;
+}
+
+// Held: G(t)/G = 1 + sum g exp(-t/tau). Swinging: G(w)/G = 1 + sum g i w tau / (1 + i w tau), in phase and a quarter ahead.
+void relaxingShear(const std::string& name, const Tissue& tissue, Report& report) {
+  constexpr double kAngle = 1e-6;  // the models differ by its square
+  const double held = shearStresses(tissue, 0.01, 100, 1, [](double) { return kAngle; })[0] / kAngle;
+  double expected = 1.0;
+  std::complex<double> modulus = 1.0;
+  const double omega = 3.0;
+  for (const PronyTerm& term : kTerms) {
+    expected += term.modulus_ratio * std::exp(-1.0 / term.time_s);
+    const std::complex<double> turned(0.0, omega * term.time_s);
+    modulus += term.modulus_ratio * turned / (1.0 + turned);
+  }
+  report.near(name + ": held shear after 1 s", "", expected, held, 1e-5 * expected, "G(t) of the series");
+  constexpr int kPerCycle = 400;
+  const double dt = 2.0 * M_PI / omega / kPerCycle;
+  const std::vector<double> stresses =
+      shearStresses(tissue, dt, 20 * kPerCycle, kPerCycle, [&](double t) { return kAngle * std::sin(omega * t); });
+  std::complex<double> got;
+  for (int i = 0; i < kPerCycle; ++i) {
+    const double phase = 2.0 * M_PI * (i + 1) / kPerCycle;
+    got += 2.0 / kPerCycle / kAngle * stresses[i] * std::complex<double>(std::sin(phase), std::cos(phase));
+  }
+  report.near(name + ": storage modulus at 3 rad/s", "", modulus.real(), got.real(), 1e-4 * modulus.real(), "series");
+  report.near(name + ": loss modulus at 3 rad/s", "", modulus.imag(), got.imag(), 2e-4 * modulus.imag(), "series");
+}
+
+void relaxation(Report& report) {
+  const std::pair<const char*, ElasticModel> models[] = {{"linear", ElasticModel::kLinear},
+                                                         {"corotational", ElasticModel::kCorotational},
+                                                         {"neo-Hookean", ElasticModel::kNeoHookean}};
+  for (const auto& [name, model] : models) {
+    relaxingShear(std::string("Prony series, ") + name, Tissue(viscoelasticBar(model), Pose::Identity()), report);
+  }
+  // One term, uniaxial creep under a constant load: 1/E(t) = 1/(9 K) + J(t)/3, J = (1 - g/(1+g) exp(-t/(tau (1+g)))) / G.
+  TissueDescription description = viscoelasticBar(ElasticModel::kLinear);
+  std::get<BlockDescription>(description.geometry).size_m.z() = 0.05;
+  description.material.prony_series = {{1.5, 0.1}};
+  const Tissue tissue(description, Pose::Identity());
+  std::vector<bool> prescribed;
+  for (int i = 0; i < tissue.nodeCount(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) prescribed.push_back(tissue.restPositions()(axis, i) == 0.0);
+  }
+  const double shear = kYoung / (2.0 * (1.0 + kRelaxedPoisson));
+  const double bulk = kYoung / (3.0 * (1.0 - 2.0 * kRelaxedPoisson));
+  const double compliance = 1.0 / (9.0 * bulk) + (1.0 - 0.6 * std::exp(-0.15 / 0.25)) / (3.0 * shear);
+  const double F = 1e-3;
+  creepStudy("Prony bar", tissue, prescribed, F, F * 0.05 / 4e-4 * compliance,
+             "u = F L / A (1/(9 K) + J(t)/3), one term", report);
 }
 
 }  // namespace
@@ -309,6 +394,7 @@ void validateElasticModels(Report& report) {
   report.progress(0.6);
   layeredBarInTension(report);
   kelvinVoigt(report);
+  relaxation(report);
 }
 
 }  // namespace tissue_contact
