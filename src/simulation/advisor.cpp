@@ -33,7 +33,9 @@ bool averages(const TissueDescription& tissue) {
 std::string modelLine(const Scene& scene, const TissueDescription& tissue) {
   std::ostringstream line;
   line << "tissue " << quoted(tissue.name) << ": " << elasticModelName(tissue.material.model);
-  if (tissue.material.model != ElasticModel::kCorotational) {
+  if (!tissue.material.prony_series.empty()) {
+    line << ", its stress relaxes by " << tissue.material.prony_series.size() << " terms, so that it never sleeps";
+  } else if (tissue.material.model != ElasticModel::kCorotational) {
     line << ", as the scene says";
   } else if (scene.advisor.adapt_rotations && averages(tissue)) {
     line << " always: changes of volume are averaged over patches, which follow rotations";

@@ -67,5 +67,15 @@ TEST_P(ViscoelasticPress, GoesFromTheModulusAtOnceToTheRelaxedOne) {
   EXPECT_NEAR(forces[1], relaxed, 0.01 * relaxed);
 }
 
+TEST(ViscoelasticPress, NeverSleepsAndSaysSo) {
+  Simulator simulator =
+      makeScene("corotational", kYoung, kPoisson, ", prony_series: [{modulus_ratio: 1, time_s: 100}]");
+  bool said = false;
+  for (const std::string& line : simulator.advice()) said = said || line.find("never sleeps") != std::string::npos;
+  EXPECT_TRUE(said);
+  for (int k = 1; k <= 1000; ++k) simulator.advance(0.002, {Vector3(0.0, 0.0, -0.001)});
+  EXPECT_EQ(simulator.report().sleeping_nodes, 0);
+}
+
 }  // namespace
 }  // namespace tissue_contact
