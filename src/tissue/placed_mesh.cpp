@@ -212,6 +212,7 @@ void setFibres(const TissueDescription& description, const std::string& source, 
 std::string tissueLabel(const TissueDescription& description) { return "tissue '" + description.name + "'"; }
 
 PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size) {
+  checkTissue(description);
   const std::string source = tissueLabel(description);
   PlacedMesh placed;
   setGeometry(description, source, on_size, placed);

@@ -151,7 +151,6 @@ Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
       damping_(description.damping),
       thickness_(placed.thickness),
       pressure_(description.pressure_pa) {
-  checkTissue(description);
   ElementMaterials materials = elementMaterials(description, placed);
   damping_.stiffness_s = takeUniformDamping(placed.elementCount(), materials);
   masses_ = lumpedMasses(placed, materials);

@@ -210,7 +210,9 @@ TEST_P(ElasticityProperty, StiffnessAtRestLeavesRigidMotionsFreeAndNothingElse) 
   const VectorX values = eigen.eigenvalues() / eigen.eigenvalues().maxCoeff();
   const int rigid = GetParam().rigid_motions;
   EXPECT_GE(values[0], -1e-12);
-  if (rigid > 0) EXPECT_LE(values[rigid - 1], 1e-12);
+  if (rigid > 0) {
+    EXPECT_LE(values[rigid - 1], 1e-12);
+  }
   EXPECT_GE(values[rigid], 1e-5);
 }
 
@@ -252,6 +254,7 @@ TEST_P(ElasticityProperty, InternalForcesAndMomentsBalance) {
 }
 
 TEST_P(ElasticityProperty, RotationGivesNoForceAndTurnsTheForces) {
+  if (GetParam().rigid_motions == 0) GTEST_SKIP() << "springs to the world do not turn with the body";
   const Matrix3 Q = Eigen::AngleAxisd(2.9, Vector3(1.0, 2.0, -0.5).normalized()).toRotationMatrix();
   const NodalVectors x = perturbed(3e-3, 6);
   const NodalVectors f = forces(x);
