@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "support/text_scene.h"
 #include "tissue_contact/mesh/triangle_mesh.h"
@@ -161,7 +162,8 @@ Shrinking shrink(const std::string& material, double pressure) {
   return result;
 }
 
-// Whatever its shape: a liver, whose mesh is of others.
+// Whatever its shape: a liver, whose mesh is of others. (Lengths and not places: the linearised step keeps angular momentum
+// only nearly, and the sudden pressure leaves a free body turning by 1 mrad/s.)
 TEST(Pressure, AnOrganShrinksUniformly) {
   const std::string path = TISSUE_CONTACT_SHARED_DATA "/organs/liver_volumetric.vtk";
   if (!std::filesystem::exists(path)) {
@@ -174,11 +176,15 @@ TEST(Pressure, AnOrganShrinksUniformly) {
                     kCholesky);
   for (int k = 0; k < 600; ++k) simulator.advance(0.01, {});
   const NodalVectors& rest = simulator.tissues()[0].restPositions();
-  const VectorX& masses = simulator.tissues()[0].nodeMasses();
-  const Vector3 centre = rest * masses / masses.sum();
+  const NodalVectors& x = simulator.positions(0);
   const double e = uniformStrain(1600.0, 5000.0 / 0.3);
-  const NodalVectors expected = e * (rest.colwise() - centre);
-  EXPECT_LE((displacement(simulator) - expected).cwiseAbs().maxCoeff(), 1e-6 * expected.cwiseAbs().maxCoeff());
+  for (const Tetrahedron& tetrahedron : simulator.tissues()[0].tetrahedra()) {
+    for (const auto& [i, j] : {std::pair(0, 1), std::pair(0, 2), std::pair(0, 3), std::pair(1, 2)}) {
+      const int a = tetrahedron[i];
+      const int b = tetrahedron[j];
+      ASSERT_NEAR((x.col(a) - x.col(b)).norm() / (rest.col(a) - rest.col(b)).norm(), 1.0 + e, 1e-4 * std::abs(e));
+    }
+  }
 }
 
 // (The linear model has no equilibrium that a free body under pressure returns to when it turns.)
