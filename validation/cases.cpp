@@ -19,6 +19,8 @@ const std::vector<ValidationCase>& validationCases() {
       {"elastic-models", "J: neo-Hookean and mass-spring bars, layers in series, creep, relaxation",
        validateElasticModels},
       {"membrane", "J: patch test, strips, plates in bending and twist", validateMembrane},
+      {"held-and-pressed", "J: a block on springs sinks and swings; hydrostatic pressure, a pressed slab",
+       validateHeldAndPressed},
       {"layer-indentation", "F: sphere on a bonded layer", validateLayerIndentation},
       {"partial-slip", "G, H: a sphere is dragged; an annulus slides while the centre holds", validatePartialSlip},
       {"landing", "G, H: contacts that begin within a step slide only from then on", validateLanding},

@@ -17,6 +17,7 @@ void validateCapstan(Report& report);
 void validateElasticity(Report& report);
 void validateElasticModels(Report& report);
 void validateMembrane(Report& report);
+void validateHeldAndPressed(Report& report);
 void validateLayerIndentation(Report& report);
 void validatePartialSlip(Report& report);
 void validateLanding(Report& report);

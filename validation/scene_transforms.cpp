@@ -40,6 +40,13 @@ void scale(TissueDescription& tissue, const Units& units) {
   tissue.pose.X.translation() *= units.length;
   scale(tissue.material, units);
   for (Region& region : tissue.fixed) scale(region, units.length);
+  for (Attachment& attachment : tissue.attachments) {
+    attachment.stiffness_pa_per_m *= units.mass / (units.length * units.length);
+    attachment.stiffness_n_per_m *= units.mass;
+    for (Region& where : attachment.where) scale(where, units.length);
+  }
+  tissue.pressure_pa *= units.mass / units.length;
+  for (Region& where : tissue.pressure_where) scale(where, units.length);
   for (TissueRegion& region : tissue.regions) {
     scale(region.material, units);
     for (Region& where : region.where) scale(where, units.length);

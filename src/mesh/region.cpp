@@ -39,19 +39,19 @@ void describe(const SphereRegion& sphere, std::ostream& out) {
   out << "sphere around (" << sphere.center_m.transpose() << ") m of radius " << sphere.radius_m << " m";
 }
 
-[[noreturn]] void refuseRegion(const NodalVectors& x, const Region& region, std::size_t index,
-                               const std::string& source) {
+[[noreturn]] void refuseRegion(const NodalVectors& x, const Region& region, std::size_t index, const std::string& entry,
+                               const std::string& what, const std::string& source) {
   std::ostringstream message;
-  message << "fixed region " << index << " (";
+  message << entry << " region " << index << " (";
   std::visit([&](const auto& shape) { describe(shape, message); }, region);
-  message << ") holds no node; ";
+  message << ") holds no " << what << "; ";
   if (x.cols() > 0) {
     message << "the mesh lies within (" << x.rowwise().minCoeff().transpose() << ") to ("
             << x.rowwise().maxCoeff().transpose() << ") m of the tissue frame: move or enlarge the region";
   } else {
     message << "the mesh has no nodes";
   }
-  throw EntryError(elementOf("fixed", index), source + ": " + message.str());
+  throw EntryError(elementOf(entry, index), source + ": " + message.str());
 }
 
 }  // namespace
@@ -64,20 +64,25 @@ bool anyHolds(const std::vector<Region>& regions, const Vector3& x, double round
   return std::any_of(regions.begin(), regions.end(), [&](const Region& region) { return holds(region, x, rounding); });
 }
 
-std::vector<bool> fixedNodes(const NodalVectors& positions, const std::vector<Region>& regions,
-                             const std::string& source) {
-  std::vector<bool> fixed(static_cast<std::size_t>(positions.cols()), false);
-  const double rounding = roundingDistance(positions);
+std::vector<bool> heldPoints(const NodalVectors& points, const std::vector<Region>& regions, const std::string& entry,
+                             const std::string& what, const std::string& source) {
+  std::vector<bool> held(static_cast<std::size_t>(points.cols()), false);
+  const double rounding = roundingDistance(points);
   for (std::size_t r = 0; r < regions.size(); ++r) {
     bool any = false;
-    for (Eigen::Index i = 0; i < positions.cols(); ++i) {
-      const Vector3 x = positions.col(i);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const Vector3 x = points.col(i);
       if (!holds(regions[r], x, rounding)) continue;
-      fixed[static_cast<std::size_t>(i)] = any = true;
+      held[static_cast<std::size_t>(i)] = any = true;
     }
-    if (!any) refuseRegion(positions, regions[r], r, source);
+    if (!any) refuseRegion(points, regions[r], r, entry, what, source);
   }
-  return fixed;
+  return held;
+}
+
+std::vector<bool> fixedNodes(const NodalVectors& positions, const std::vector<Region>& regions,
+                             const std::string& source) {
+  return heldPoints(positions, regions, "fixed", "node", source);
 }
 
 }  // namespace tissue_contact

@@ -2,6 +2,7 @@
 /// Room `mesh`, private: which points lie in a region.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "tissue_contact/core/types.h"
@@ -15,5 +16,11 @@ double roundingDistance(const NodalVectors& x);
 
 /// Whether any of the regions holds the point (m, in T). Boundaries count as inside.
 bool anyHolds(const std::vector<Region>& regions, const Vector3& x, double rounding);
+
+/// For each point (3 x n, m, in T) whether any of the regions holds it.
+/// @param entry of the regions in their tissue, "fixed". @param what a point is, "node".
+/// @throws EntryError naming `source`, the region and the extent of the points when a region holds none.
+std::vector<bool> heldPoints(const NodalVectors& points, const std::vector<Region>& regions, const std::string& entry,
+                             const std::string& what, const std::string& source);
 
 }  // namespace tissue_contact

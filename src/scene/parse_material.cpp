@@ -49,7 +49,7 @@ TissueRegion parseTissueRegion(const YamlCursor& cursor, const TissueDescription
   const YamlMap map = cursor.map();
   TissueRegion region;
   region.name = parseName(map.get("name"));
-  for (const YamlCursor& part : map.get("where").list(1, kMostPlaces)) region.where.push_back(parseRegion(part));
+  region.where = parsePlaces(map.get("where"), 1);
   MaterialDescription& material = region.material;
   material = tissue.material;
   if (const YamlCursor* value = map.find("material")) {
@@ -78,6 +78,19 @@ Region parseRegion(const YamlCursor& cursor) {
   if (kind == "plane") return parsePlaneRegion(value);
   const YamlMap sphere = value.map();
   return SphereRegion{sphere.get("center_m").vector3(kPositionRange), sphere.get("radius_m").number(kShapeSizeRange)};
+}
+
+std::vector<Region> parsePlaces(const YamlCursor& cursor, std::size_t fewest) {
+  std::vector<Region> places;
+  for (const YamlCursor& place : cursor.list(fewest, kMostPlaces)) places.push_back(parseRegion(place));
+  return places;
+}
+
+void requireFewPlaces(const YamlCursor& element, const std::string& kind, std::size_t places) {
+  if (places <= kMostPlaces) return;
+  element.fail("with this " + kind + " those of the tissue have " + std::to_string(places) +
+               " places in their \"where\"; at most " + std::to_string(kMostPlaces) +
+               " are allowed; use fewer, larger ones");
 }
 
 MaterialDescription parseMaterial(const YamlCursor& cursor, bool is_membrane) {
@@ -112,11 +125,7 @@ std::vector<TissueRegion> parseTissueRegions(const YamlCursor& cursor, const Tis
   for (const YamlCursor& element : cursor.list(0, kMostPlaces)) {
     regions.push_back(parseTissueRegion(element, tissue));
     places += regions.back().where.size();
-    if (places > kMostPlaces) {
-      element.fail("with this region those of the tissue have " + std::to_string(places) +
-                   " places in their \"where\"; at most " + std::to_string(kMostPlaces) +
-                   " are allowed; use fewer, larger ones");
-    }
+    requireFewPlaces(element, "region", places);
     if (!seen.insert(regions.back().name).second) {
       element.fail("the name " + inQuotes(regions.back().name) +
                    " is already used; regions of a tissue need different names, and one may have several places in "

@@ -13,6 +13,9 @@ constexpr Range kSizeRange{1e-6, 10.0, "m", "give metres, not millimetres"};
 constexpr Range kThicknessRange{1e-6, 1.0, "m", "give metres: 2 mm is 0.002"};
 constexpr Range kGrowthRange{1.0, 3.0};
 constexpr Range kScaleRange{1e-6, 1000.0, "m per file unit", "a file in millimetres has 0.001"};
+constexpr Range kAreaStiffnessRange{1.0, 1e12, "Pa/m", "give N/m per m^2: 1 N/mm on 1 cm^2 is 1e7"};
+constexpr Range kNodeStiffnessRange{1e-6, 1e9, "N/m", "give newtons per metre: 1 N/mm is 1000"};
+constexpr Range kPressureRange{-1e7, 1e7, "Pa", "give pascals: 12 mmHg is 1600"};
 constexpr std::pair<const char*, AxisGrading::FineAt> kFineAt[] = {{"minimum", AxisGrading::FineAt::kMinimum},
                                                                    {"center", AxisGrading::FineAt::kCenter},
                                                                    {"maximum", AxisGrading::FineAt::kMaximum}};
@@ -82,6 +85,24 @@ decltype(TissueDescription::geometry) parseGeometry(const YamlMap& map, const Pa
   return parseShell(value, paths);
 }
 
+std::vector<Attachment> parseAttachments(const YamlCursor& cursor) {
+  std::vector<Attachment> attachments;
+  std::size_t places = 0;
+  for (const YamlCursor& element : cursor.list(0, kMostPlaces)) {
+    const YamlMap map = element.map();
+    Attachment& attachment = attachments.emplace_back();
+    attachment.where = parsePlaces(map.get("where"), 1);
+    places += attachment.where.size();
+    requireFewPlaces(element, "attachment", places);
+    if (map.exactlyOne({"stiffness_pa_per_m", "stiffness_n_per_m"}) == "stiffness_pa_per_m") {
+      attachment.stiffness_pa_per_m = map.get("stiffness_pa_per_m").number(kAreaStiffnessRange);
+    } else {
+      attachment.stiffness_n_per_m = map.get("stiffness_n_per_m").number(kNodeStiffnessRange);
+    }
+  }
+  return attachments;
+}
+
 }  // namespace
 
 TissueDescription parseTissue(const YamlCursor& cursor, const PathContext& paths) {
@@ -94,9 +115,10 @@ TissueDescription parseTissue(const YamlCursor& cursor, const PathContext& paths
   if (const YamlCursor* value = map.find("damping")) tissue.damping = parseDamping(*value);
   if (const YamlCursor* value = map.find("fibre_direction")) tissue.fibre_direction = parseDirection(*value);
   if (const YamlCursor* value = map.find("regions")) tissue.regions = parseTissueRegions(*value, tissue);
-  if (const YamlCursor* value = map.find("fixed")) {
-    for (const YamlCursor& region : value->list(0, kMostPlaces)) tissue.fixed.push_back(parseRegion(region));
-  }
+  if (const YamlCursor* value = map.find("fixed")) tissue.fixed = parsePlaces(*value, 0);
+  if (const YamlCursor* value = map.find("attachments")) tissue.attachments = parseAttachments(*value);
+  if (const YamlCursor* value = map.find("pressure_pa")) tissue.pressure_pa = value->number(kPressureRange);
+  if (const YamlCursor* value = map.find("pressure_where")) tissue.pressure_where = parsePlaces(*value, 1);
   atEntry(cursor.path(), [&] { checkTissue(tissue); });
   return tissue;
 }

@@ -8,11 +8,13 @@ namespace tissue_contact {
 namespace {
 
 /// Maps whose keys stand in the table once, with those below them.
-constexpr std::array<std::pair<const char*, const char*>, 4> kSame = {{
+constexpr std::array<std::pair<const char*, const char*>, 6> kSame = {{
     {"instruments[].base_pose", "tissues[].pose"},
     {"tissues[].block.grading.y", "tissues[].block.grading.x"},
     {"tissues[].block.grading.z", "tissues[].block.grading.x"},
     {"tissues[].regions[].where[]", "tissues[].fixed[]"},
+    {"tissues[].attachments[].where[]", "tissues[].fixed[]"},
+    {"tissues[].pressure_where[]", "tissues[].fixed[]"},
 }};
 
 std::string tablePath(const std::string& path) {
@@ -37,8 +39,8 @@ const std::map<std::string, std::vector<std::string>>& sceneKeys() {
        {"world_frame", "gravity_m_per_s2", "tissues", "instruments", "tissue_pairs", "friction", "step", "solver",
         "advisor", "publish"}},
       {"tissues[]",
-       {"name", "block", "mesh", "sheet", "shell", "pose", "material", "damping", "fibre_direction", "regions",
-        "fixed"}},
+       {"name", "block", "mesh", "sheet", "shell", "pose", "material", "damping", "fibre_direction", "regions", "fixed",
+        "attachments", "pressure_pa", "pressure_where"}},
       {"tissues[].block", {"size_m", "cells", "grading"}},
       {"tissues[].block.grading", {"x", "y", "z"}},
       {"tissues[].block.grading.x", {"growth", "fine_at"}},
@@ -54,6 +56,7 @@ const std::map<std::string, std::vector<std::string>>& sceneKeys() {
       {"tissues[].fixed[].box", {"min_m", "max_m"}},
       {"tissues[].fixed[].plane", {"point_m", "normal"}},
       {"tissues[].fixed[].sphere", {"center_m", "radius_m"}},
+      {"tissues[].attachments[]", {"where", "stiffness_pa_per_m", "stiffness_n_per_m"}},
       {"tissues[].regions[]", {"name", "where", "material", "damping", "fibre_direction"}},
       {"tissues[].regions[].material", {"youngs_modulus_pa", "poissons_ratio", "density_kg_per_m3"}},
       {"tissues[].regions[].damping", {"stiffness_s"}},

@@ -34,7 +34,8 @@ constexpr Range kShapeSizeRange{1e-6, 100.0, "m", "give metres"};
 constexpr std::size_t kMostBodies = 100;    ///< tissues; instruments
 constexpr std::size_t kMostTopics = 100;    ///< of an instrument
 constexpr std::size_t kMostPairs = 10'000;  ///< tissue pairs; friction entries
-constexpr std::size_t kMostPlaces = 1000;   ///< of all regions of a tissue; of its `fixed`: each looks at all elements
+constexpr std::size_t kMostPlaces = 1000;   ///< of all regions of a tissue, of its attachments, of its `fixed`, of its
+                                            ///< pressure: each looks at all elements
 
 /// A name that may become part of a ROS topic: [A-Za-z][A-Za-z0-9_]*, at most 64 characters.
 std::string parseName(const YamlCursor& cursor);
@@ -49,6 +50,10 @@ PoseDescription parsePose(const YamlCursor& cursor);
 Vector3 parseDirection(const YamlCursor& cursor);
 
 Region parseRegion(const YamlCursor& cursor);
+/// A list of at least `fewest` regions.
+std::vector<Region> parsePlaces(const YamlCursor& cursor, std::size_t fewest);
+/// Refuses an entry of a tissue with which all of its `kind` have too many places.
+void requireFewPlaces(const YamlCursor& element, const std::string& kind, std::size_t places);
 /// `is_membrane`: the tissue is a sheet or shell.
 MaterialDescription parseMaterial(const YamlCursor& cursor, bool is_membrane);
 DampingDescription parseDamping(const YamlCursor& cursor);

@@ -9,7 +9,8 @@ MovingTissue::MovingTissue(const Scene& scene, const Tissue& tissue, NodalVector
     : scene_(scene), tissue_(tissue), x_(x), v_(v), system_(system), loads_(NodalVectors::Zero(3, tissue.nodeCount())) {
   reset();
   if (!advisedSleep(scene) || tissue.elasticity().hasMemory()) return;
-  sleep_.emplace(tissue.fixed(), system, meanSurfaceEdge(&tissue, 1), advisedSleepByParts(scene));
+  sleep_.emplace(tissue.fixed(), system, meanSurfaceEdge(&tissue, 1), tissue.attachmentStiffness(),
+                 advisedSleepByParts(scene));
   system_.fixed = &sleep_->still();
 }
 
@@ -44,6 +45,7 @@ void MovingTissue::assemble(double dt) {
   still_changed_ = false;
   elastic_state_->step_s = dt;
   tissue_.elasticity().update(x_, *elastic_state_, loads_);
+  tissue_.addPressure(x_, loads_);
   system_.stiffness_scale = dt * (dt + tissue_.damping().stiffness_s);
   system_.damping_scale = system_.D != nullptr ? dt : 0.0;
   system_.mass = (1.0 + dt * tissue_.damping().mass_per_s) * tissue_.nodeMasses();

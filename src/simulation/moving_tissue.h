@@ -68,7 +68,7 @@ class MovingTissue {
   NodalVectors& v_;
   BodySystem& system_;
   std::unique_ptr<Elasticity::State> elastic_state_;
-  NodalVectors loads_;                ///< elastic forces, and weight if nodes can sleep, N
+  NodalVectors loads_;                ///< elastic forces and pressure, and weight if nodes can sleep, N
   std::optional<TissueSleep> sleep_;  ///< none: no node ever sleeps
   bool still_changed_ = false;        ///< sleepers have changed since the elasticity was told
   std::vector<int> woken_;            ///< scratch

@@ -15,7 +15,8 @@ constexpr int kMostRepeats = 3;
 
 }  // namespace
 
-TissueSleep::TissueSleep(const std::vector<bool>& fixed, const BodySystem& body, double edge_m, bool by_parts)
+TissueSleep::TissueSleep(const std::vector<bool>& fixed, const BodySystem& body, double edge_m,
+                         double attachment_n_per_m, bool by_parts)
     : fixed_(fixed), body_(body), radius_(kStillPerEdge * edge_m), by_parts_(by_parts), still_(fixed) {
   for (std::size_t i = 0; i < fixed.size(); ++i) {
     if (fixed[i]) continue;
@@ -23,6 +24,9 @@ TissueSleep::TissueSleep(const std::vector<bool>& fixed, const BodySystem& body,
     own_force_ += edge_m * body.K->diagonal[i].trace() / 3.0;
   }
   if (free_nodes_ > 0) own_force_ /= free_nodes_;
+  const bool any_fixed = free_nodes_ < static_cast<int>(fixed.size());
+  may_drift_ = !any_fixed && attachment_n_per_m == 0.0;
+  if (!any_fixed && !may_drift_) own_force_ = std::min(own_force_, edge_m * attachment_n_per_m);
   near_.resize(fixed.size());
   wakeAll();
 }
@@ -108,7 +112,7 @@ bool TissueSleep::isTimeToCheck(double dt) {
 
 bool TissueSleep::rest(const NodalVectors& x, const NodalVectors& loads, double allowed_n,
                        const std::vector<int>& touched) {
-  if (free_nodes_ == static_cast<int>(fixed_.size())) return false;
+  if (may_drift_) return false;
   countStillTime(x);
   if (!by_parts_ && !touched.empty()) return false;
   findReady(loads, allowed_n, touched);

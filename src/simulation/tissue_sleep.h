@@ -5,7 +5,8 @@
 ///
 /// A node falls asleep when it has stayed within kStillPerEdge of an edge for kStillTime, no contact is within a ring
 /// of elements, and the force on it is below its share of half the allowed sum. Without a contact on the tissue, all
-/// its nodes fall asleep together or none does; a tissue without a fixed node never sleeps, for it may drift. While
+/// its nodes fall asleep together or none does; a tissue without a fixed or attached node never sleeps, for it may
+/// drift. While
 /// nodes sleep, the force that holding each of them takes is known exactly, as what its equation of motion leaves with
 /// v = 0; the sum of their magnitudes never exceeds `allowed`: before it would, within the same step, those that are
 /// held by more than their share wake, with the ring around them, and the step is solved again.
@@ -36,8 +37,10 @@ class TissueSleep {
   /// @param fixed per node.
   /// @param body the tissue's system of each step; both must outlive it.
   /// @param edge_m length of an element's edge.
+  /// @param attachment_n_per_m what attachments hold the whole tissue by, N/m; 0: none.
   /// @param by_parts some nodes may sleep while others are awake.
-  TissueSleep(const std::vector<bool>& fixed, const BodySystem& body, double edge_m, bool by_parts);
+  TissueSleep(const std::vector<bool>& fixed, const BodySystem& body, double edge_m, double attachment_n_per_m,
+              bool by_parts);
 
   void wakeAll();
 
@@ -50,7 +53,7 @@ class TissueSleep {
 
   /// Sums up what the sleepers are held by, after the solve of a step, and wakes those held by too much. `woken` gets
   /// them.
-  /// @param loads elastic force and weight of each node, N.
+  /// @param loads elastic force, pressure and weight of each node, N.
   /// @param v the answer, m/s.
   /// @param allowed_n the most the sum may be.
   /// @param repeats how often this step has been solved already.
@@ -69,7 +72,8 @@ class TissueSleep {
   bool rest(const NodalVectors& x, const NodalVectors& loads, double allowed_n, const std::vector<int>& touched);
 
   /// Force that moves a node by an edge while its neighbours stay, mean over the free nodes, N: the measure
-  /// of the allowed sum while nothing presses.
+  /// of the allowed sum while nothing presses. Where attachments alone hold the tissue, at most what moves all of it by
+  /// an edge against them.
   double ownForce() const { return own_force_; }
 
  private:
@@ -86,6 +90,7 @@ class TissueSleep {
   const std::vector<bool>& fixed_;
   const BodySystem& body_;
   double radius_;  ///< within which a node is still, m
+  bool may_drift_ = false;
   bool by_parts_;
   double own_force_ = 0.0;
   int free_nodes_ = 0;

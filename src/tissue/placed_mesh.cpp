@@ -15,6 +15,8 @@
 namespace tissue_contact {
 namespace {
 
+constexpr const char* kCentroid = "centroid of a surface triangle";
+
 /// For each point (3 x n, m, in T) the last region that holds it, -1 if none does.
 std::vector<int> regionsOfPoints(const NodalVectors& points, const std::vector<TissueRegion>& regions,
                                  double rounding) {
@@ -128,6 +130,60 @@ Vector2 fibreIn(const NodalVectors& x, const Triangle& triangle, const Vector3& 
   return gram.inverse() * (edges.transpose() * along.normalized());
 }
 
+/// What an attachment adds to the springs, N/m per node, positions being in T.
+void addAttachment(const Attachment& attachment, const std::string& entry, const std::string& source,
+                   const PlacedMesh& placed, VectorX& stiffness) {
+  if (attachment.stiffness_n_per_m > 0.0) {
+    const std::vector<bool> held = heldPoints(placed.rest, attachment.where, entry, "node", source);
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      if (held[i]) stiffness[static_cast<Eigen::Index>(i)] += attachment.stiffness_n_per_m;
+    }
+    return;
+  }
+  const std::vector<bool> held =
+      heldPoints(centroids(placed.rest, placed.surface), attachment.where, entry, kCentroid, source);
+  for (std::size_t t = 0; t < held.size(); ++t) {
+    if (!held[t]) continue;
+    const double third = attachment.stiffness_pa_per_m * triangleArea(placed.rest, placed.surface[t]) / 3.0;
+    for (const int node : placed.surface[t]) stiffness[node] += third;
+  }
+}
+
+/// Fixed nodes, which never move, get no spring. Refuses an attachment that holds no other.
+void setSprings(const TissueDescription& description, const std::string& source, PlacedMesh& placed) {
+  if (description.attachments.empty()) return;
+  VectorX all = VectorX::Zero(placed.rest.cols());
+  for (std::size_t a = 0; a < description.attachments.size(); ++a) {
+    const std::string entry = elementOf("attachments", a);
+    VectorX stiffness = VectorX::Zero(placed.rest.cols());
+    addAttachment(description.attachments[a], entry + ".where", source, placed, stiffness);
+    for (Eigen::Index i = 0; i < stiffness.size(); ++i) {
+      if (placed.fixed[static_cast<std::size_t>(i)]) stiffness[i] = 0.0;
+    }
+    if (stiffness.isZero(0.0)) {
+      throw EntryError(entry + ".where", source + ": all nodes that attachment " + std::to_string(a) +
+                                             " holds are fixed already; remove it, or enlarge its region");
+    }
+    all += stiffness;
+  }
+  for (Eigen::Index i = 0; i < all.size(); ++i) {
+    if (all[i] > 0.0) placed.springs.push_back({static_cast<int>(i), all[i]});
+  }
+}
+
+void setPressed(const TissueDescription& description, const std::string& source, PlacedMesh& placed) {
+  if (description.pressure_pa == 0.0) return;
+  if (description.pressure_where.empty()) {
+    placed.pressed = placed.surface;
+    return;
+  }
+  const std::vector<bool> held = heldPoints(centroids(placed.rest, placed.surface), description.pressure_where,
+                                            "pressure_where", kCentroid, source);
+  for (std::size_t t = 0; t < held.size(); ++t) {
+    if (held[t]) placed.pressed.push_back(placed.surface[t]);
+  }
+}
+
 void checkFibre(const Vector3& fibre, const std::string& entry, const std::string& owner) {
   if (fibre.allFinite()) return;
   std::ostringstream message;
@@ -156,6 +212,7 @@ void setFibres(const TissueDescription& description, const std::string& source, 
 std::string tissueLabel(const TissueDescription& description) { return "tissue '" + description.name + "'"; }
 
 PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size) {
+  checkTissue(description);
   const std::string source = tissueLabel(description);
   PlacedMesh placed;
   setGeometry(description, source, on_size, placed);
@@ -163,6 +220,8 @@ PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, con
   setRegions(description, source, placed);
   placed.patch_of = cutAtRegions(placed.patch_of, placed.element_regions);
   setFibres(description, source, placed);
+  setSprings(description, source, placed);
+  setPressed(description, source, placed);
   placed.rest = (X_WT.linear() * placed.rest).colwise() + X_WT.translation();
   return placed;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tissue/attached_elasticity.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/tissue/tissue.h"
 #include "tissue_contact/tissue/tissue_description.h"
@@ -22,6 +23,8 @@ struct PlacedMesh {
   std::vector<int> element_regions;  ///< per element, -1: none; empty: the description has no regions
   std::vector<int> surface_regions;  ///< likewise per surface triangle
   std::vector<Vector2> surface_fibres;
+  std::vector<NodeSpring> springs;  ///< of attachments, at free nodes, each node at most once
+  std::vector<Triangle> pressed;    ///< surface triangles under the tissue's pressure
 
   bool isVolume() const { return !tetrahedra.empty(); }
   std::size_t elementCount() const { return isVolume() ? tetrahedra.size() : surface.size(); }

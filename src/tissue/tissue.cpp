@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "tissue/attached_elasticity.h"
 #include "tissue/placed_mesh.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/entry_error.h"
@@ -69,6 +70,35 @@ void checkNumbers(const MaterialDescription& material, double damping_stiffness_
   requireNonNegative(owner + "damping stiffness_s", damping_stiffness_s, "s");
 }
 
+void checkAttachment(const Attachment& attachment, const std::string& owner) {
+  if (attachment.where.empty()) {
+    throw EntryError("where", owner + " has no region; give at least one");
+  }
+  const double per_area = attachment.stiffness_pa_per_m;
+  const double per_node = attachment.stiffness_n_per_m;
+  if ((per_area == 0.0) == (per_node == 0.0)) {
+    throw EntryError("", owner + (per_area == 0.0 ? " has no stiffness" : " has two stiffnesses") +
+                             "; give exactly one of stiffness_pa_per_m (of a surface) and stiffness_n_per_m (of each "
+                             "node)");
+  }
+  if (per_area != 0.0) requirePositive(owner + ": stiffness_pa_per_m", per_area, "Pa/m");
+  if (per_node != 0.0) requirePositive(owner + ": stiffness_n_per_m", per_node, "N/m");
+}
+
+void checkLoads(const TissueDescription& description) {
+  const std::string label = tissueLabel(description);
+  for (std::size_t a = 0; a < description.attachments.size(); ++a) {
+    atEntry(elementOf("attachments", a),
+            [&] { checkAttachment(description.attachments[a], label + ", attachment " + std::to_string(a)); });
+  }
+  atEntry("pressure_pa", [&] { requireFinite(label + ": pressure_pa", description.pressure_pa, "Pa"); });
+  if (description.pressure_where.empty() || description.pressure_pa != 0.0) return;
+  throw EntryError("pressure_where",
+                   label +
+                       ": pressure_where says where a pressure acts, but pressure_pa is 0 or missing; "
+                       "give pressure_pa, or remove pressure_where");
+}
+
 }  // namespace
 
 void checkTissue(const TissueDescription& description) {
@@ -86,6 +116,7 @@ void checkTissue(const TissueDescription& description) {
                    tissueLabel(description) + ", region '" + region.name + "': ");
     });
   }
+  checkLoads(description);
 }
 
 namespace {
@@ -133,8 +164,10 @@ Tissue::Tissue(const TissueDescription& description, const Pose& X_WT, const Mes
     : Tissue(description, placeMesh(description, X_WT, on_size)) {}
 
 Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
-    : name_(description.name), damping_(description.damping), thickness_(placed.thickness) {
-  checkTissue(description);
+    : name_(description.name),
+      damping_(description.damping),
+      thickness_(placed.thickness),
+      pressure_(description.pressure_pa) {
   ElementMaterials materials = elementMaterials(description, placed);
   damping_.stiffness_s = takeUniformDamping(placed.elementCount(), materials);
   masses_ = lumpedMasses(placed, materials);
@@ -143,12 +176,27 @@ Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
   } else {
     elasticity_ = std::make_unique<Membrane>(placed.rest, placed.surface, placed.fixed, placed.thickness, materials);
   }
+  if (!placed.springs.empty()) {
+    for (const NodeSpring& spring : placed.springs) attachment_stiffness_ += spring.stiffness;
+    elasticity_ = std::make_unique<AttachedElasticity>(std::move(elasticity_), placed.rest, std::move(placed.springs),
+                                                       description.damping.stiffness_s);
+  }
   rest_ = std::move(placed.rest);
   tetrahedra_ = std::move(placed.tetrahedra);
   surface_ = std::move(placed.surface);
   fixed_ = std::move(placed.fixed);
   surface_regions_ = std::move(placed.surface_regions);
   surface_fibres_ = std::move(placed.surface_fibres);
+  pressed_ = std::move(placed.pressed);
+}
+
+void Tissue::addPressure(const NodalVectors& x, NodalVectors& forces) const {
+  for (const Triangle& triangle : pressed_) {
+    const Vector3 edge = x.col(triangle[1]) - x.col(triangle[0]);
+    const Vector3 other = x.col(triangle[2]) - x.col(triangle[0]);
+    const Vector3 third = (pressure_ / 6.0) * edge.cross(other);  // p A n / 3, n outward
+    for (const int node : triangle) forces.col(node) -= third;
+  }
 }
 
 double meanSurfaceEdge(const Tissue* tissues, std::size_t count) {

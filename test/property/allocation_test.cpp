@@ -56,9 +56,14 @@ namespace {
 /// Of one block that a probe presses and drags over, there and back.
 struct Case {
   const char* name;
-  const char* material;  ///< more keys of it
-  const char* sections;  ///< more of the scene
+  const char* material;     ///< more keys of it
+  const char* sections;     ///< more of the scene
+  const char* tissue = "";  ///< more lines of it
 };
+
+constexpr const char* kAttachedAndPressed =
+    "    attachments: [{where: [{plane: {point_m: [0.03, 0, 0], normal: [-1, 0, 0]}}], stiffness_pa_per_m: 1e5}]\n"
+    "    pressure_pa: 200\n";
 
 void PrintTo(const Case& value, std::ostream* out) { *out << value.name; }
 
@@ -68,7 +73,7 @@ class Allocation : public testing::TestWithParam<Case> {
     std::string block = blockScene("[0.06, 0.06, 0.02]", "[6, 6, 3]");
     const std::string key = "density_kg_per_m3: 1000";
     block.insert(block.find(key) + key.size(), GetParam().material);
-    return makeSimulator(block + "instruments:\n" + probeEntry("probe", "/js", "[0, 0, 0.0255]") +
+    return makeSimulator(block + GetParam().tissue + "instruments:\n" + probeEntry("probe", "/js", "[0, 0, 0.0255]") +
                          "friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}]\n" +
                          GetParam().sections);
   }
@@ -107,7 +112,8 @@ INSTANTIATE_TEST_SUITE_P(, Allocation,
                                          Case{"NeoHookean", ", model: neo_hookean", ""},                              //
                                          Case{"Linear", ", model: linear", ""},                                       //
                                          Case{"MassSpring", ", model: mass_spring", ""},                              //
-                                         Case{"NeverAsleep", "", "advisor: {sleep: never}\n"}),
+                                         Case{"NeverAsleep", "", "advisor: {sleep: never}\n"},
+                                         Case{"AttachedAndPressed", "", "", kAttachedAndPressed}),
                          [](const auto& one) { return std::string(one.param.name); });
 
 class AllocationAtRest : public Allocation {};
@@ -137,7 +143,8 @@ TEST_P(AllocationAtRest, NoneWhereNodesSleepAndWake) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, AllocationAtRest,
-                         testing::Values(Case{"Corotational", "", ""}, Case{"NeoHookean", ", model: neo_hookean", ""}),
+                         testing::Values(Case{"Corotational", "", ""}, Case{"NeoHookean", ", model: neo_hookean", ""},
+                                         Case{"AttachedAndPressed", "", "", kAttachedAndPressed}),
                          [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace

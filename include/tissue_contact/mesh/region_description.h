@@ -8,7 +8,7 @@
 
 namespace tissue_contact {
 
-/// Regions of the tissue frame T (boundaries included): where nodes are fixed, where a material applies.
+/// Regions of the tissue frame T (boundaries included): where nodes are held, where a material or pressure acts.
 struct BoxRegion {
   Vector3 min_m = Vector3::Zero();
   Vector3 max_m = Vector3::Zero();

@@ -23,7 +23,8 @@ Scene parseScene(const std::string& yaml, const std::string& file, const Package
 
 /// Every key the loader knows, by where its map stands, "[]" for any element of a list: "tissues[].material". Maps of joint
 /// names have free keys and are not among them; tissues[].pose also stands for instruments[].base_pose,
-/// tissues[].block.grading.x for y and z, tissues[].fixed[] for tissues[].regions[].where[].
+/// tissues[].block.grading.x for y and z, tissues[].fixed[] for tissues[].regions[].where[],
+/// tissues[].attachments[].where[] and tissues[].pressure_where[].
 const std::map<std::string, std::vector<std::string>>& sceneKeys();
 
 }  // namespace tissue_contact

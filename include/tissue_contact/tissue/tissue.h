@@ -1,6 +1,6 @@
 /// @file
 /// Room `tissue`: one tissue of a scene, placed in the world: mesh, surface, fixed nodes, regions, fibres, masses,
-/// elasticity.
+/// elasticity, attachments, pressure.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@ namespace tissue_contact {
 using MeshSizeCheck = std::function<void(std::size_t nodes, std::size_t elements)>;
 
 /// What a Tissue would refuse before it looks at its mesh. @throws EntryError of an entry of the tissue in a scene: a model
-/// that does not suit the geometry or differs between regions, a material or damping out of range.
+/// that does not suit the geometry or differs between regions, a material, damping, attachment or pressure out of range.
 void checkTissue(const TissueDescription& description);
 
 struct PlacedMesh;
@@ -30,7 +30,7 @@ class Tissue {
   /// @param X_WT pose of the tissue frame in the world (tf already looked up).
   /// @throws std::invalid_argument naming the tissue (and region) for: a bad mesh, a model that does not suit the
   /// geometry or differs between regions, a material, damping or fibre direction out of range, a fixed region that
-  /// holds no node, a material region that holds no element.
+  /// holds no node, a material region that holds no element, an attachment or pressure that would have no effect.
   /// @param on_size called once the mesh is known and before anything is built from it; may throw to refuse it.
   Tissue(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size = nullptr);
 
@@ -56,7 +56,15 @@ class Tissue {
   const VectorX& nodeMasses() const { return masses_; }  ///< kg, lumped: each element's mass in equal parts
   /// Rayleigh damping; stiffness_s is 0 where regions differ in it, the elasticity's state then has a damping matrix.
   const DampingDescription& damping() const { return damping_; }
-  const Elasticity& elasticity() const { return *elasticity_; }
+  const Elasticity& elasticity() const { return *elasticity_; }  ///< with the springs of attachments
+
+  /// Of all springs that attach free nodes, N/m, against a shift of the body; 0: no attachment.
+  double attachmentStiffness() const { return attachment_stiffness_; }
+
+  /// Adds the forces of the pressure on the surface as it is at positions x, N: of each triangle a third of p A times
+  /// its inward normal to each corner, which is exact for a pressure that is the same all over a flat triangle. On the
+  /// whole of a closed surface they have neither a resultant nor a moment. No allocation.
+  void addPressure(const NodalVectors& x, NodalVectors& forces) const;
 
  private:
   Tissue(const TissueDescription& description, PlacedMesh&& placed);
@@ -72,6 +80,9 @@ class Tissue {
   std::vector<int> surface_regions_;
   std::vector<Vector2> surface_fibres_;
   std::unique_ptr<const Elasticity> elasticity_;
+  double attachment_stiffness_ = 0.0;
+  double pressure_ = 0.0;          ///< Pa
+  std::vector<Triangle> pressed_;  ///< surface triangles that it acts on; none without a pressure
 };
 
 /// Mean length of the edges of the surfaces of `count` tissues at rest, m; 0 without any.

@@ -70,6 +70,11 @@ TEST_F(ListLimitsTest, OfPlaces) {
   const std::string regions = "    regions:\n      - {name: a, where: " + listOf(kSphere, 600) +
                               "}\n      - {name: b, where: " + listOf(kSphere, 600) + "}\n";
   expectRefusedAt(scene(regions, kLinks), "7: tissues[0].regions[1]", "have 1200 places");
+  const std::string attachments = "    attachments:\n      - {stiffness_n_per_m: 1, where: " + listOf(kSphere, 600) +
+                                  "}\n      - {stiffness_n_per_m: 1, where: " + listOf(kSphere, 600) + "}\n";
+  expectRefusedAt(scene(attachments, kLinks), "7: tissues[0].attachments[1]", "have 1200 places");
+  expectRefusedAt(scene("    pressure_pa: 1\n    pressure_where: " + listOf(kSphere, 1001) + "\n", kLinks),
+                  "6: tissues[0].pressure_where", "at most 1000 are allowed");
 }
 
 TEST_F(ListLimitsTest, OfPairs) {
