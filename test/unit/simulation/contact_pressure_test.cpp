@@ -59,14 +59,14 @@ struct Pressed {
   }
 
   /// A uniform pressure on the upper face by three contacts per triangle (exact for what is linear on it), with friction.
-  std::vector<SolvedContact> uniform(int tissue, double pressure, const Vector3& n) const {
+  std::vector<SolvedContact> uniform(int tissue, double pressure_pa, const Vector3& n) const {
     std::vector<SolvedContact> contacts;
     for (const Triangle& t : upperFaces(tissue)) {
       for (int i = 0; i < 3; ++i) {
         Vector3 weights = Vector3::Constant(1.0 / 6.0);
         weights[i] = 4.0 / 6.0;
         contacts.push_back(contactAt(tissue, t, weights, n));
-        contacts.back().force_on_tissue_n = pressure * areaOf(tissue, t) / 3.0 * (n + Vector3(0.4, 0.0, 0.0));
+        contacts.back().force_on_tissue_n = pressure_pa * areaOf(tissue, t) / 3.0 * (n + Vector3(0.4, 0.0, 0.0));
       }
     }
     return contacts;
