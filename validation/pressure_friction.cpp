@@ -164,21 +164,21 @@ Slide slideSphere(int cells, const std::string& table) {
           scene.finestCell()};
 }
 
-// At the contact's edge a node's area reaches beyond the contact: p is too small there, mu too large. The share of that rim
-// goes with the cells.
+// The contact's edge runs through cells, and mu is largest there. What area a node has there is a guess (contact_pressure.h),
+// which changes where the edge passes a node: 3 % of friction, 2 % from step to step.
 void sphereOnBlock(Report& report) {
   const char* const source = "Hertz, mu ~ p^(-1/3)";
   const Slide coarse = slideSphere(20, cubeRootTable());
   report.progress(0.6);
   const Slide fine = slideSphere(30, cubeRootTable());
-  report.near("sphere, 1.6 mm cells: Q / P", "", coarse.expected, coarse.ratio, 0.05 * coarse.expected, source);
+  report.near("sphere, 1.6 mm cells: Q / P", "", coarse.expected, coarse.ratio, 0.03 * coarse.expected, source);
   report.near("sphere, 1.0 mm cells: Q / P", "", fine.expected, fine.ratio, 0.03 * fine.expected, source);
   report.convergence({"sphere: Q / P over 9/8 mu(p0)",
                       "",
                       "finest cell, m",
                       {{coarse.cell, coarse.ratio / coarse.expected}, {fine.cell, fine.ratio / fine.expected}},
                       1.0});
-  report.atMost("sphere, 1.6 mm cells: change of Q / P from step to step", "", 5e-3, coarse.noise, "steady sliding");
+  report.atMost("sphere, 1.6 mm cells: change of Q / P from step to step", "", 0.02, coarse.noise, "steady sliding");
 }
 
 }  // namespace

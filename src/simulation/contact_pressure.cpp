@@ -69,19 +69,27 @@ double ContactPressure::onSide(int tissue, const std::array<int, 3>& nodes, cons
   return pressure;
 }
 
-/// A third of the triangles around a node, as seen along n; of a volume only of those that face what presses: at the rim
-/// of a face the sides do not count. m^2.
+/// A third of the triangles around a node, as seen along n, m^2; of a volume only of those that face what presses: at the
+/// rim of a face the sides do not count. The edge of the patch runs through triangles with a node that bears nothing:
+/// they count by the share of the node's two neighbours in them that bear some. A node whose neighbours bear nothing has
+/// them all in full.
 double ContactPressure::facingArea(int tissue, int node, const Vector3& n, const NodalVectors& x) const {
   const bool sheet = tissues_[tissue].thickness() > 0.0;
-  double area = 0.0;
+  const std::vector<int>& first_load = surfaces_[tissue].first_load;
+  double whole = 0.0;
+  double in_patch = 0.0;
   for (const int t : surfaces_[tissue].triangles_of_node[node]) {
     const Triangle& triangle = tissues_[tissue].surface()[t];
     const Vector3 first = x.col(triangle[1]) - x.col(triangle[0]);
     const Vector3 second = x.col(triangle[2]) - x.col(triangle[0]);
     const double facing = -0.5 * first.cross(second).dot(n);
-    area += std::max(sheet ? std::abs(facing) : facing, 0.0) / 3.0;
+    const double area = std::max(sheet ? std::abs(facing) : facing, 0.0) / 3.0;
+    whole += area;
+    for (const int other : triangle) {
+      if (other != node && first_load[other] >= 0) in_patch += 0.5 * area;
+    }
   }
-  return area;
+  return in_patch > 0.0 ? in_patch : whole;
 }
 
 }  // namespace tissue_contact

@@ -7,9 +7,11 @@
 /// normal forces f_j load node a by F_a = sum w_ja f_j, as a pressure p does that has F_a = p A_a with A_a a third of the
 /// triangles around it (the L2 projection of the contact forces with a lumped mass). At a contact i
 ///   p_i = sum w_ia F_a / A_a.
-/// Exact for a uniform pressure, whatever points carry it and in whatever order; sum p_a A_a is the force; the areas of a
-/// patch add up to its area and half a cell around it. Finer than a cell no pressure is resolved: a tip smaller than that
-/// presses on the area of a node.
+/// Exact for a uniform pressure on a whole face, whatever points carry it and in whatever order; sum p_a A_a is the force.
+/// At the edge of a patch A_a is cut (facingArea). Measured on a sphere that slides (validation, pressure-friction), with
+/// friction that goes with p^(-1/3): +0.5 and +1.4 %, 1.1 % noise from step to step, with 3 and 5 cells per contact radius.
+/// Tried: whole triangles (+7.5 and +5.4 %, 0.4 % noise), only those with three nodes that bear (-2.7 and -1.4 %, 2.1 %).
+/// Finer than a cell no pressure is resolved: a tip smaller than that presses on about the area of a triangle or two.
 #pragma once
 
 #include <array>

@@ -69,7 +69,8 @@ class Allocation : public testing::TestWithParam<Case> {
     const std::string key = "density_kg_per_m3: 1000";
     block.insert(block.find(key) + key.size(), GetParam().material);
     return makeSimulator(block + "instruments:\n" + probeEntry("probe", "/js", "[0, 0, 0.0255]") +
-                         "friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}]\n" +
+                         "friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4, "
+                         "pressures_pa: [0, 5000], pressure_factors: [1, 0.8]}]\n" +
                          GetParam().sections);
   }
 
