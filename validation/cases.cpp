@@ -24,6 +24,7 @@ const std::vector<ValidationCase>& validationCases() {
       {"layer-indentation", "F: sphere on a bonded layer", validateLayerIndentation},
       {"partial-slip", "G, H: a sphere is dragged; an annulus slides while the centre holds", validatePartialSlip},
       {"landing", "G, H: contacts that begin within a step slide only from then on", validateLanding},
+      {"pressure-friction", "mu(p): plate on a layer, slab on an incline, sphere by Hertz", validatePressureFriction},
       {"benchmark-block", "H, J: press force over meshes, equilibrium, determinism", validateBenchmarkBlock},
       {"coarse-press", "a deep press over coarse, fine and graded meshes: what they cost", validateCoarsePress},
       {"grasp", "jaws close on a flap, lift, hold, pull until it slips, open; mu_s >> mu_k too", validateGrasp},

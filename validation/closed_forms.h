@@ -21,6 +21,7 @@ void validateHeldAndPressed(Report& report);
 void validateLayerIndentation(Report& report);
 void validatePartialSlip(Report& report);
 void validateLanding(Report& report);
+void validatePressureFriction(Report& report);
 void validateBenchmarkBlock(Report& report);
 void validateCoarsePress(Report& report);
 void validateGrasp(Report& report);

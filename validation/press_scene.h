@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <sstream>
+#include <string>
 
 #include "support/text_scene.h"
 
@@ -18,6 +19,7 @@ struct PressScene {
   double poissons_ratio = 0.45;
   double radius_m = 0.04;
   double mu = 0.0;
+  std::string friction_keys;  ///< more of the rough sphere's entry in `friction`, each after a comma
   std::string dilatation = "patch";
   std::string solver = "{iterations: 150, tolerance: 1.0e-6}";
 
@@ -54,7 +56,7 @@ inline Simulator makePress(const PressScene& scene) {
          << " joint_state_topics: [/" << name << "], base_pose: {position_m: [0, 0, " << size.z() + scene.radius_m
          << "]}}\n";
   }
-  yaml << "friction:\n  - {instrument: rough, tissue: block, static: " << scene.mu << "}\n"
+  yaml << "friction:\n  - {instrument: rough, tissue: block, static: " << scene.mu << scene.friction_keys << "}\n"
        << "step: {max_step_s: " << kPressStep << "}\nsolver: " << scene.solver << "\n";
   Simulator simulator = makeSimulator(yaml.str(), {{"probe", probeUrdf(scene.radius_m)}});
   simulator.placeInstrument(1, Vector3(0.0, 0.0, 0.5));

@@ -80,6 +80,7 @@ Scene inUnits(Scene scene, const Units& units) {
   }
   for (FrictionDescription& friction : scene.friction) {
     for (double& speed : friction.law.speeds_m_per_s) speed *= units.length;
+    for (double& pressure : friction.law.pressures_pa) pressure *= units.mass / units.length;
   }
   return scene;
 }

@@ -135,6 +135,9 @@ void checkFrictionLaw(const FrictionLawDescription& law) {
   checkCount(what + "speed_factors", law.speed_factors.size(), law.speeds_m_per_s.size(), "one per speed");
   checkAscending(what, "speeds_m_per_s", law.speeds_m_per_s, FrictionLawDescription::kSpeeds);
   checkRange(what, "speed_factors", law.speed_factors, FrictionLawDescription::kSpeedFactors);
+  checkCount(what + "pressure_factors", law.pressure_factors.size(), law.pressures_pa.size(), "one per pressure");
+  checkAscending(what, "pressures_pa", law.pressures_pa, FrictionLawDescription::kPressures);
+  checkRange(what, "pressure_factors", law.pressure_factors, FrictionLawDescription::kPressureFactors);
 }
 
 }  // namespace tissue_contact

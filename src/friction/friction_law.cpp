@@ -167,6 +167,16 @@ Matrix2 lawAxes(const CoulombLaw& law) {
   return R_CL;
 }
 
+/// Of a table over a speed or pressure, linear in between, held beyond its ends; 1 without one.
+double factorAt(const std::vector<double>& table, const std::vector<double>& factors, double value) {
+  if (table.empty()) return 1.0;
+  const std::size_t after = std::upper_bound(table.begin(), table.end(), value) - table.begin();
+  if (after == 0) return factors.front();
+  if (after == table.size()) return factors.back();
+  const double share = (value - table[after - 1]) / (table[after] - table[after - 1]);
+  return (1.0 - share) * factors[after - 1] + share * factors[after];
+}
+
 EllipticFriction::Coefficients elliptic(const std::vector<double>& mu) {
   return mu.size() == 2 ? EllipticFriction::Coefficients{mu[0], mu[0], mu[1]}
                         : EllipticFriction::Coefficients{mu[0], mu[1], mu[2]};
@@ -192,13 +202,11 @@ std::unique_ptr<const AnisotropicFriction> makeAnisotropicFriction(const Frictio
 }
 
 double kineticFactor(const FrictionLawDescription& law, double speed_m_per_s) {
-  const std::vector<double>& speeds = law.speeds_m_per_s;
-  if (speeds.empty()) return 1.0;
-  const std::size_t after = std::upper_bound(speeds.begin(), speeds.end(), speed_m_per_s) - speeds.begin();
-  if (after == 0) return law.speed_factors.front();
-  if (after == speeds.size()) return law.speed_factors.back();
-  const double share = (speed_m_per_s - speeds[after - 1]) / (speeds[after] - speeds[after - 1]);
-  return (1.0 - share) * law.speed_factors[after - 1] + share * law.speed_factors[after];
+  return factorAt(law.speeds_m_per_s, law.speed_factors, speed_m_per_s);
+}
+
+double pressureFactor(const FrictionLawDescription& law, double pressure_pa) {
+  return factorAt(law.pressures_pa, law.pressure_factors, pressure_pa);
 }
 
 Vector2 kineticFriction(const CoulombLaw& law, const Vector2& direction) {
@@ -215,7 +223,7 @@ double frictionUse(const CoulombLaw& law, const Vector2& f, bool kinetic) {
     limit = kinetic ? law.mu_kinetic : law.mu_static;
   } else {
     use = law.anisotropic->use(lawAxes(law).transpose() * f, kinetic);
-    limit = kinetic ? law.kinetic_factor : 1.0;
+    limit = kinetic ? law.kinetic_factor : law.static_factor;
   }
   if (limit > 0.0) return use / limit;
   return use > 0.0 ? kInfinity : 0.0;

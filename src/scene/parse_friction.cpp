@@ -99,6 +99,16 @@ void parseSpeeds(const YamlMap& map, Law& law) {
               Law::kSpeedFactors);
 }
 
+void parsePressures(const YamlMap& map, Law& law) {
+  const YamlCursor* pressures = map.find("pressures_pa");
+  const YamlCursor* factors = map.find("pressure_factors");
+  if (pressures == nullptr && factors == nullptr) return;
+  law.pressures_pa = numbers(map.get("pressures_pa").list(2, kMaxTableEntries), Law::kPressures);
+  law.pressure_factors =
+      numbers(map.get("pressure_factors").tuple(law.pressures_pa.size(), "numbers, one for each of pressures_pa"),
+              Law::kPressureFactors);
+}
+
 Law parseLaw(const YamlMap& map) {
   Law law;
   if (const YamlCursor* value = map.find("law")) law.kind = value->choice(kFrictionLawNames);
@@ -112,6 +122,7 @@ Law parseLaw(const YamlMap& map) {
   law.kinetic_coefficients = kinetic == nullptr ? law.static_coefficients : parseCoefficients(*kinetic, law);
   parseAxis(map, law);
   parseSpeeds(map, law);
+  parsePressures(map, law);
   return law;
 }
 

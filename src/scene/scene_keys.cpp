@@ -75,7 +75,7 @@ const std::map<std::string, std::vector<std::string>>& sceneKeys() {
       {"tissue_pairs[]", {"tissue", "other"}},
       {"friction[]",
        {"instrument", "other_tissue", "link", "tissue", "region", "law", "static", "kinetic", "angles_rad", "axis",
-        "speeds_m_per_s", "speed_factors"}},
+        "speeds_m_per_s", "speed_factors", "pressures_pa", "pressure_factors"}},
       {"friction[].axis", {"link_direction"}},
       {"step", {"max_step_s", "max_gap_s", "joint_states", "max_lag_s"}},
       {"solver", {"method", "relaxation", "iterations", "contact_passes", "tolerance", "time_budget_s", "cone_sides"}},

@@ -195,18 +195,27 @@ Vector3 FrictionTable::axisOf(const Found& found, const Contact& contact, const 
          (along[0] * (p.col(nodes[1]) - p.col(nodes[0])) + along[1] * (p.col(nodes[2]) - p.col(nodes[0])));
 }
 
+bool FrictionTable::dependsOnPressure() const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [](const Entry& entry) { return !entry.numbers.pressures_pa.empty(); });
+}
+
 CoulombLaw FrictionTable::at(const Contact& contact, const std::vector<NodalVectors>& x,
-                             const std::vector<std::vector<Pose>>& X_WL, double sliding_speed) const {
+                             const std::vector<std::vector<Pose>>& X_WL, const ContactBefore& before) const {
   const Found found = find(contact, x);
   const Entry* entry = found.entry;
   if (entry == nullptr) return {};
   CoulombLaw law = entry->law;
-  const double factor = entry->numbers.speeds_m_per_s.empty() ? 1.0 : kineticFactor(entry->numbers, sliding_speed);
+  // One factor for both, so that static friction stays the larger one.
+  const double of_pressure = pressureFactor(entry->numbers, before.pressure);
+  const double of_both = of_pressure * kineticFactor(entry->numbers, before.sliding_speed);
   if (law.anisotropic == nullptr) {
-    law.mu_kinetic *= factor;
+    law.mu_static *= of_pressure;
+    law.mu_kinetic *= of_both;
     return law;
   }
-  law.kinetic_factor = factor;
+  law.static_factor = of_pressure;
+  law.kinetic_factor = of_both;
   // An axis along the normal has no direction in the contact plane: the frame's own t1 stands in.
   const Vector2 in_plane = contact.R_WC.rightCols<2>().transpose() * axisOf(found, contact, x, X_WL);
   const double length = in_plane.norm();

@@ -14,6 +14,12 @@
 
 namespace tissue_contact {
 
+/// What a contact was like at the end of the step before: for laws that depend on it. A new contact: zeros.
+struct ContactBefore {
+  double sliding_speed = 0.0;  ///< m/s
+  double pressure = 0.0;       ///< Pa
+};
+
 /// Const after construction. What a scene does not use (regions, fibres, anisotropic laws) is neither stored nor looked
 /// up.
 class FrictionTable {
@@ -25,10 +31,12 @@ class FrictionTable {
 
   /// @param x deformed positions per tissue, m.
   /// @param X_WL link poses per instrument.
-  /// @param sliding_speed of this contact in the step before, m/s (for laws that depend on it). The law's pointers live
-  ///   as long as this table. No allocation.
+  /// The law's pointers live as long as this table. No allocation.
   CoulombLaw at(const Contact& contact, const std::vector<NodalVectors>& x, const std::vector<std::vector<Pose>>& X_WL,
-                double sliding_speed) const;
+                const ContactBefore& before) const;
+
+  /// Whether any law asks for the pressure.
+  bool dependsOnPressure() const;
 
  private:
   struct Entry;

@@ -50,8 +50,15 @@ void sumImpulsesOn(int tissue, const std::vector<SolvedContact>& contacts, const
   }
 }
 
+StepContacts::StepContacts(const std::vector<Tissue>& tissues, const InstrumentMotion& motion,
+                           const FrictionTable& friction, double mean_edge_m)
+    : tissues_(tissues), motion_(motion), friction_(friction), mean_edge_m_(mean_edge_m) {
+  if (friction.dependsOnPressure()) pressure_.emplace(tissues);
+}
+
 void StepContacts::clear() {
   memory_.clear();
+  if (pressure_) pressure_->clear();
   contacts_.clear();
 }
 
@@ -87,8 +94,7 @@ void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, doubl
     ContactRow& row = rows[c];
     placeRow(before.contact, dt, row);
     row.was_sliding = before.state == ContactState::kKinetic;
-    const double sliding_speed = row.was_sliding && last_dt > 0.0 ? before.slip_W.norm() / last_dt : 0.0;
-    row.law = friction_.at(before.contact, x, motion_.startPoses(), sliding_speed);
+    row.law = friction_.at(before.contact, x, motion_.startPoses(), beforeOf(before, x, last_dt));
     u_besides_[c].setZero();
     if (before.state == ContactState::kStatic) {
       u_besides_[c] = -(R_WC.rightCols<2>().transpose() * before.slip_W) / back_time_s_;
@@ -98,6 +104,16 @@ void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, doubl
     solution.states[c] = before.state;
   }
   land(solution.v, dt, rows);
+}
+
+ContactBefore StepContacts::beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x,
+                                     double last_dt) const {
+  ContactBefore before;
+  if (inherited.state == ContactState::kKinetic && last_dt > 0.0) {
+    before.sliding_speed = inherited.slip_W.norm() / last_dt;
+  }
+  if (pressure_) before.pressure = pressure_->at(inherited.contact, x);
+  return before;
 }
 
 /// A contact that begins within the step slides from then on only: what it moved tangentially before it touched goes
@@ -174,6 +190,7 @@ void StepContacts::record(const std::vector<NodalVectors>& x, const ContactProbl
     solved.force_on_tissue_n = contact.R_WC * solution.impulses[c] / problem.dt_s;
   }
   memory_.remember(contacts_);
+  if (pressure_) pressure_->remember(contacts_);
 }
 
 /// Tangential way of a contact in this step, m, world frame; of a static one since it touched, with what earlier steps

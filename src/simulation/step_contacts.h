@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "simulation/contact_memory.h"
+#include "simulation/contact_pressure.h"
 #include "simulation/friction_table.h"
 #include "simulation/instrument_motion.h"
 #include "tissue_contact/contact/contact_detector.h"
@@ -36,8 +37,7 @@ class StepContacts {
  public:
   /// @param mean_edge_m of all tissue surfaces. The other arguments must outlive this.
   StepContacts(const std::vector<Tissue>& tissues, const InstrumentMotion& motion, const FrictionTable& friction,
-               double mean_edge_m)
-      : tissues_(tissues), motion_(motion), friction_(friction), mean_edge_m_(mean_edge_m) {}
+               double mean_edge_m);
 
   void clear();  ///< no contacts and no history
 
@@ -74,6 +74,7 @@ class StepContacts {
     double first_touch = 1.0;  ///< share of the step that is over then
   };
   void placeRow(const Contact& contact, double dt, ContactRow& row) const;
+  ContactBefore beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x, double last_dt) const;
   void land(const std::vector<NodalVectors>& v, double dt, std::vector<ContactRow>& rows);
   double& firstTouch(const ContactKey& key);
   Vector3 slipOf(std::size_t contact, const ContactProblem& problem, const ContactSolution& solution) const;
@@ -83,7 +84,8 @@ class StepContacts {
   const FrictionTable& friction_;
   const double mean_edge_m_;
   ContactMemory memory_;
-  std::vector<SolvedContact> contacts_;  ///< before the solve with what they inherit, after it with what was found
+  std::optional<ContactPressure> pressure_;  ///< only where friction depends on it
+  std::vector<SolvedContact> contacts_;      ///< before the solve with what they inherit, after it with what was found
   /// Per contact, what is in its row's u_tool besides the instrument's motion, contact plane, m/s: the way back of a
   /// held contact, or what a contact without a history slid before it touched; each contact has one of them or none.
   std::vector<Vector2> u_besides_;

@@ -56,9 +56,10 @@ namespace {
 /// Of one block that a probe presses and drags over, there and back.
 struct Case {
   const char* name;
-  const char* material;     ///< more keys of it
-  const char* sections;     ///< more of the scene
-  const char* tissue = "";  ///< more lines of it
+  const char* material;       ///< more keys of it
+  const char* sections;       ///< more of the scene
+  const char* tissue = "";    ///< more lines of it
+  const char* friction = "";  ///< more keys of it
 };
 
 constexpr const char* kAttachedAndPressed =
@@ -73,8 +74,11 @@ class Allocation : public testing::TestWithParam<Case> {
     std::string block = blockScene("[0.06, 0.06, 0.02]", "[6, 6, 3]");
     const std::string key = "density_kg_per_m3: 1000";
     block.insert(block.find(key) + key.size(), GetParam().material);
-    return makeSimulator(block + GetParam().tissue + "instruments:\n" + probeEntry("probe", "/js", "[0, 0, 0.0255]") +
-                         "friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}]\n" +
+    return makeSimulator(block + GetParam().tissue + "instruments:
+" + probeEntry("probe", "/js", "[0, 0, 0.0255]") +
+                         "friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4" +
+                         GetParam().friction + "}]
+" +
                          GetParam().sections);
   }
 
@@ -113,7 +117,10 @@ INSTANTIATE_TEST_SUITE_P(, Allocation,
                                          Case{"Linear", ", model: linear", ""},                                       //
                                          Case{"MassSpring", ", model: mass_spring", ""},                              //
                                          Case{"NeverAsleep", "", "advisor: {sleep: never}\n"},
-                                         Case{"AttachedAndPressed", "", "", kAttachedAndPressed}),
+                                         Case{"AttachedAndPressed", "", "", kAttachedAndPressed},
+                                         Case{"Viscoelastic", ", prony_series: [{modulus_ratio: 1, time_s: 0.1}]", ""},
+                                         Case{"FrictionOverPressure", "", "", "",
+                                              ", pressures_pa: [0, 5000], pressure_factors: [1, 0.8]"}),
                          [](const auto& one) { return std::string(one.param.name); });
 
 class AllocationAtRest : public Allocation {};
@@ -144,7 +151,10 @@ TEST_P(AllocationAtRest, NoneWhereNodesSleepAndWake) {
 
 INSTANTIATE_TEST_SUITE_P(, AllocationAtRest,
                          testing::Values(Case{"Corotational", "", ""}, Case{"NeoHookean", ", model: neo_hookean", ""},
-                                         Case{"AttachedAndPressed", "", "", kAttachedAndPressed}),
+                                         Case{"AttachedAndPressed", "", "", kAttachedAndPressed},
+                                         Case{"Viscoelastic", ", prony_series: [{modulus_ratio: 1, time_s: 0.1}]", ""},
+                                         Case{"FrictionOverPressure", "", "", "",
+                                              ", pressures_pa: [0, 5000], pressure_factors: [1, 0.8]"}),
                          [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace

@@ -279,6 +279,25 @@ TEST_P(FrictionProperty, KineticFactorMultipliesKineticCoefficients) {
   }
 }
 
+// Contact pressure: one factor on both is the same as a law with all its coefficients multiplied.
+TEST_P(FrictionProperty, FactorsOnBothMultiplyAllCoefficients) {
+  for (int sample = 0; sample < 2000; ++sample) {
+    FrictionLawDescription description = describe(GetParam(), random_, 1.0, 1.2);
+    const LawPointer plain = makeAnisotropicFriction(description);
+    CoulombLaw law = contactLaw(plain, random_.direction());
+    law.static_factor = law.kinetic_factor = random_.uniform(0.1, 2.0);
+    for (double& mu : description.static_coefficients) mu *= law.static_factor;
+    for (double& mu : description.kinetic_coefficients) mu *= law.static_factor;
+    const LawPointer scaled = makeAnisotropicFriction(description);
+    const Matrix3 W = random_.compliance(0.4);
+    const Vector3 q = random_.closing();
+    const ContactAnswer answer = solveAnisotropicContact(W, q, law, sample % 2 == 0);
+    const ContactAnswer expected = solveAnisotropicContact(W, q, contactLaw(scaled, law.axis), sample % 2 == 0);
+    ASSERT_EQ(answer.state, expected.state);
+    ASSERT_LE((answer.impulse - expected.impulse).norm(), 1e-10 * expected.impulse.norm());
+  }
+}
+
 // Far beyond what is physical: coefficients to 100, compliances of condition 1e6, hardly any closing velocity. The
 // answer stays finite and dissipates, so that its impulse is bounded: r'W r + r'q <= 0.
 TEST_P(FrictionProperty, ExtremeContactsStayBounded) {

@@ -19,7 +19,8 @@ struct CoulombLaw {
   double mu_kinetic = 0.0;                           ///< >= 0
   const AnisotropicFriction* anisotropic = nullptr;  ///< replaces both coefficients; see friction_law.h
   Vector2 axis = Vector2::UnitX();                   ///< anisotropic: unit, the law's axis 1 in (t1, t2)
-  double kinetic_factor = 1.0;                       ///< anisotropic: times its kinetic friction (Stribeck), 0 to 1
+  double static_factor = 1.0;   ///< anisotropic: times its static friction (contact pressure), >= 0
+  double kinetic_factor = 1.0;  ///< anisotropic: times its kinetic friction (pressure and speed), 0 to static_factor
 };
 
 /// Impulse in the contact frame (n, t1, t2), N s, acting on the tissue, and the state it belongs to.

@@ -48,12 +48,15 @@ class AnisotropicFriction {
 /// The law the numbers describe; null for an isotropic one (whose numbers are checked all the same).
 /// @throws std::invalid_argument naming the coefficient (by its key in scene files), its value and the allowed range: a
 /// wrong number of coefficients, one that is negative, above 1e6 or not finite, static below kinetic in any direction,
-/// a table whose angles do not ascend from 0 to below 2 pi, a tensor that would drive sliding, a speed table that does
-/// not ascend from 0 or whose factors leave 0 to 1.
+/// a table whose angles do not ascend from 0 to below 2 pi, a tensor that would drive sliding, a speed or pressure table
+/// that does not ascend from 0 or whose factors leave 0 to 1 (pressure: 0 to 10).
 std::unique_ptr<const AnisotropicFriction> makeAnisotropicFriction(const FrictionLawDescription& law);
 
 /// Stribeck factor of a law at a sliding speed (m/s): 1 without a table.
 double kineticFactor(const FrictionLawDescription& law, double speed_m_per_s);
+
+/// Factor of a law's static and kinetic friction at a contact pressure (Pa): 1 without a table.
+double pressureFactor(const FrictionLawDescription& law, double pressure_pa);
 
 /// Kinetic friction on the tissue per unit normal force, in (t1, t2), while u_t points along the unit vector
 /// `direction`; any law. A law may allow more than one where its limit is flat (see solveAnisotropicContact).

@@ -34,6 +34,8 @@ struct FrictionLawDescription {
   static constexpr Range kAngles{0.0, 6.283185307179586, "rad", "give radians, >= 0 and < 2 pi", false, true};
   static constexpr Range kSpeeds{0.0, 1000.0, "m/s"};
   static constexpr Range kSpeedFactors{0.0, 1.0, "", "kinetic friction must not exceed the static one"};
+  static constexpr Range kPressures{0.0, 1e9, "Pa"};
+  static constexpr Range kPressureFactors{0.0, 10.0};
 
   Kind kind = Kind::kIsotropic;
   std::vector<double> static_coefficients;   ///< nowhere below the kinetic ones
@@ -45,6 +47,10 @@ struct FrictionLawDescription {
   /// beyond the ends. Empty: 1 at every speed.
   std::vector<double> speeds_m_per_s;  ///< ascending, from 0
   std::vector<double> speed_factors;   ///< 0 to 1: kinetic friction never exceeds static
+  /// Static and kinetic coefficients are multiplied by a factor that depends on the contact pressure, linear in between,
+  /// held beyond the ends. Empty: 1 at every pressure.
+  std::vector<double> pressures_pa;      ///< ascending, from 0
+  std::vector<double> pressure_factors;  ///< 0 to 10: with coefficients of 1 they are the coefficients themselves
 };
 
 /// As scene files and messages have them.

@@ -133,6 +133,18 @@ TEST(FrictionLaw, StribeckTableIsLinearAndHeldBeyondItsEnds) {
   EXPECT_EQ(kineticFactor(law, 5.0), 0.8);
 }
 
+TEST(FrictionLaw, PressureTableIsLinearAndHeldBeyondItsEnds) {
+  FrictionLawDescription law = describe(Kind::kIsotropic, {0.5}, {0.5});
+  EXPECT_EQ(pressureFactor(law, 1e4), 1.0);
+  law.pressures_pa = {0.0, 1000.0, 5000.0};
+  law.pressure_factors = {2.0, 3.0, 1.0};
+  EXPECT_EQ(pressureFactor(law, 0.0), 2.0);
+  EXPECT_NEAR(pressureFactor(law, 250.0), 2.25, kRoundOff);
+  EXPECT_NEAR(pressureFactor(law, 4000.0), 1.5, kRoundOff);
+  EXPECT_EQ(pressureFactor(law, 5000.0), 1.0);
+  EXPECT_EQ(pressureFactor(law, 1e9), 1.0);
+}
+
 TEST(ContactPlaneFriction, IsotropicLawOpposesSliding) {
   const CoulombLaw law{0.6, 0.3};
   expectNear(kineticFriction(law, {0.6, 0.8}), {-0.18, -0.24});
@@ -160,6 +172,10 @@ TEST(ContactPlaneFriction, ForwardIsTheInstrumentMovingAlongAxis1) {
   EXPECT_NEAR(frictionUse(law, {0.0, 0.05}, true), 1.0, kRoundOff);
   law.kinetic_factor = 0.0;
   EXPECT_EQ(frictionUse(law, {0.0, 0.05}, true), kInfinity);
+  law.static_factor = 2.0;
+  EXPECT_NEAR(frictionUse(law, {0.0, 0.2}, false), 0.5, kRoundOff);
+  law.static_factor = 0.0;
+  EXPECT_EQ(frictionUse(law, {0.0, 0.2}, false), kInfinity);
 }
 
 struct BadLaw {
@@ -192,6 +208,8 @@ TEST(FrictionLaw, GoodLawsAreAccepted) {
     FrictionLawDescription law = goodLaw(kind);
     law.speeds_m_per_s = {0.0, 0.1};
     law.speed_factors = {1.0, 0.0};
+    law.pressures_pa = {0.0, 1e9};
+    law.pressure_factors = {10.0, 0.0};
     EXPECT_NO_THROW(makeAnisotropicFriction(law)) << static_cast<int>(kind);
   }
 }
@@ -321,7 +339,36 @@ INSTANTIATE_TEST_SUITE_P(
                  l.speed_factors = {kNan};
                },
                Kind::kAsymmetric,
-               {"speed_factors[0] is nan"}}),
+               {"speed_factors[0] is nan"}},
+        BadLaw{"PressuresAlone", [](Law& l) { l.pressures_pa = {0.0}; }, Kind::kTensor, {"pressure_factors has 0"}},
+        BadLaw{"PressuresNotFrom0",
+               [](Law& l) {
+                 l.pressures_pa = {600.0};
+                 l.pressure_factors = {1.0};
+               },
+               Kind::kIsotropic,
+               {"pressures_pa[0] is 600 Pa", "must be 0"}},
+        BadLaw{"PressuresDescend",
+               [](Law& l) {
+                 l.pressures_pa = {0.0, 200.0, 100.0};
+                 l.pressure_factors = {1.0, 1.0, 1.0};
+               },
+               Kind::kTable,
+               {"pressures_pa[2] is 100", "> 200"}},
+        BadLaw{"PressureFactorNegative",
+               [](Law& l) {
+                 l.pressures_pa = {0.0};
+                 l.pressure_factors = {-0.1};
+               },
+               Kind::kAsymmetric,
+               {"pressure_factors[0] is -0.1", ">= 0 and <= 10"}},
+        BadLaw{"PressureFactorNotANumber",
+               [](Law& l) {
+                 l.pressures_pa = {0.0};
+                 l.pressure_factors = {kNan};
+               },
+               Kind::kOrthotropic,
+               {"pressure_factors[0] is nan"}}),
     [](const testing::TestParamInfo<BadLaw>& bad) { return bad.param.name; });
 
 }  // namespace

@@ -31,7 +31,8 @@ friction:
   - {instrument: grasper, tissue: liver, region: scar, law: orthotropic, static: [0.6, 0.3], kinetic: [0.6, 0.2], axis: fibre}
   - {instrument: hook, tissue: bowel, region: band, law: tensor, static: [[0.5, 0.1], [-0.1, 0.3]], axis: fibre}
   - {instrument: hook, tissue: liver, law: table, angles_rad: [0, 1.5, 3], static: [0.4, 0.6, 0.5],
-     kinetic: [0.3, 0.3, 0.3], axis: {link_direction: [1, 0, 0]}, speeds_m_per_s: [0, 0.01, 0.1], speed_factors: [1, 0.8, 0.5]}
+     kinetic: [0.3, 0.3, 0.3], axis: {link_direction: [1, 0, 0]}, speeds_m_per_s: [0, 0.01, 0.1], speed_factors: [1, 0.8, 0.5],
+     pressures_pa: [0, 600, 2.0e+4], pressure_factors: [1.5, 1.2, 0.9]}
   - {other_tissue: bowel, tissue: liver, law: orthotropic, static: [0.2, 0.1], axis: fibre}
   - {other_tissue: bowel, tissue: bowel, static: 0.1, kinetic: 0.1}
 )";
@@ -69,6 +70,7 @@ TEST_F(SceneTest, FillsEachFrictionLaw) {
   EXPECT_EQ(isotropic.kinetic_coefficients, std::vector<double>{0.5}) << "kinetic: the static one";
   EXPECT_EQ(isotropic.axis, Law::Axis::kNone);
   EXPECT_TRUE(isotropic.speeds_m_per_s.empty());
+  EXPECT_TRUE(isotropic.pressures_pa.empty());
 
   const Law& asymmetric = friction.at(1).law;
   EXPECT_EQ(asymmetric.kind, Law::Kind::kAsymmetric);
@@ -94,6 +96,8 @@ TEST_F(SceneTest, FillsEachFrictionLaw) {
   EXPECT_EQ(table.kinetic_coefficients, (std::vector<double>{0.3, 0.3, 0.3}));
   EXPECT_EQ(table.speeds_m_per_s, (std::vector<double>{0, 0.01, 0.1}));
   EXPECT_EQ(table.speed_factors, (std::vector<double>{1, 0.8, 0.5}));
+  EXPECT_EQ(table.pressures_pa, (std::vector<double>{0, 600, 20000}));
+  EXPECT_EQ(table.pressure_factors, (std::vector<double>{1.5, 1.2, 0.9}));
 }
 
 TEST_F(SceneTest, LeavesTheTensorsLimitsToTheLaw) {
@@ -127,15 +131,15 @@ const BadScene kBadPairs[] = {
     {"instrument: grasper, tissue: liver, static: 0.5", "tissue: liver, static: 0.5", "20: friction[0]",
      "none of instrument, other_tissue is given"},
     {"{other_tissue: bowel, tissue: bowel", "{instrument: hook, other_tissue: bowel, tissue: bowel",
-     "28: friction[6].other_tissue", "cannot be given together with \"instrument\""},
-    {"{other_tissue: bowel, tissue: bowel", "{other_tissue: liver, tissue: liver", "28: friction[6].other_tissue",
+     "29: friction[6].other_tissue", "cannot be given together with \"instrument\""},
+    {"{other_tissue: bowel, tissue: bowel", "{other_tissue: liver, tissue: liver", "29: friction[6].other_tissue",
      "are not among tissue_pairs, so they never touch; add {tissue: liver, other: liver} there"},
-    {"{other_tissue: bowel, tissue: bowel", "{other_tissue: bowls, tissue: bowel", "28: friction[6].other_tissue",
+    {"{other_tissue: bowel, tissue: bowel", "{other_tissue: bowls, tissue: bowel", "29: friction[6].other_tissue",
      "did you mean \"bowel\"?"},
-    {"{other_tissue: bowel, tissue: bowel", "{other_tissue: liver, tissue: bowel", "28: friction[6]", "given twice"},
-    {"law: orthotropic, static: [0.2, 0.1]", "law: tensor, static: [[0.2, 0], [0, 0.1]]", "27: friction[5].law",
+    {"{other_tissue: bowel, tissue: bowel", "{other_tissue: liver, tissue: bowel", "29: friction[6]", "given twice"},
+    {"law: orthotropic, static: [0.2, 0.1]", "law: tensor, static: [[0.2, 0], [0, 0.1]]", "28: friction[5].law",
      "works for an instrument on a tissue only"},
-    {"{other_tissue: bowel, tissue: bowel", "{other_tissue: bowel, link: blade, tissue: bowel", "28: friction[6].link",
+    {"{other_tissue: bowel, tissue: bowel", "{other_tissue: bowel, link: blade, tissue: bowel", "29: friction[6].link",
      "is for pairs with an instrument only"},
     {"link: lower_jaw, tissue", "link: lower_jar, tissue", "21: friction[1].link",
      "unknown link \"lower_jar\"; did you mean \"lower_jaw\"? contact_links of grasper has upper_jaw, lower_jaw"},
@@ -211,9 +215,22 @@ const BadScene kBadLaws[] = {
     {"speed_factors: [1, 0.8, 0.5]", "speed_factors: [1, 0.8]", "26: friction[4].speed_factors",
      "one for each of speeds_m_per_s"},
     {"speed_factors: [1, 0.8, 0.5]", "speed_factors: [1, nan, 0.5]", "26: friction[4].speed_factors[1]", "is \"nan\""},
-    {"static: [0.2, 0.1], axis: fibre", "static: [0.2, 0.1], axis: {link_direction: [1, 0, 0]}", "27: friction[5].axis",
+    {"pressures_pa: [0, 600, 2.0e+4], ", "", "25: friction[4]", "required key \"pressures_pa\" is missing"},
+    {", pressure_factors: [1.5, 1.2, 0.9]", "", "25: friction[4]", "required key \"pressure_factors\" is missing"},
+    {"pressures_pa: [0, 600, 2.0e+4]", "pressures_pa: [600, 700, 2.0e+4]", "27: friction[4].pressures_pa[0]",
+     "it must be 0"},
+    {"pressures_pa: [0, 600, 2.0e+4]", "pressures_pa: [0, 600, 600]", "27: friction[4].pressures_pa[2]",
+     "not greater than the value before it"},
+    {"pressures_pa: [0, 600, 2.0e+4]", "pressures_pa: [0, 600, 2.0e+10]", "27: friction[4].pressures_pa[2]", "Pa"},
+    {"pressure_factors: [1.5, 1.2, 0.9]", "pressure_factors: [1.5, 11, 0.9]", "27: friction[4].pressure_factors[1]",
+     ">= 0 and <= 10"},
+    {"pressure_factors: [1.5, 1.2, 0.9]", "pressure_factors: [1.5, 1.2]", "27: friction[4].pressure_factors",
+     "one for each of pressures_pa"},
+    {"pressure_factors: [1.5, 1.2, 0.9]", "pressure_factors: [1.5, nan, 0.9]", "27: friction[4].pressure_factors[1]",
+     "is \"nan\""},
+    {"static: [0.2, 0.1], axis: fibre", "static: [0.2, 0.1], axis: {link_direction: [1, 0, 0]}", "28: friction[5].axis",
      "tissue against tissue has no link; it must be fibre"},
-    {"{other_tissue: bowel, tissue: liver, law", "{other_tissue: liver, tissue: bowel, law", "27: friction[5].axis",
+    {"{other_tissue: bowel, tissue: liver, law", "{other_tissue: liver, tissue: bowel, law", "28: friction[5].axis",
      "fibre direction, which is not given; add fibre_direction to the tissue"},
 };
 

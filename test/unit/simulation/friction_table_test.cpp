@@ -94,7 +94,7 @@ TEST(FrictionTable, MostSpecificEntryCountsInAnyOrder) {
       "  - {instrument: probe, link: tip, tissue: pad, static: 0.3}\n"
       "  - {instrument: probe, tissue: pad, region: scar, static: 0.2}\n");
   const auto mu = [&](double side, int link) {
-    return with.table.at(with.contactOn(side, link), with.x, with.X_WL, 0.0).mu_static;
+    return with.table.at(with.contactOn(side, link), with.x, with.X_WL, {}).mu_static;
   };
   EXPECT_EQ(mu(-1, 0), 0.1);
   EXPECT_EQ(mu(+1, 0), 0.2);
@@ -104,7 +104,7 @@ TEST(FrictionTable, MostSpecificEntryCountsInAnyOrder) {
 
 TEST(FrictionTable, PairsThatAreNotListedAreFrictionless) {
   const Table with("  - {instrument: probe, tissue: bed, static: 0.5}\n");
-  const CoulombLaw law = with.table.at(with.contactOn(1, 0), with.x, with.X_WL, 0.0);
+  const CoulombLaw law = with.table.at(with.contactOn(1, 0), with.x, with.X_WL, {});
   EXPECT_EQ(law.mu_static, 0.0);
   EXPECT_EQ(law.mu_kinetic, 0.0);
   EXPECT_EQ(law.anisotropic, nullptr);
@@ -115,11 +115,11 @@ TEST(FrictionTable, AxisTurnsWithTheLink) {
       "  - {instrument: probe, tissue: pad, law: orthotropic, static: [0.6, 0.2], axis: {link_direction: [1, 0, "
       "0]}}\n");
   const Contact contact = with.contactOn(1, 1);
-  EXPECT_LE((with.table.at(contact, with.x, with.X_WL, 0.0).axis - Vector2(1, 0)).norm(), 1e-15);
+  EXPECT_LE((with.table.at(contact, with.x, with.X_WL, {}).axis - Vector2(1, 0)).norm(), 1e-15);
   const int link = with.instruments[0].contactLinks()[1].link;
   with.X_WL[0][link].rotate(Eigen::AngleAxisd(0.5, Vector3::UnitZ()));
   // t2 = -y, so the turned axis (cos, sin, 0) is (cos, -sin) in the contact plane.
-  const CoulombLaw law = with.table.at(contact, with.x, with.X_WL, 0.0);
+  const CoulombLaw law = with.table.at(contact, with.x, with.X_WL, {});
   EXPECT_LE((law.axis - Vector2(std::cos(0.5), -std::sin(0.5))).norm(), 1e-15);
   ASSERT_NE(law.anisotropic, nullptr);
 }
@@ -127,10 +127,10 @@ TEST(FrictionTable, AxisTurnsWithTheLink) {
 TEST(FrictionTable, FibresAreCarriedByTheDeformation) {
   Table with("  - {instrument: probe, tissue: pad, law: orthotropic, static: [0.6, 0.2], axis: fibre}\n");
   const Contact contact = with.contactOn(1, 1);
-  EXPECT_LE((with.table.at(contact, with.x, with.X_WL, 0.0).axis - Vector2(0, -1)).norm(), 1e-12);
+  EXPECT_LE((with.table.at(contact, with.x, with.X_WL, {}).axis - Vector2(0, -1)).norm(), 1e-12);
   // Simple shear x += 0.75 y leans fibres along y over to (0.75, 1) / 1.25.
   with.x[0].row(0) += 0.75 * with.x[0].row(1);
-  EXPECT_LE((with.table.at(contact, with.x, with.X_WL, 0.0).axis - Vector2(0.6, -0.8)).norm(), 1e-12);
+  EXPECT_LE((with.table.at(contact, with.x, with.X_WL, {}).axis - Vector2(0.6, -0.8)).norm(), 1e-12);
 }
 
 /// A corner of the block is shared by three faces: the one the contact normal points into counts.
@@ -145,7 +145,7 @@ TEST(FrictionTable, VertexContactTakesTheFaceThatIsTouched) {
     Contact contact = with.contactOn(1, 1);  // n = -z, whichever of the corner's triangles it is reported with
     contact.nodes = t;
     contact.weights = Vector3::Unit(at - t.begin());
-    EXPECT_LE((with.table.at(contact, with.x, with.X_WL, 0.0).axis - Vector2(0, -1)).norm(), 1e-12);
+    EXPECT_LE((with.table.at(contact, with.x, with.X_WL, {}).axis - Vector2(0, -1)).norm(), 1e-12);
   }
 }
 
@@ -153,7 +153,7 @@ TEST(FrictionTable, StribeckFactorScalesKineticFrictionOnly) {
   const Table with(
       "  - {instrument: probe, tissue: pad, static: 0.5, kinetic: 0.4, speeds_m_per_s: [0, 0.1], speed_factors: [1, "
       "0.5]}\n");
-  const CoulombLaw law = with.table.at(with.contactOn(1, 0), with.x, with.X_WL, 0.05);
+  const CoulombLaw law = with.table.at(with.contactOn(1, 0), with.x, with.X_WL, {0.05, 0.0});
   EXPECT_EQ(law.mu_static, 0.5);
   EXPECT_NEAR(law.mu_kinetic, 0.3, 1e-15);
 }
@@ -163,16 +163,16 @@ TEST(FrictionTable, TissuesFindTheirEntryFromBothSides) {
   Contact named = with.contactOn(1, 0);
   named.key.instrument = -1;
   named.key.other_tissue = 1;
-  EXPECT_EQ(with.table.at(named, with.x, with.X_WL, 0.0).mu_static, 0.7);
+  EXPECT_EQ(with.table.at(named, with.x, with.X_WL, {}).mu_static, 0.7);
   Contact turned = named;
   std::swap(turned.key.tissue, turned.key.other_tissue);
   std::swap(turned.nodes, turned.other_nodes);
   std::swap(turned.weights, turned.other_weights);
   turned.R_WC.leftCols<2>() *= -1.0;
-  EXPECT_EQ(with.table.at(turned, with.x, with.X_WL, 0.0).mu_static, 0.7);
+  EXPECT_EQ(with.table.at(turned, with.x, with.X_WL, {}).mu_static, 0.7);
   Contact outside = with.contactOn(-1, 0);
   outside.key = named.key;
-  EXPECT_EQ(with.table.at(outside, with.x, with.X_WL, 0.0).mu_static, 0.0);
+  EXPECT_EQ(with.table.at(outside, with.x, with.X_WL, {}).mu_static, 0.0);
 }
 
 TEST(FrictionTable, RefusesALawThatWouldDriveSliding) {

@@ -99,6 +99,22 @@ INSTANTIATE_TEST_SUITE_P(OnTissue, Landing,
                                          Fall{true, "relaxation: cholesky, iterations: 500, tolerance: 1.0e-9"},
                                          Fall{true, "method: reference, iterations: 1000, tolerance: 1.0e-10"}));
 
+// Contacts begin with the friction at pressure 0 and have that of their pressure from the next step on: no jerk, no creep.
+TEST(LandingPressure, AHeldBlockStaysHeldWhenItsPressureCounts) {
+  Simulator simulator = makeFall(false, "static: 2, pressures_pa: [0, 2000], pressure_factors: [1, 0.5]",
+                                 "iterations: 500, tolerance: 1.0e-9");
+  land(simulator);
+  const Vector3 way = wayOfTheFace(simulator);
+  const double expected = kHeight * std::tan(kAngle);
+  EXPECT_NEAR(way.x(), expected, 0.005 * expected);
+  for (int k = 0; k < 20; ++k) step(simulator);
+  const Vector3 rested = wayOfTheFace(simulator);
+  EXPECT_NEAR(rested.x(), way.x(), 0.05 * expected);
+  EXPECT_EQ(simulator.report().kinetic_contacts, 0);
+  for (int k = 0; k < 100; ++k) step(simulator);
+  EXPECT_NEAR(wayOfTheFace(simulator).x(), rested.x(), 1e-5 * expected);
+}
+
 // What a kinetic contact hands on is how fast it slides, not how far it slid in the rest of the step that it had.
 TEST(LandingSpeed, FrictionThatDependsOnSpeedSeesTheSpeedAfterTheTouch) {
   Simulator simulator = makeFall(false, "static: 0.1, speeds_m_per_s: [0, 1], speed_factors: [1, 0]",
