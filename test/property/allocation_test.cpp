@@ -74,12 +74,9 @@ class Allocation : public testing::TestWithParam<Case> {
     std::string block = blockScene("[0.06, 0.06, 0.02]", "[6, 6, 3]");
     const std::string key = "density_kg_per_m3: 1000";
     block.insert(block.find(key) + key.size(), GetParam().material);
-    return makeSimulator(block + GetParam().tissue + "instruments:
-" + probeEntry("probe", "/js", "[0, 0, 0.0255]") +
+    return makeSimulator(block + GetParam().tissue + "instruments:\n" + probeEntry("probe", "/js", "[0, 0, 0.0255]") +
                          "friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4" +
-                         GetParam().friction + "}]
-" +
-                         GetParam().sections);
+                         GetParam().friction + "}]\n" + GetParam().sections);
   }
 
   /// @return steps that allocated.
