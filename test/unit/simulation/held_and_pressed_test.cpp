@@ -100,15 +100,17 @@ TEST(Attachment, AStiffBodySwingsAtTheFrequencyOfItsSprings) {
 
 TEST(Attachment, StiffnessDampingBrakesTheSpringsAsItDoesTheTissue) {
   // As a rigid body: m v' = -k u - beta k v, which with beta = 2 / omega is critically damped: no swing past the rest.
+  const std::string scene = kHeavy + kCholesky + kAwake;
   for (const bool by_region : {false, true}) {
-    std::string tissue = kOnEachNode + "    damping: {stiffness_s: 0.0283}\n";
+    std::string tissue = kOnEachNode;
+    tissue += "    damping: {stiffness_s: 0.0283}\n";
     if (by_region) {
       tissue +=
           "    regions: [{name: half, where: [{plane: {point_m: [0, 0, 0], normal: [1, 0, 0]}}], damping: "
           "{stiffness_s: "
           "0.001}}]\n";
     }
-    Simulator simulator = makeBlock(kStiff, tissue, kHeavy + kCholesky + kAwake);
+    Simulator simulator = makeBlock(kStiff, tissue, scene);
     const double mass = simulator.tissues()[0].nodeMasses().sum();
     const double rest = mass * kGravity / 120.0;
     double lowest = 0.0;
