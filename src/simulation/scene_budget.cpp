@@ -19,7 +19,11 @@ namespace {
 std::size_t bytesOf(const TissueDescription& tissue, std::size_t elements) {
   constexpr std::size_t kPerTriangle = 5200;     // bending couples twelve nodes; both sides are surface
   constexpr std::size_t kPerTetrahedron = 2000;  // corotational with patches; other models take less
-  return elements * (isMembrane(tissue) ? kPerTriangle : kPerTetrahedron);
+  constexpr std::size_t kPronySeries = 2200;     // a second set of elements, two matrices more
+  constexpr std::size_t kPerTerm = 100;
+  const std::size_t terms = tissue.material.prony_series.size();
+  const std::size_t relaxing = terms > 0 ? kPronySeries + kPerTerm * terms : 0;
+  return elements * (isMembrane(tissue) ? kPerTriangle : kPerTetrahedron + relaxing);
 }
 
 /// Of the Cholesky factor in the ordering used: measured on blocks of 1331 to 4096 and sheets of 2601 to 10 201 nodes,

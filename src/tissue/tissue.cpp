@@ -1,6 +1,7 @@
 #include "tissue_contact/tissue/tissue.h"
 
 #include <algorithm>
+#include <sstream>
 #include <stdexcept>
 
 #include "tissue/attached_elasticity.h"
@@ -85,6 +86,25 @@ void checkAttachment(const Attachment& attachment, const std::string& owner) {
   if (per_node != 0.0) requirePositive(owner + ": stiffness_n_per_m", per_node, "N/m");
 }
 
+double leastShearModulus(const TissueDescription& description) {
+  double least = lameParameters(description.material).mu;
+  for (const TissueRegion& region : description.regions) least = std::min(least, lameParameters(region.material).mu);
+  return least;
+}
+
+/// Of stresses linear in the strain the work of shrinking a body under p has no minimum beyond p = 2 mu (doc/method.md).
+void checkPressure(const TissueDescription& description) {
+  const ElasticModel model = description.material.model;
+  const double most = 2.0 * leastShearModulus(description);
+  if ((model != ElasticModel::kLinear && model != ElasticModel::kCorotational) || description.pressure_pa < most)
+    return;
+  std::ostringstream message;
+  message << tissueLabel(description) << ": pressure_pa is " << description.pressure_pa << " Pa, under which a "
+          << elasticModelName(model) << " tissue collapses from twice its shear modulus on, here " << most
+          << " Pa; give material.model neo_hookean, or less pressure";
+  throw EntryError("pressure_pa", message.str());
+}
+
 void checkLoads(const TissueDescription& description) {
   const std::string label = tissueLabel(description);
   for (std::size_t a = 0; a < description.attachments.size(); ++a) {
@@ -92,6 +112,7 @@ void checkLoads(const TissueDescription& description) {
             [&] { checkAttachment(description.attachments[a], label + ", attachment " + std::to_string(a)); });
   }
   atEntry("pressure_pa", [&] { requireFinite(label + ": pressure_pa", description.pressure_pa, "Pa"); });
+  checkPressure(description);
   if (description.pressure_where.empty() || description.pressure_pa != 0.0) return;
   throw EntryError("pressure_where",
                    label +

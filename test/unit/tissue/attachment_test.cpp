@@ -213,5 +213,21 @@ TEST(Pressure, RefusesWhatActsNowhere) {
   expectRefused(description, "pressure_where[1]", "holds no centroid of a surface triangle");
 }
 
+TEST(Pressure, OfTwiceTheShearModulusIsForNeoHookeanTissue) {
+  TissueDescription description = blockDescription();
+  for (const ElasticModel model : {ElasticModel::kLinear, ElasticModel::kCorotational, ElasticModel::kNeoHookean}) {
+    description.material.model = model;
+    const double limit = description.material.youngs_modulus_pa / (1.0 + description.material.poissons_ratio);
+    description.pressure_pa = 0.99 * limit;
+    EXPECT_NO_THROW(checkTissue(description));
+    description.pressure_pa = 1.01 * limit;
+    if (model == ElasticModel::kNeoHookean) {
+      EXPECT_NO_THROW(checkTissue(description));
+    } else {
+      EXPECT_THROW(checkTissue(description), EntryError);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tissue_contact
