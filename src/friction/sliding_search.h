@@ -122,7 +122,7 @@ class SlidingSearch {
   Trial bisect(Trial right, Trial left) const {
     constexpr int kMaxSteps = 60;  // from a fraction of a turn to round-off
     for (int step = 0; step < kMaxSteps; ++step) {
-      const Trial middle = tryAt((right.e + left.e).normalized());
+      Trial middle = tryAt((right.e + left.e).normalized());
       if (middle.found()) return middle;
       (middle.miss > 0.0 ? right : left) = middle;
     }

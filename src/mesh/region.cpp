@@ -46,7 +46,7 @@ void describe(const SphereRegion& sphere, std::ostream& out) {
   std::visit([&](const auto& shape) { describe(shape, message); }, region);
   message << ") holds no " << what << "; ";
   if (x.cols() > 0) {
-    message << "the mesh lies within (" << x.rowwise().minCoeff().transpose() << ") to ("
+    message << "all lie within (" << x.rowwise().minCoeff().transpose() << ") to ("
             << x.rowwise().maxCoeff().transpose() << ") m of the tissue frame: move or enlarge the region";
   } else {
     message << "the mesh has no nodes";

@@ -35,6 +35,11 @@ std::string modelLine(const Scene& scene, const TissueDescription& tissue) {
   line << "tissue " << quoted(tissue.name) << ": " << elasticModelName(tissue.material.model);
   if (!tissue.material.prony_series.empty()) {
     line << ", its stress relaxes by " << tissue.material.prony_series.size() << " terms, so that it never sleeps";
+    for (const PronyTerm& term : tissue.material.prony_series) {
+      if (term.time_s >= scene.step.max_step_s) continue;
+      line << "; the term of " << term.time_s << " s is faster than a step of " << scene.step.max_step_s
+           << " s and brakes too much: take smaller steps, or give it as damping.stiffness_s";
+    }
   } else if (tissue.material.model != ElasticModel::kCorotational) {
     line << ", as the scene says";
   } else if (scene.advisor.adapt_rotations && averages(tissue)) {

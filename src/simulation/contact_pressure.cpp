@@ -36,7 +36,7 @@ void ContactPressure::remember(const std::vector<SolvedContact>& contacts) {
 
 void ContactPressure::add(int tissue, const std::array<int, 3>& nodes, const Vector3& weights, const Vector3& force_W) {
   for (int i = 0; i < 3; ++i) {
-    if (weights[i] == 0.0) continue;
+    if (weights[i] == 0.0 || force_W.isZero(0.0)) continue;
     int& first = surfaces_[tissue].first_load[nodes[i]];
     loads_.push_back({tissue, nodes[i], weights[i] * force_W, first});
     first = static_cast<int>(loads_.size()) - 1;
@@ -58,15 +58,21 @@ double ContactPressure::onSide(int tissue, const std::array<int, 3>& nodes, cons
   double pressure = 0.0;
   for (int i = 0; i < 3; ++i) {
     if (weights[i] == 0.0) continue;
-    double force = 0.0;
-    for (int load = surfaces_[tissue].first_load[nodes[i]]; load >= 0; load = loads_[load].next) {
-      force += std::max(0.0, loads_[load].force_W.dot(n));
-    }
+    const double force = forceOn(tissue, nodes[i], n);
     if (!(force > 0.0)) continue;
     const double area = facingArea(tissue, nodes[i], n, x);
     if (area > 0.0) pressure += weights[i] * force / area;
   }
   return pressure;
+}
+
+/// What presses on a node along n, N.
+double ContactPressure::forceOn(int tissue, int node, const Vector3& n) const {
+  double force = 0.0;
+  for (int load = surfaces_[tissue].first_load[node]; load >= 0; load = loads_[load].next) {
+    force += std::max(0.0, loads_[load].force_W.dot(n));
+  }
+  return force;
 }
 
 /// A third of the triangles around a node, as seen along n, m^2; of a volume only of those that face what presses: at the
@@ -75,7 +81,6 @@ double ContactPressure::onSide(int tissue, const std::array<int, 3>& nodes, cons
 /// them all in full.
 double ContactPressure::facingArea(int tissue, int node, const Vector3& n, const NodalVectors& x) const {
   const bool sheet = tissues_[tissue].thickness() > 0.0;
-  const std::vector<int>& first_load = surfaces_[tissue].first_load;
   double whole = 0.0;
   double in_patch = 0.0;
   for (const int t : surfaces_[tissue].triangles_of_node[node]) {
@@ -86,7 +91,7 @@ double ContactPressure::facingArea(int tissue, int node, const Vector3& n, const
     const double area = std::max(sheet ? std::abs(facing) : facing, 0.0) / 3.0;
     whole += area;
     for (const int other : triangle) {
-      if (other != node && first_load[other] >= 0) in_patch += 0.5 * area;
+      if (other != node && forceOn(tissue, other, n) > 0.0) in_patch += 0.5 * area;
     }
   }
   return in_patch > 0.0 ? in_patch : whole;

@@ -10,12 +10,15 @@
 namespace tissue_contact {
 namespace {
 
+/// At once: before any of it relaxes.
 double largestModulus(const TissueDescription& description) {
   double largest = description.material.youngs_modulus_pa;
   for (const TissueRegion& region : description.regions) {
     largest = std::max(largest, region.material.youngs_modulus_pa);
   }
-  return largest;
+  double at_once = 1.0;
+  for (const PronyTerm& term : description.material.prony_series) at_once += term.modulus_ratio;
+  return at_once * largest;
 }
 
 std::vector<double> nodeAreas(const Tissue& tissue) {

@@ -16,13 +16,17 @@ MovingTissue::MovingTissue(const Scene& scene, const Tissue& tissue, NodalVector
 
 void MovingTissue::reset() {
   x_ = tissue_.restPositions();
+  elastic_state_.reset();
   stop();
 }
 
 void MovingTissue::stop() {
   v_.setZero(3, tissue_.nodeCount());
-  elastic_state_.reset();  // or else a large tissue would hold two for a moment
-  elastic_state_ = tissue_.elasticity().makeState();
+  // What a body remembers comes from positions alone: where they were still good, only the answer was not.
+  if (elastic_state_ && !(tissue_.elasticity().hasMemory() && loads_.allFinite())) {
+    elastic_state_.reset();  // or else a large tissue would hold two for a moment
+  }
+  if (!elastic_state_) elastic_state_ = tissue_.elasticity().makeState();
   elastic_state_->adapt_rotations = scene_.advisor.adapt_rotations;
   system_.K = &elastic_state_->stiffness;
   system_.D = elastic_state_->damping.rows() > 0 ? &elastic_state_->damping : nullptr;
@@ -75,7 +79,7 @@ double MovingTissue::allowedHeldForce(std::optional<double> pressing_n) const {
 void MovingTissue::move(double dt) {
   if (system_.asleep) return;
   x_ += dt * v_;
-  elastic_state_->elapsed_s += dt;
+  if (tissue_.elasticity().hasMemory()) elastic_state_->elapsed_s += dt;
 }
 
 void MovingTissue::fallAsleep(std::optional<double> pressing_n, const std::vector<int>& touched) {

@@ -30,7 +30,8 @@ class MovingTissue {
 
   /// Undeformed, at rest, awake.
   void reset();
-  /// At rest where it is, awake, with a fresh elastic state: what was not finite may have got into tangents.
+  /// At rest where it is, awake, with a fresh elastic state: what was not finite may have got into tangents. Bodies with memory
+  /// keep theirs.
   void stop();
 
   /// Ends a step of `dt`, s.

@@ -23,6 +23,7 @@ TissueSleep::TissueSleep(const std::vector<bool>& fixed, const BodySystem& body,
     ++free_nodes_;
     own_force_ += edge_m * body.K->diagonal[i].trace() / 3.0;
   }
+  own_force_ = std::max(0.0, own_force_ - edge_m * attachment_n_per_m);  // K has the springs of attachments in it
   if (free_nodes_ > 0) own_force_ /= free_nodes_;
   const bool any_fixed = free_nodes_ < static_cast<int>(fixed.size());
   may_drift_ = !any_fixed && attachment_n_per_m == 0.0;

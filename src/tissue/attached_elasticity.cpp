@@ -46,7 +46,7 @@ void AttachedElasticity::withoutSprings(AttachedState& state, const Work& work) 
   State& body = *state.body;
   body.adapt_rotations = state.adapt_rotations;
   body.step_s = state.step_s;
-  body.elapsed_s = std::exchange(state.elapsed_s, 0.0);
+  body.elapsed_s += std::exchange(state.elapsed_s, 0.0);
   putBack(springs_, state.stiffness0, state.stiffness);
   putBack(springs_, state.damping0, state.damping);
   std::swap(body.stiffness, state.stiffness);

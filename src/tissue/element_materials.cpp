@@ -2,6 +2,7 @@
 
 #include "core/name_table.h"
 #include "tissue_contact/core/check.h"
+#include "tissue_contact/core/entry_error.h"
 
 namespace tissue_contact {
 
@@ -25,9 +26,10 @@ LameParameters planeStressParameters(const MaterialDescription& material) {
 void checkMaterial(const MaterialDescription& material, const std::string& owner) {
   requirePositive(owner + "youngs_modulus_pa", material.youngs_modulus_pa, "Pa");
   MaterialDescription::kPoissonsRatio.require(owner + "poissons_ratio", material.poissons_ratio);
-  for (const PronyTerm& term : material.prony_series) {
-    PronyTerm::kModulusRatio.require(owner + "prony_series modulus_ratio", term.modulus_ratio);
-    PronyTerm::kTime.require(owner + "prony_series time_s", term.time_s);
+  for (std::size_t k = 0; k < material.prony_series.size(); ++k) {
+    const std::string term = owner + elementOf("prony_series", k);
+    PronyTerm::kModulusRatio.require(term + ".modulus_ratio", material.prony_series[k].modulus_ratio);
+    PronyTerm::kTime.require(term + ".time_s", material.prony_series[k].time_s);
   }
   requireFinite(owner + "bending_stiffness_n_m", material.bending_stiffness_n_m, "N m");
 }

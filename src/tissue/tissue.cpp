@@ -96,11 +96,17 @@ double leastShearModulus(const TissueDescription& description) {
 void checkPressure(const TissueDescription& description) {
   const ElasticModel model = description.material.model;
   const double most = 2.0 * leastShearModulus(description);
-  if ((model != ElasticModel::kLinear && model != ElasticModel::kCorotational) || description.pressure_pa < most)
-    return;
+  const bool is_free = description.fixed.empty() && description.attachments.empty();
   std::ostringstream message;
-  message << tissueLabel(description) << ": pressure_pa is " << description.pressure_pa << " Pa, under which a "
-          << elasticModelName(model) << " tissue collapses from twice its shear modulus on, here " << most
+  message << tissueLabel(description) << ": pressure_pa is " << description.pressure_pa << " Pa, under which a ";
+  if (model == ElasticModel::kLinear && is_free && description.pressure_pa != 0.0) {
+    message << "free body of the linear model tumbles, since its stress does not turn with it; give material.model "
+               "corotational, or hold it by fixed or attachments";
+    throw EntryError("pressure_pa", message.str());
+  }
+  const bool is_small_strain = model == ElasticModel::kLinear || model == ElasticModel::kCorotational;
+  if (!is_small_strain || !description.pressure_where.empty() || description.pressure_pa < most) return;
+  message << elasticModelName(model) << " tissue may collapse from twice its shear modulus on, here " << most
           << " Pa; give material.model neo_hookean, or less pressure";
   throw EntryError("pressure_pa", message.str());
 }
@@ -190,7 +196,9 @@ Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
       thickness_(placed.thickness),
       pressure_(description.pressure_pa) {
   ElementMaterials materials = elementMaterials(description, placed);
-  damping_.stiffness_s = takeUniformDamping(placed.elementCount(), materials);
+  // Springs are damped as the tissue, also where all its elements belong to regions that are damped otherwise.
+  const bool is_uniform = placed.springs.empty() || materials.dampingOf(0) == description.damping.stiffness_s;
+  damping_.stiffness_s = is_uniform ? takeUniformDamping(placed.elementCount(), materials) : 0.0;
   masses_ = lumpedMasses(placed, materials);
   if (placed.isVolume()) {
     elasticity_ = makeVolumeElasticity(placed.rest, placed.tetrahedra, placed.fixed, materials, placed.patch_of);

@@ -8,8 +8,10 @@
 /// which a step takes exactly for a strain that changes at a constant rate:
 ///   h_k <- exp(-dt/tau_k) h_k + (1 - exp(-dt/tau_k)) tau_k/dt (change of dev e).
 /// While the strain is held, G(t) = mu (1 + sum_k g_k exp(-t/tau_k)). An implicit step from x to x + dt v takes
-/// exp(-dt/tau_k) h_k(x) as the force, and as the stiffness that of the terms at once, mu g_k, whatever dt: too much by up to
-/// dt/(2 tau_k) of it, an error of first order in the step like that of implicit Euler itself, and on the stable side.
+/// exp(-dt/tau_k) h_k(x) as the force, and as the stiffness that of the terms at once, mu g_k, whatever dt. What h_k keeps of
+/// the step's strain is less, (1 - exp(-s))/s of it with s = dt/tau_k: for s small the step takes s/2 too much, an error of
+/// first order like that of implicit Euler itself, and on the stable side; for s large s times too much, so that a term much
+/// faster than the step brakes as a damping of mu g_k dt would in place of its own viscosity mu g_k tau_k.
 /// Source: Simo & Hughes, "Computational Inelasticity" (1998), section 10.3 and its recurrence; as an overstress on a relaxed
 /// body as in Govindjee & Reese 1997, here linear in the strain seen from the turned element.
 #pragma once

@@ -149,7 +149,6 @@ TEST_P(AllocationAtRest, NoneWhereNodesSleepAndWake) {
 INSTANTIATE_TEST_SUITE_P(, AllocationAtRest,
                          testing::Values(Case{"Corotational", "", ""}, Case{"NeoHookean", ", model: neo_hookean", ""},
                                          Case{"AttachedAndPressed", "", "", kAttachedAndPressed},
-                                         Case{"Viscoelastic", ", prony_series: [{modulus_ratio: 1, time_s: 0.1}]", ""},
                                          Case{"FrictionOverPressure", "", "", "",
                                               ", pressures_pa: [0, 5000], pressure_factors: [1, 0.8]"}),
                          [](const auto& one) { return std::string(one.param.name); });

@@ -39,6 +39,7 @@ TISSUE_CONTACT_INLINE DistanceGrid::Neighbours DistanceGrid::around(const Vector
   std::array<int, 3> middle{};
   std::array<double, 3> t{};
   for (int axis = 0; axis < 3; ++axis) {
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): not negative within box(), and lround() is a call
     middle[axis] = std::clamp(static_cast<int>(u[axis] + 0.5), 1, size[axis] - 2);
     t[axis] = u[axis] - middle[axis];
   }

@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "simulation/moving_tissue.h"
 #include "support/text_scene.h"
 
 namespace tissue_contact {
@@ -16,14 +17,14 @@ constexpr double kTime = 0.5;   // s
 
 /// A 5 mm ball over a block whose base is fixed, 0.1 mm above its middle at joints 0.
 Simulator makeScene(const std::string& model, double youngs_modulus_pa, double poissons_ratio,
-                    const std::string& more = "") {
+                    const std::string& more = "", const std::string& lines = "") {
   std::ostringstream yaml;
   yaml.precision(17);
   yaml << "tissues:\n  - name: block\n    block: {size_m: [0.06, 0.06, 0.02], cells: [8, 8, 4]}\n"
        << "    material: {model: " << model << ", youngs_modulus_pa: " << youngs_modulus_pa
        << ", poissons_ratio: " << poissons_ratio << ", density_kg_per_m3: 1000" << more << "}\n"
        << "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
-       << "instruments:\n  - name: probe\n    robot_description: probe\n    tip_link: tip\n"
+       << lines << "instruments:\n  - name: probe\n    robot_description: probe\n    tip_link: tip\n"
        << "    joint_state_topics: [/joint_states]\n    base_pose: {position_m: [0.001, 0.002, 0.0251]}\n"
        << "    contact_links: [tip]\n"
        << "friction:\n  - {instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}\n"
@@ -67,14 +68,70 @@ TEST_P(ViscoelasticPress, GoesFromTheModulusAtOnceToTheRelaxedOne) {
   EXPECT_NEAR(forces[1], relaxed, 0.01 * relaxed);
 }
 
-TEST(ViscoelasticPress, NeverSleepsAndSaysSo) {
+bool says(const Simulator& simulator, const std::string& text) {
+  for (const std::string& line : simulator.advice()) {
+    if (line.find(text) != std::string::npos) return true;
+  }
+  return false;
+}
+
+TEST(Viscoelastic, NeverSleepsAndSaysSo) {
+  for (const std::string& series : {std::string(), std::string(", prony_series: [{modulus_ratio: 1, time_s: 100}]")}) {
+    Simulator simulator = makeScene("corotational", kYoung, kPoisson, series);
+    EXPECT_EQ(says(simulator, "never sleeps"), !series.empty());
+    EXPECT_FALSE(says(simulator, "brakes too much"));
+    for (int k = 1; k <= 1000; ++k) simulator.advance(0.002, {Vector3(0.0, 0.0, 0.01)});
+    EXPECT_EQ(simulator.report().sleeping_nodes > 0, series.empty());
+  }
+  EXPECT_TRUE(says(makeScene("corotational", kYoung, kPoisson, ", prony_series: [{modulus_ratio: 1, time_s: 1e-3}]"),
+                   "brakes too much"));
+}
+
+std::vector<Vector3> wrenches(Simulator& simulator) {
+  std::vector<Vector3> forces;
+  for (int k = 1; k <= 100; ++k) {
+    simulator.advance(0.002, {Vector3(0.0, 0.0, -0.00015 * std::min(k, 10))});
+    forces.push_back(simulator.wrench(0).force);
+  }
+  return forces;
+}
+
+// Also around attachments, which pass times on, and with a damping matrix.
+TEST(Viscoelastic, AResetForgets) {
   Simulator simulator =
-      makeScene("corotational", kYoung, kPoisson, ", prony_series: [{modulus_ratio: 1, time_s: 100}]");
-  bool said = false;
-  for (const std::string& line : simulator.advice()) said = said || line.find("never sleeps") != std::string::npos;
-  EXPECT_TRUE(said);
-  for (int k = 1; k <= 1000; ++k) simulator.advance(0.002, {Vector3(0.0, 0.0, -0.001)});
-  EXPECT_EQ(simulator.report().sleeping_nodes, 0);
+      makeScene("corotational", kYoung, kPoisson, ", prony_series: [{modulus_ratio: 1, time_s: 0.05}]",
+                "    damping: {stiffness_s: 0.001}\n"
+                "    attachments: [{where: [{plane: {point_m: [0.03, 0, 0], normal: [-1, 0, 0]}}],"
+                " stiffness_pa_per_m: 1e4}]\n"
+                "    regions: [{name: half, where: [{box: {min_m: [-1, -1, -1], max_m: [0, 1, 1]}}],"
+                " damping: {stiffness_s: 0.003}}]\n");
+  const std::vector<Vector3> first = wrenches(simulator);
+  EXPECT_GT(first[10].z(), 1.3 * first[99].z()) << "nothing relaxed";
+  simulator.reset();
+  EXPECT_EQ(wrenches(simulator), first);
+}
+
+// What is thrown away is one answer, not what the tissue has gone through.
+TEST(Viscoelastic, ADiscardedStepDoesNotStartItsMemoryAnew) {
+  const Simulator simulator =
+      makeScene("corotational", kYoung, kPoisson, ", prony_series: [{modulus_ratio: 3, time_s: 0.1}]");
+  constexpr double kStep = 0.002;
+  NodalVectors x;
+  NodalVectors v;
+  BodySystem system;
+  MovingTissue tissue(simulator.scene(), simulator.tissues()[0], x, v, system);
+  x.row(0) += 0.1 * x.row(2);
+  tissue.assemble(kStep);
+  const double at_once = system.b.norm();
+  for (int k = 0; k < 500; ++k) {
+    tissue.move(kStep);
+    tissue.assemble(kStep);
+  }
+  const NodalVectors relaxed = system.b;
+  EXPECT_LT(relaxed.norm(), 0.5 * at_once);
+  tissue.stop();
+  tissue.assemble(kStep);
+  EXPECT_LT((system.b - relaxed).norm(), 1e-12 * relaxed.norm());
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ TEST(Attachment, RefusesWhatHoldsNothing) {
   refuse({{base()}, -1.0, 0.0}, "attachments[1]", "stiffness_pa_per_m is -1 Pa/m; it must be finite and > 0");
   refuse({{base()}, 0.0, nan}, "attachments[1]", "stiffness_n_per_m is nan N/m; it must be finite and > 0");
   refuse({{}, 0.0, 1.0}, "attachments[1].where", "has no region");
-  refuse({{base(), far}, 0.0, 1.0}, "attachments[1].where[1]", "holds no node; the mesh lies within");
+  refuse({{base(), far}, 0.0, 1.0}, "attachments[1].where[1]", "holds no node; all lie within");
   refuse({{point}, 1.0, 0.0}, "attachments[1].where[0]", "holds no centroid of a surface triangle");
   description.fixed = {base()};
   description.attachments = {{{base()}, 0.0, 1.0}};
@@ -215,6 +215,7 @@ TEST(Pressure, RefusesWhatActsNowhere) {
 
 TEST(Pressure, OfTwiceTheShearModulusIsForNeoHookeanTissue) {
   TissueDescription description = blockDescription();
+  description.fixed = {base()};
   for (const ElasticModel model : {ElasticModel::kLinear, ElasticModel::kCorotational, ElasticModel::kNeoHookean}) {
     description.material.model = model;
     const double limit = description.material.youngs_modulus_pa / (1.0 + description.material.poissons_ratio);
@@ -227,6 +228,15 @@ TEST(Pressure, OfTwiceTheShearModulusIsForNeoHookeanTissue) {
       EXPECT_THROW(checkTissue(description), EntryError);
     }
   }
+}
+
+TEST(Pressure, OnAFreeLinearBodyIsRefused) {
+  TissueDescription description = blockDescription();
+  description.material.model = ElasticModel::kLinear;
+  description.pressure_pa = 100.0;
+  EXPECT_THROW(checkTissue(description), EntryError);
+  description.attachments = {{{base()}, 1e5, 0.0}};
+  EXPECT_NO_THROW(checkTissue(description));
 }
 
 }  // namespace
