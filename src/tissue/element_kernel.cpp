@@ -18,6 +18,13 @@ TISSUE_CONTACT_INLINE void loadQuaternion(const RotationBatch& from, LaneQuatern
   load(from[3], q.z);
 }
 
+TISSUE_CONTACT_INLINE void storeQuaternion(const LaneQuaternion& q, RotationBatch& to) {
+  store(q.w, to[0]);
+  store(q.x, to[1]);
+  store(q.y, to[2]);
+  store(q.z, to[3]);
+}
+
 /// Rotation matrix of a quaternion of any length: exactly orthonormal up to round-off.
 TISSUE_CONTACT_INLINE void rotationMatrix(const LaneQuaternion& q, LaneMatrix& R) {
   const Lanes s = 2.0 / (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
@@ -107,6 +114,15 @@ TISSUE_CONTACT_INLINE void updateRotation(const LaneMatrix& F, LaneQuaternion& q
   rotateBack(R, F, S);
 }
 
+/// R P.
+TISSUE_CONTACT_INLINE void rotate(const LaneMatrix& R, const LaneMatrix& P, LaneMatrix& turned) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t r = 0; r < 3; ++r) {
+      turned.m[r + 3 * c] = R.m[r] * P.m[3 * c] + R.m[r + 3] * P.m[3 * c + 1] + R.m[r + 6] * P.m[3 * c + 2];
+    }
+  }
+}
+
 /// Adds the forces of stress P = 2 mu e + lambda tr(e) I, turned by R when there is one.
 template <typename Value>
 TISSUE_CONTACT_INLINE void addForces(const ElementBatch& batch, const Value& lambda, const Value& mu,
@@ -117,14 +133,12 @@ TISSUE_CONTACT_INLINE void addForces(const ElementBatch& batch, const Value& lam
     for (std::size_t r = 0; r < 3; ++r) P.m[r + 3 * c] = mu * (S.m[r + 3 * c] + S.m[c + 3 * r]);
     P.m[4 * c] += pressure - 2.0 * mu;
   }
-  LaneMatrix turned;
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t r = 0; r < 3; ++r) {
-      turned.m[r + 3 * c] = R == nullptr
-                                ? P.m[r + 3 * c]
-                                : R->m[r] * P.m[3 * c] + R->m[r + 3] * P.m[3 * c + 1] + R->m[r + 6] * P.m[3 * c + 2];
-    }
+  if (R == nullptr) {
+    addStressForces(batch, P, forces);
+    return;
   }
+  LaneMatrix turned;
+  rotate(*R, P, turned);
   addStressForces(batch, turned, forces);
 }
 
@@ -165,10 +179,7 @@ TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches
     material.get(b, lambda, mu);
     addForces(batches[b], lambda, mu, &R, S, forces);
     if (traces != nullptr) store(S.m[0] + S.m[4] + S.m[8], traces[b]);
-    store(q.w, rotations[b][0]);
-    store(q.x, rotations[b][1]);
-    store(q.y, rotations[b][2]);
-    store(q.z, rotations[b][3]);
+    storeQuaternion(q, rotations[b]);
     turned[b] = turnedLanes(q, t, tangent_angle);
   }
 }
@@ -238,10 +249,7 @@ TISSUE_CONTACT_INLINE void overstress(const std::vector<ElementBatch>& batches, 
       loadQuaternion(rotations[b], q);
       loadQuaternion(tangents[b], t);
       updateRotation(F, q, R, S);
-      store(q.w, rotations[b][0]);
-      store(q.x, rotations[b][1]);
-      store(q.y, rotations[b][2]);
-      store(q.z, rotations[b][3]);
+      storeQuaternion(q, rotations[b]);
       turned[b] = turnedLanes(q, t, tangent_angle);
     } else {
       S = F;
@@ -253,11 +261,7 @@ TISSUE_CONTACT_INLINE void overstress(const std::vector<ElementBatch>& batches, 
     for (std::size_t i = 0; i < 9; ++i) P.m[i] = 2.0 * mu * stress[kPlace[i]];
     if (turns) {
       LaneMatrix turned_stress;
-      for (std::size_t c = 0; c < 3; ++c) {
-        for (std::size_t r = 0; r < 3; ++r) {
-          turned_stress.m[r + 3 * c] = R.m[r] * P.m[3 * c] + R.m[r + 3] * P.m[3 * c + 1] + R.m[r + 6] * P.m[3 * c + 2];
-        }
-      }
+      rotate(R, P, turned_stress);
       P = turned_stress;
     }
     addStressForces(batches[b], P, forces);
