@@ -27,6 +27,7 @@ const std::vector<ValidationCase>& validationCases() {
       {"pressure-friction", "mu(p): plate on a layer, slab on an incline, sphere by Hertz", validatePressureFriction},
       {"benchmark-block", "H, J: press force over meshes, equilibrium, determinism", validateBenchmarkBlock},
       {"coarse-press", "a deep press over coarse, fine and graded meshes: what they cost", validateCoarsePress},
+      {"press-laws", "H and a deep press: linear, corotational and neo-Hookean tissue", validatePressLaws},
       {"grasp", "jaws close on a flap, lift, hold, pull until it slips, open; mu_s >> mu_k too", validateGrasp},
       {"invariances", "units, directions and the order of lists do not matter", validateInvariances},
       {"ploughing", "friction in contact frames, a slow press at any step, impulses over dt", validatePloughing},

@@ -24,6 +24,7 @@ void validateLanding(Report& report);
 void validatePressureFriction(Report& report);
 void validateBenchmarkBlock(Report& report);
 void validateCoarsePress(Report& report);
+void validatePressLaws(Report& report);
 void validateGrasp(Report& report);
 void validateInvariances(Report& report);
 void validatePloughing(Report& report);

@@ -1,5 +1,5 @@
 /// @file
-/// Room `validation`: a rigid sphere on a linear elastic block with its base fixed and cells that are smallest at the middle of its
+/// Room `validation`: a rigid sphere on an elastic block with its base fixed and cells that are smallest at the middle of its
 /// upper face, in quasi-static steps.
 #pragma once
 
@@ -20,7 +20,8 @@ struct PressScene {
   double radius_m = 0.04;
   double mu = 0.0;
   std::string friction_keys;  ///< more of the rough sphere's entry in `friction`, each after a comma
-  std::string dilatation = "patch";
+  std::string model = "linear";
+  std::string dilatation = "patch";  ///< empty: the model knows none
   std::string solver = "{iterations: 150, tolerance: 1.0e-6}";
 
   double shearModulus() const { return youngs_modulus_pa / (2.0 * (1.0 + poissons_ratio)); }
@@ -46,7 +47,8 @@ inline Simulator makePress(const PressScene& scene) {
        << "]\n      cells: [" << scene.cells[0] << ", " << scene.cells[1] << ", " << scene.cells[2]
        << "]\n      grading: {x: {growth: " << scene.growth << "}, y: {growth: " << scene.growth
        << "}, z: {growth: " << scene.growth << ", fine_at: maximum}}\n"
-       << "    material: {model: linear, dilatation: " << scene.dilatation
+       << "    material: {model: " << scene.model
+       << (scene.dilatation.empty() ? "" : ", dilatation: " + scene.dilatation)
        << ", youngs_modulus_pa: " << scene.youngs_modulus_pa << ", poissons_ratio: " << scene.poissons_ratio
        << ", density_kg_per_m3: 1000}\n"
        << "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"

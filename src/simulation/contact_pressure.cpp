@@ -36,7 +36,7 @@ void ContactPressure::remember(const std::vector<SolvedContact>& contacts) {
 
 void ContactPressure::add(int tissue, const std::array<int, 3>& nodes, const Vector3& weights, const Vector3& force_W) {
   for (int i = 0; i < 3; ++i) {
-    if (weights[i] == 0.0 || force_W.isZero(0.0)) continue;
+    if (weights[i] == 0.0) continue;
     int& first = surfaces_[tissue].first_load[nodes[i]];
     loads_.push_back({tissue, nodes[i], weights[i] * force_W, first});
     first = static_cast<int>(loads_.size()) - 1;
@@ -75,10 +75,20 @@ double ContactPressure::forceOn(int tissue, int node, const Vector3& n) const {
   return force;
 }
 
+/// Whether contacts act on a node, with or without a force: one that bears none still lies within the patch. Of a sheet those
+/// on this side; around the edges of a tool normals point all ways.
+bool ContactPressure::isTouchedFrom(int tissue, int node, const Vector3& n) const {
+  const bool sheet = tissues_[tissue].thickness() > 0.0;
+  for (int load = surfaces_[tissue].first_load[node]; load >= 0; load = loads_[load].next) {
+    if (!sheet || loads_[load].force_W.dot(n) >= 0.0) return true;
+  }
+  return false;
+}
+
 /// A third of the triangles around a node, as seen along n, m^2; of a volume only of those that face what presses: at the
-/// rim of a face the sides do not count. The edge of the patch runs through triangles with a node that bears nothing:
-/// they count by the share of the node's two neighbours in them that bear some. A node whose neighbours bear nothing has
-/// them all in full.
+/// rim of a face the sides do not count. The edge of the patch runs through triangles with a node that nothing touches:
+/// they count by the share of the node's two neighbours in them that are touched. A node whose neighbours are not has them
+/// all in full.
 double ContactPressure::facingArea(int tissue, int node, const Vector3& n, const NodalVectors& x) const {
   const bool sheet = tissues_[tissue].thickness() > 0.0;
   double whole = 0.0;
@@ -91,7 +101,7 @@ double ContactPressure::facingArea(int tissue, int node, const Vector3& n, const
     const double area = std::max(sheet ? std::abs(facing) : facing, 0.0) / 3.0;
     whole += area;
     for (const int other : triangle) {
-      if (other != node && forceOn(tissue, other, n) > 0.0) in_patch += 0.5 * area;
+      if (other != node && isTouchedFrom(tissue, other, n)) in_patch += 0.5 * area;
     }
   }
   return in_patch > 0.0 ? in_patch : whole;

@@ -57,6 +57,7 @@ class ContactPressure {
   double onSide(int tissue, const std::array<int, 3>& nodes, const Vector3& weights, const Vector3& n,
                 const NodalVectors& x) const;
   double forceOn(int tissue, int node, const Vector3& n) const;
+  bool isTouchedFrom(int tissue, int node, const Vector3& n) const;
   double facingArea(int tissue, int node, const Vector3& n, const NodalVectors& x) const;
 
   const std::vector<Tissue>& tissues_;
