@@ -208,7 +208,7 @@ TISSUE_CONTACT_INLINE void linear(const std::vector<ElementBatch>& batches, Batc
 
 TISSUE_CONTACT_INLINE void deviator(const LaneMatrix& S, Lanes* d) {
   const Lanes mean = (S.m[0] + S.m[4] + S.m[8]) * (1.0 / 3.0);
-  for (int i = 0; i < 3; ++i) d[i] = S.m[4 * i] - mean;
+  for (std::size_t i = 0; i < 3; ++i) d[i] = S.m[4 * i] - mean;
   d[3] = 0.5 * (S.m[1] + S.m[3]);
   d[4] = 0.5 * (S.m[5] + S.m[7]);
   d[5] = 0.5 * (S.m[2] + S.m[6]);
