@@ -268,6 +268,7 @@ class Live(harness.TestCase):
             self.assertEqual(message.status[0].level > faults.OK, lag > 0.02 or "lengthened" in message.status[0].message,
                              message)
 
+    @unittest.skipIf(harness.SLOWNESS > 1.0, "a slow build does not keep up")
     def test_both_policies_agree_where_the_machine_keeps_up(self):
         forces = {}
         for policy in ["every_state", "newest_state"]:
