@@ -88,7 +88,8 @@ class FaultsConnections(harness.TestCase):
             for subscriber in stalled:
                 subscriber.close()
             counts = faults.counts_at_the_end(process)
-        self.assertLess(grown_mb, 20.0)  # its own queues and those of the system's buffers; 10000 wrenches are 2 MB
+        if harness.SLOWNESS == 1.0:  # the address sanitizer keeps 256 MB of what was freed
+            self.assertLess(grown_mb, 20.0)  # its own queues and those of the system's buffers; 10000 wrenches are 2 MB
         self.assertEqual([w.header.stamp for w in everything], [stamp for stamp, _ in samples])
         self.assertEqual([w.header.stamp for w in late], [stamp for stamp, _ in samples])
         self.assertEqual((counts["received"], counts["wrenches"]), (len(samples), len(samples)))
