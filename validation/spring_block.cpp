@@ -86,7 +86,7 @@ void midpointRuleIsSecondOrder(Report& report) {
 /// @param on_table else nothing touches it.
 Simulator makeStrip(const std::string& damping, const std::string& region_damping, bool on_table) {
   std::ostringstream yaml;
-  yaml << "gravity_m_per_s2: [" << -kStart * kStiffness / kMass << ", 0, " << -kGravity << "]\n"
+  yaml << "gravity_m_per_s2: [" << -kStart * kStiffness / kMass << ", 0, " << (on_table ? -kGravity : 0.0) << "]\n"
        << "tissues:\n  - name: strip\n    sheet: {size_m: [1.1, 0.1], cells: [11, 1], thickness_m: 0.001}\n"
        << "    material: {youngs_modulus_pa: 1.0e6, poissons_ratio: 0, density_kg_per_m3: 1, bending_stiffness_n_m: "
           "0}\n"
