@@ -1,10 +1,12 @@
 /// Form C: a block of 1 kg on a spring of 100 N/m with friction 0.3, let go at 0.1 m: loses 0.05886 m per half swing
 /// and stops at -0.01772 m after 0.6283 s. As a scene (a strip as the spring, its heavy end as the block, tilted
 /// gravity in place of the initial displacement), stepped by implicit Euler; and at the solver, with the midpoint rule
-/// in place of it.
+/// in place of it. Without friction, but damped, the strip's free swing.
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "support/text_scene.h"
 #include "validation/closed_forms.h"
@@ -80,40 +82,45 @@ void midpointRuleIsSecondOrder(Report& report) {
 /// A strip of 1 m and 100 N/m, fixed at its right end; at its left one a stiff cell of 0.1 m and 1 kg. Gravity has a
 /// component of 10 m/s^2 along the strip, which moves the place where the spring is free by 0.1 m. The strip weighs 0.1
 /// g, whose own sag is 5 um; with 1 g it is 50 um, 0.3 % of what is looked for.
-Simulator makeStrip() {
+/// @param damping of the strip, and the same with another value for the region of the block; may be empty.
+/// @param on_table else nothing touches it.
+Simulator makeStrip(const std::string& damping, const std::string& region_damping, bool on_table) {
   std::ostringstream yaml;
-  yaml << "gravity_m_per_s2: [" << -kStart * kStiffness / kMass << ", 0, " << -kGravity << "]\n"
+  yaml << "gravity_m_per_s2: [" << -kStart * kStiffness / kMass << ", 0, " << (on_table ? -kGravity : 0.0) << "]\n"
        << "tissues:\n  - name: strip\n    sheet: {size_m: [1.1, 0.1], cells: [11, 1], thickness_m: 0.001}\n"
        << "    material: {youngs_modulus_pa: 1.0e6, poissons_ratio: 0, density_kg_per_m3: 1, bending_stiffness_n_m: "
           "0}\n"
        << "    regions: [{name: block, where: [{box: {min_m: [-0.55, -1, -1], max_m: [-0.45, 1, 1]}}],"
-       << " material: {youngs_modulus_pa: 1.0e9, density_kg_per_m3: 1.0e5}}]\n"
-       << "    fixed: [{plane: {point_m: [0.55, 0, 0], normal: [-1, 0, 0]}}]\n"
-       << "instruments:\n  - {name: table, robot_description: table, tip_link: table, contact_links: [table],"
+       << " material: {youngs_modulus_pa: 1.0e9, density_kg_per_m3: 1.0e5}" << region_damping << "}]\n"
+       << damping << "    fixed: [{plane: {point_m: [0.55, 0, 0], normal: [-1, 0, 0]}}]\n"
+       << "step: {max_step_s: 0.01}\nsolver: {relaxation: cholesky, iterations: 200, tolerance: 1.0e-9}\n";
+  if (!on_table) return makeSimulator(yaml.str() + "instruments: []\n", {});
+  yaml << "instruments:\n  - {name: table, robot_description: table, tip_link: table, contact_links: [table],"
        << " base_pose: {position_m: [0, 0, -0.0005]}}\n"
-       << "friction:\n  - {instrument: table, tissue: strip, static: " << kMu << "}\n"
-       << "step: {max_step_s: 0.002}\nsolver: {relaxation: cholesky, iterations: 200, tolerance: 1.0e-9}\n";
+       << "friction:\n  - {instrument: table, tissue: strip, static: " << kMu << "}\n";
   return makeSimulator(yaml.str(), {{"table", tableUrdf()}});
 }
 
-Motion swingScene(double dt) {
-  Simulator simulator = makeStrip();
+/// Mean displacement of the block's four nodes; what the strip weighs beside them is 0.01 %.
+double displacement(const Simulator& simulator) {
   const NodalVectors& rest = simulator.tissues()[0].restPositions();
   const VectorX& masses = simulator.tissues()[0].nodeMasses();
-  const auto displacement = [&] {  // of the block's four nodes; what the strip weighs beside them is 0.01 %
-    double sum = 0.0;
-    double mass = 0.0;
-    for (Eigen::Index i = 0; i < rest.cols(); ++i) {
-      if (rest(0, i) > -0.44) continue;
-      sum += masses[i] * (simulator.positions(0)(0, i) - rest(0, i));
-      mass += masses[i];
-    }
-    return sum / mass;
-  };
+  double sum = 0.0;
+  double mass = 0.0;
+  for (Eigen::Index i = 0; i < rest.cols(); ++i) {
+    if (rest(0, i) > -0.44) continue;
+    sum += masses[i] * (simulator.positions(0)(0, i) - rest(0, i));
+    mass += masses[i];
+  }
+  return sum / mass;
+}
+
+Motion swingScene(double dt) {
+  Simulator simulator = makeStrip("", "", true);
   Motion motion;
   for (int k = 1; k <= static_cast<int>(std::lround(1.0 / dt)); ++k) {
     simulator.advance(dt, {VectorX()});
-    motion.rest_m = displacement() + kStart;
+    motion.rest_m = displacement(simulator) + kStart;
     motion.first_turn_m = std::min(motion.first_turn_m, motion.rest_m);
     if (simulator.report().kinetic_contacts > 0) motion.time_s = k * dt;
   }
@@ -156,12 +163,51 @@ void sceneConvergesToTheSameRest(Report& report) {
               "implicit Euler of a point mass");
 }
 
+// ---- the same spring without friction, but damped
+// ---------------------------------------------------------------------------
+
+constexpr double kBeta = 0.01;  // s: zeta = beta omega / 2 = 0.05
+
+/// How far it swings beyond the middle at the fifth turn, as a share of that at the first.
+double shareLeft(double dt, const std::string& region_damping) {
+  Simulator simulator = makeStrip("    damping: {stiffness_s: " + std::to_string(kBeta) + "}\n", region_damping, false);
+  std::vector<double> turns;
+  double before = 0.0;
+  double last = 0.0;
+  while (turns.size() < 5 && simulator.stepCount() * dt < 3.0) {
+    simulator.advance(dt, {});
+    const double now = displacement(simulator);
+    if ((last - before) * (now - last) < 0.0) turns.push_back(last + kStart);
+    before = last;
+    last = now;
+  }
+  return turns.size() == 5 ? std::abs(turns[4] / turns[0]) : 0.0;
+}
+
+// A swing of x'' + beta omega^2 x' + omega^2 x = 0 shrinks by exp(-pi zeta / sqrt(1 - zeta^2)) from turn to turn. With a
+// damping of dt more, as implicit Euler has it, 0.53 would be 0.44 at 3 ms and 0.28 at 10 ms. Allowed: beta omega^2 dt / 4
+// of the exponent is left (0.3 % at 10 ms), and a turn is found to half a step, (omega dt)^2 / 8 (0.1 %).
+void freeSwingIsDampedByTheMaterialAlone(Report& report) {
+  const double zeta = 0.5 * kBeta * kOmega;
+  const double expected = std::exp(-4.0 * M_PI * zeta / std::sqrt(1.0 - zeta * zeta));
+  const std::string other = ", damping: {stiffness_s: 0.012}";  // the block does not deform: only the matrix D is used
+  for (const double dt : {0.01, 0.005, 0.003, 0.001}) {
+    std::ostringstream name;
+    name << "free swing, beta 10 ms, dt " << 1e3 * dt << " ms: ";
+    report.near(name.str() + "fifth turn / first", "", expected, shareLeft(dt, ""), 0.01 * expected,
+                "x'' + beta omega^2 x' + omega^2 x = 0");
+    report.near(name.str() + "the same with a damping matrix", "", expected, shareLeft(dt, other), 0.01 * expected,
+                "same");
+  }
+}
+
 }  // namespace
 
 void validateSpringBlock(Report& report) {
   checkMotion(report, "midpoint rule, 1 ms", swingWithMidpointRule(0.001));
   midpointRuleIsSecondOrder(report);
   sceneConvergesToTheSameRest(report);
+  freeSwingIsDampedByTheMaterialAlone(report);
 }
 
 }  // namespace tissue_contact

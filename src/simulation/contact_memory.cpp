@@ -1,6 +1,7 @@
 #include "simulation/contact_memory.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace tissue_contact {
 namespace {
@@ -94,7 +95,7 @@ void ContactMemory::giveSlots(const Contact* fresh, std::size_t first, std::size
   }
 }
 
-void ContactMemory::recall(const std::vector<Contact>& contacts, double reach_m,
+void ContactMemory::recall(const std::vector<Contact>& contacts, const std::vector<double>& reach_m,
                            std::vector<SolvedContact>& inherited) {
   inherited.resize(contacts.size());
   continued_.assign(remembered_.size(), false);
@@ -110,7 +111,7 @@ void ContactMemory::recall(const std::vector<Contact>& contacts, double reach_m,
       unmatched_.push_back(c);
     }
   }
-  for (const std::size_t c : unmatched_) inheritNearest(reach_m, inherited[c]);
+  inheritNearest(reach_m, inherited);
 }
 
 void ContactMemory::inherit(std::size_t old, SolvedContact& contact) {
@@ -120,19 +121,25 @@ void ContactMemory::inherit(std::size_t old, SolvedContact& contact) {
   contact.slip_W = remembered_[old].slip_W;
 }
 
-void ContactMemory::inheritNearest(double reach_m, SolvedContact& contact) {
-  std::size_t nearest = remembered_.size();
-  double best = reach_m * reach_m;
-  for (std::size_t old = 0; old < remembered_.size(); ++old) {
-    const Contact& before = remembered_[old].contact;
-    if (continued_[old] || !sameShapes(before.key, contact.contact.key)) continue;
-    const double squared = (before.p_WC - contact.contact.p_WC).squaredNorm();
-    if (squared < best) {
-      best = squared;
-      nearest = old;
+void ContactMemory::inheritNearest(const std::vector<double>& reach_m, std::vector<SolvedContact>& inherited) {
+  candidates_.clear();
+  for (const std::size_t c : unmatched_) {
+    const Contact& contact = inherited[c].contact;
+    for (std::size_t old = 0; old < remembered_.size(); ++old) {
+      const Contact& before = remembered_[old].contact;
+      if (continued_[old] || !sameShapes(before.key, contact.key)) continue;
+      const double squared = (before.p_WC - contact.p_WC).squaredNorm();
+      if (squared < reach_m[c] * reach_m[c]) candidates_.push_back({squared, c, old});
     }
   }
-  if (nearest < remembered_.size()) inherit(nearest, contact);
+  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+    return std::tie(a.squared_m2, a.contact, a.old) < std::tie(b.squared_m2, b.contact, b.old);
+  });
+  for (const Candidate& pair : candidates_) {
+    if (!continued_[pair.old] && inherited[pair.contact].state == ContactState::kOpen) {
+      inherit(pair.old, inherited[pair.contact]);
+    }
+  }
 }
 
 }  // namespace tissue_contact

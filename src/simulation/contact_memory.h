@@ -31,10 +31,12 @@ class ContactMemory {
                      const std::vector<std::vector<Pose>>& X_WL, double margin_m, std::vector<Contact>& contacts);
 
   /// Finds for each contact the one it continues: the same key, else the nearest contact of the same shape and tissue
-  /// that no other contact continues, if it is no farther than `reach_m` (a contact sliding onto the next triangle).
-  /// Each old contact is continued at most once.
+  /// that no other contact continues, if it is no farther than its `reach_m` (a contact sliding onto the next triangle).
+  /// Each old contact is continued at most once: of all pairs the nearest first, whatever their order.
+  /// @param reach_m per contact.
   /// @param inherited overwritten: each contact with force, state and slip of the one it continues; no match: open, 0.
-  void recall(const std::vector<Contact>& contacts, double reach_m, std::vector<SolvedContact>& inherited);
+  void recall(const std::vector<Contact>& contacts, const std::vector<double>& reach_m,
+              std::vector<SolvedContact>& inherited);
 
   static constexpr int kKeptPoints =
       3;  ///< with the fresh one: as many as a face can need to be held flat, and one more
@@ -49,12 +51,18 @@ class ContactMemory {
   /// @param fresh null: none was detected on the feature.
   void giveSlots(const Contact* fresh, std::size_t first, std::size_t end);
   void inherit(std::size_t old, SolvedContact& contact);
-  void inheritNearest(double reach_m, SolvedContact& contact);
+  void inheritNearest(const std::vector<double>& reach_m, std::vector<SolvedContact>& inherited);
 
+  struct Candidate {
+    double squared_m2;  ///< distance
+    std::size_t contact;
+    std::size_t old;
+  };
   std::vector<SolvedContact> remembered_;  ///< sorted by key
   std::vector<bool> continued_;            ///< per remembered contact: by one of this step
   std::vector<Contact> kept_;
   std::vector<std::size_t> unmatched_;
+  std::vector<Candidate> candidates_;
 };
 
 }  // namespace tissue_contact

@@ -96,7 +96,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       motion(instruments),
       x(tissues.size()),
       detector(instruments, shareSurfaces(surfacesOf(tissues), restPositionsOf(tissues)), environment.meshes),
-      contacts(tissues, motion, friction, mean_edge),
+      contacts(tissues, motion, friction),
       solver(atEntry("solver", [&] { return makeContactSolver(scene.solver, environment.clock); })),
       wrenches(instruments.size()),
       load_watch(scene, tissues) {

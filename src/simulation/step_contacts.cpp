@@ -8,9 +8,9 @@
 namespace tissue_contact {
 namespace {
 
-/// A deep contact is pushed out by at most this share of the shape's smallest half extent per step: an instrument that
-/// starts inside the tissue is then freed over some steps instead of by an explosion.
-constexpr double kRecoveryPerStep = 0.1;
+/// A deep contact is pushed out by at most the shape's smallest half extent in this time: an instrument that starts
+/// inside the tissue is then freed over some steps instead of by an explosion, and as fast at any step.
+constexpr double kRecoveryTime_s = 0.01;
 
 /// More of a static contact's slip than this share of an edge is no error of the solver any more and is let go.
 constexpr double kMostSlipPerEdge = 0.01;
@@ -24,6 +24,28 @@ double shareBeforeTouch(const ContactRow& row, const std::vector<NodalVectors>& 
   const Vector3 u = relativeVelocity(row, v);
   const double way = -dt * u[0] > row.gap_m ? -dt * u[0] : dt * u.norm();
   return way > row.gap_m ? row.gap_m / way : 1.0;
+}
+
+/// Mean length at rest of the sides of the surface's triangles at each node, m; 0 for nodes inside.
+std::vector<VectorX> edgesAtNodes(const std::vector<Tissue>& tissues) {
+  std::vector<VectorX> edges;
+  for (const Tissue& tissue : tissues) {
+    const NodalVectors& rest = tissue.restPositions();
+    VectorX sums = VectorX::Zero(rest.cols());
+    VectorX counts = VectorX::Zero(rest.cols());
+    for (const Triangle& triangle : tissue.surface()) {
+      for (int side = 0; side < 3; ++side) {
+        const int ends[] = {triangle[side], triangle[(side + 1) % 3]};
+        const double length = (rest.col(ends[0]) - rest.col(ends[1])).norm();
+        for (const int node : ends) {
+          sums[node] += length;
+          counts[node] += 1.0;
+        }
+      }
+    }
+    edges.push_back(sums.cwiseQuotient(counts.cwiseMax(1.0)));
+  }
+  return edges;
 }
 
 }  // namespace
@@ -51,8 +73,8 @@ void sumImpulsesOn(int tissue, const std::vector<SolvedContact>& contacts, const
 }
 
 StepContacts::StepContacts(const std::vector<Tissue>& tissues, const InstrumentMotion& motion,
-                           const FrictionTable& friction, double mean_edge_m)
-    : tissues_(tissues), motion_(motion), friction_(friction), mean_edge_m_(mean_edge_m) {
+                           const FrictionTable& friction)
+    : tissues_(tissues), motion_(motion), friction_(friction), edges_(edgesAtNodes(tissues)) {
   if (friction.dependsOnPressure()) pressure_.emplace(tissues);
 }
 
@@ -65,7 +87,22 @@ void StepContacts::clear() {
 void StepContacts::begin(const ContactDetector& detector, const std::vector<NodalVectors>& x, double margin_m,
                          std::vector<Contact>& found) {
   memory_.addKeptPoints(detector, x, motion_.startPoses(), margin_m, found);
-  memory_.recall(found, motion_.longestTravel() + mean_edge_m_, contacts_);
+  reaches_m_.resize(found.size());
+  for (std::size_t c = 0; c < found.size(); ++c) reaches_m_[c] = motion_.longestTravel() + edgeAt(found[c]);
+  memory_.recall(found, reaches_m_, contacts_);
+}
+
+/// How long edges are where a contact is, m; of two surfaces those of the finer one.
+double StepContacts::edgeAt(const Contact& contact) const {
+  const auto at = [&](int tissue, const std::array<int, 3>& nodes, const Vector3& weights) {
+    double edge = 0.0;
+    for (int i = 0; i < 3; ++i) edge += weights[i] == 0.0 ? 0.0 : weights[i] * edges_[tissue][nodes[i]];
+    return edge;
+  };
+  const ContactKey& key = contact.key;
+  const double own = at(key.tissue, contact.nodes, contact.weights);
+  if (key.other_tissue < 0) return own;
+  return std::min(own, at(key.other_tissue, contact.other_nodes, contact.other_weights));
 }
 
 void StepContacts::touchedNodes(int tissue, std::vector<int>& nodes) const {
@@ -153,21 +190,21 @@ void StepContacts::placeRow(const Contact& contact, double dt, ContactRow& row) 
   }
   row.R_WC = contact.R_WC;
   row.gap_m = contact.gap_m;
-  double recovery = 0.0;
+  double half_extent = 0.0;
   if (key.instrument >= 0) {
     const double to_shape = contact.gap_m + 0.5 * tissues_[key.tissue].thickness();
     const Vector3 p_tool = contact.p_WC - to_shape * contact.R_WC.col(0);
     row.u_tool = contact.R_WC.transpose() * motion_.pointVelocity(key.instrument, key.link, p_tool, dt);
-    recovery = kRecoveryPerStep * motion_.smallestHalfExtent(key.instrument, key.link, key.shape);
+    half_extent = motion_.smallestHalfExtent(key.instrument, key.link, key.shape);
   } else {
     for (int i = 0; i < 3; ++i) {
       if (contact.other_weights[i] == 0.0) continue;
       row.nodes[row.node_count++] = {key.other_tissue, contact.other_nodes[i], -contact.other_weights[i]};
     }
     row.u_tool.setZero();
-    recovery = kRecoveryPerStep * mean_edge_m_;
+    half_extent = edgeAt(contact);
   }
-  row.required_u_n = std::min(-contact.gap_m, recovery) / dt;
+  row.required_u_n = std::min(-contact.gap_m / dt, half_extent / kRecoveryTime_s);
 }
 
 std::optional<double> StepContacts::weakestNetForce(int tissue, const std::vector<Vector3>& impulses, double dt) {
@@ -205,7 +242,7 @@ Vector3 StepContacts::slipOf(std::size_t c, const ContactProblem& problem, const
   Vector3 slip = problem.dt_s * (tangents * u_t);
   if (!held) return slip;
   if (before == ContactState::kStatic) slip -= tangents * u_besides_[c] * back_time_s_;
-  const double most = kMostSlipPerEdge * mean_edge_m_;
+  const double most = kMostSlipPerEdge * edgeAt(contacts_[c].contact);
   return slip.norm() > most ? Vector3(slip * (most / slip.norm())) : slip;
 }
 

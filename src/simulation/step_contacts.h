@@ -35,9 +35,8 @@ void sumImpulsesOn(int tissue, const std::vector<SolvedContact>& contacts, const
 /// No allocation once vectors have grown.
 class StepContacts {
  public:
-  /// @param mean_edge_m of all tissue surfaces. The other arguments must outlive this.
-  StepContacts(const std::vector<Tissue>& tissues, const InstrumentMotion& motion, const FrictionTable& friction,
-               double mean_edge_m);
+  /// The arguments must outlive this.
+  StepContacts(const std::vector<Tissue>& tissues, const InstrumentMotion& motion, const FrictionTable& friction);
 
   void clear();  ///< no contacts and no history
 
@@ -77,12 +76,13 @@ class StepContacts {
   ContactBefore beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x, double last_dt) const;
   void land(const std::vector<NodalVectors>& v, double dt, std::vector<ContactRow>& rows);
   double& firstTouch(const ContactKey& key);
+  double edgeAt(const Contact& contact) const;
   Vector3 slipOf(std::size_t contact, const ContactProblem& problem, const ContactSolution& solution) const;
 
   const std::vector<Tissue>& tissues_;
   const InstrumentMotion& motion_;
   const FrictionTable& friction_;
-  const double mean_edge_m_;
+  const std::vector<VectorX> edges_;  ///< per tissue and node: mean length at rest of the surface's edges there, m
   ContactMemory memory_;
   std::optional<ContactPressure> pressure_;  ///< only where friction depends on it
   std::vector<SolvedContact> contacts_;      ///< before the solve with what they inherit, after it with what was found
@@ -93,6 +93,7 @@ class StepContacts {
   std::vector<Patch> patches_;        ///< scratch of land()
   std::vector<double> touch_shares_;  ///< per contact, the same
   std::vector<NetImpulse> net_;       ///< scratch
+  std::vector<double> reaches_m_;     ///< scratch of begin(), per contact
 };
 
 }  // namespace tissue_contact

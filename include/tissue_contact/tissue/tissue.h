@@ -56,6 +56,7 @@ class Tissue {
   const VectorX& nodeMasses() const { return masses_; }  ///< kg, lumped: each element's mass in equal parts
   /// Rayleigh damping; stiffness_s is 0 where regions differ in it, the elasticity's state then has a damping matrix.
   const DampingDescription& damping() const { return damping_; }
+  double leastDamping() const { return least_damping_s_; }       ///< stiffness_s of what is damped least, s
   const Elasticity& elasticity() const { return *elasticity_; }  ///< with the springs of attachments
 
   /// Of all springs that attach free nodes, N/m, against a shift of the body; 0: no attachment.
@@ -76,6 +77,7 @@ class Tissue {
   std::vector<bool> fixed_;
   VectorX masses_;
   DampingDescription damping_;
+  double least_damping_s_ = 0.0;
   double thickness_ = 0.0;
   std::vector<int> surface_regions_;
   std::vector<Vector2> surface_fibres_;

