@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "tissue_contact/ros/joint_state_bag.h"
+#include "ros/bag/joint_state_bag.h"
 
 namespace tissue_contact {
 namespace {

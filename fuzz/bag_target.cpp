@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "fuzz/fuzz_support.h"
-#include "tissue_contact/ros/joint_state_bag.h"
+#include "ros/bag/joint_state_bag.h"
 
 using namespace tissue_contact;
 

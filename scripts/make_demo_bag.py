@@ -8,16 +8,10 @@ import argparse
 import os
 import sys
 
-import genpy
-import rosbag
-from sensor_msgs.msg import JointState
-
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
-from whole_file import whole_file
+from make_joint_bag import write
 
 TOPIC = "/probe/joint_states"
-RATE_HZ = 500
-START_S = 1700000000  # a fixed wall-clock time, so that the recording does not depend on when it was made
 SPEED_M_PER_S = 0.020
 CLEARANCE_M = 0.010  # between ball and block at the start
 PRESS_M = 0.0045
@@ -37,26 +31,15 @@ PATH = [
 ]
 
 
-def position(time):
-    """x and z (m) at `time` (s) since the start, straight from corner to corner."""
+def positions(time):
+    """x, y and z (m) at `time` (s) since the start, straight from corner to corner."""
     begin = 0.0
     for (_, x0, z0), (duration, x1, z1) in zip(PATH, PATH[1:]):
         if time <= begin + duration:
             part = (time - begin) / duration
-            return x0 + part * (x1 - x0), z0 + part * (z1 - z0)
+            return [x0 + part * (x1 - x0), 0.0, z0 + part * (z1 - z0)]
         begin += duration
-    return PATH[-1][1], PATH[-1][2]
-
-
-def messages():
-    length = sum(duration for duration, _, _ in PATH)
-    for i in range(int(round(length * RATE_HZ)) + 1):
-        stamp = genpy.Time(START_S + i // RATE_HZ, i % RATE_HZ * (1000000000 // RATE_HZ))
-        x, z = position(i / RATE_HZ)
-        message = JointState(name=["x", "y", "z"], position=[x, 0.0, z])
-        message.header.seq = i
-        message.header.stamp = stamp
-        yield stamp, message
+    return [PATH[-1][1], 0.0, PATH[-1][2]]
 
 
 def main():
@@ -64,15 +47,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("output", nargs="?", default=os.path.normpath(default), help="default: %(default)s")
     arguments = parser.parse_args()
-    count = 0
-    try:
-        with whole_file(arguments.output) as part, rosbag.Bag(part, "w", compression=rosbag.Compression.BZ2) as bag:
-            for stamp, message in messages():
-                bag.write(TOPIC, message, stamp)
-                count += 1
-    except OSError as error:
-        sys.exit("make_demo_bag.py: cannot write %s: %s" % (arguments.output, error.strerror))
-    print("%s: %d joint states on %s" % (arguments.output, count, TOPIC))
+    write(arguments.output, TOPIC, ["x", "y", "z"], positions, sum(duration for duration, _, _ in PATH))
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ START_S = 1700000000  # a fixed wall-clock time, so that the recording does not 
 
 
 def fail(message):
-    sys.exit("make_joint_bag.py: " + message)
+    sys.exit("%s: %s" % (os.path.basename(sys.argv[0]), message))
 
 
 def read_table(file):
@@ -63,13 +63,19 @@ def positions(rows, time):
     return rows[-1][1:]
 
 
-def messages(names, rows):
-    for i in range(int(round((rows[-1][0] - rows[0][0]) * RATE_HZ)) + 1):
-        stamp = genpy.Time(START_S + i // RATE_HZ, i % RATE_HZ * (1000000000 // RATE_HZ))
-        message = JointState(name=names, position=positions(rows, rows[0][0] + i / RATE_HZ))
-        message.header.seq = i
-        message.header.stamp = stamp
-        yield stamp, message
+def write(output, topic, names, positions_at, length, inputs=()):
+    """Joint states from 0 to `length` (s) with the positions that `positions_at` gives for a time. Returns their count."""
+    count = int(round(length * RATE_HZ)) + 1
+    try:
+        with whole_file(output, inputs) as part, rosbag.Bag(part, "w", compression=rosbag.Compression.BZ2) as bag:
+            for i in range(count):
+                message = JointState(name=names, position=positions_at(i / RATE_HZ))
+                message.header.seq = i
+                message.header.stamp = genpy.Time(START_S + i // RATE_HZ, i % RATE_HZ * (1000000000 // RATE_HZ))
+                bag.write(topic, message, message.header.stamp)
+    except OSError as error:
+        fail("cannot write %s: %s" % (output, error.strerror))
+    print("%s: %d joint states on %s" % (output, count, topic))
 
 
 def main():
@@ -79,16 +85,8 @@ def main():
     parser.add_argument("--topic", required=True, help="joint-state topic of the scene, such as /PSM1/joint_states")
     arguments = parser.parse_args()
     names, rows = read_table(arguments.table)
-    count = 0
-    try:
-        with whole_file(arguments.output, [arguments.table]) as part, \
-                rosbag.Bag(part, "w", compression=rosbag.Compression.BZ2) as bag:
-            for stamp, message in messages(names, rows):
-                bag.write(arguments.topic, message, stamp)
-                count += 1
-    except OSError as error:
-        fail("cannot write %s: %s" % (arguments.output, error.strerror))
-    print("%s: %d joint states on %s" % (arguments.output, count, arguments.topic))
+    write(arguments.output, arguments.topic, names, lambda time: positions(rows, rows[0][0] + time),
+          rows[-1][0] - rows[0][0], [arguments.table])
 
 
 if __name__ == "__main__":

@@ -27,10 +27,7 @@ std::string text(double value) {
 TissueDescription bar(ElasticModel model, double nu, const Vector3& size, const std::array<int, 3>& cells) {
   TissueDescription description;
   description.name = "bar";
-  BlockDescription block;
-  block.size_m = size;
-  block.cells = cells;
-  description.geometry = block;
+  description.geometry = BlockDescription{size, cells, {}};
   description.material = {model, kYoung, nu, 1000.0, -1.0, Dilatation::kElement};
   return description;
 }

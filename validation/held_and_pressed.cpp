@@ -5,53 +5,23 @@
 #include <cmath>
 #include <string>
 
-#include "support/text_scene.h"
-#include "tissue_contact/mesh/triangle_mesh.h"
+#include "support/held_block.h"
 #include "validation/closed_forms.h"
 #include "validation/report.h"
 
 namespace tissue_contact {
 namespace {
 
-constexpr double kGravity = 9.81;
 constexpr double kHeight = 0.02;  // m
 constexpr double kPressure = 1600.0;
 constexpr double kYoung = 2e4;
 
-/// @param material, tissue, scene more lines of each.
 Simulator makeBlock(const std::string& material, const std::string& tissue, const std::string& scene) {
-  return makeSimulator(
-      "tissues:\n  - name: block\n    block: {size_m: [0.04, 0.03, 0.02], cells: [4, 3, 2]}\n"
-      "    material: {density_kg_per_m3: 1000, " +
-      material + "}\n" + tissue + scene +
-      "solver: {relaxation: cholesky, iterations: 100, tolerance: 1.0e-10}\nadvisor: {sleep: never}\n");
-}
-
-const std::string kHeavy = "gravity_m_per_s2: [0, 0, -9.81]\n";
-
-NodalVectors displacement(const Simulator& simulator) {
-  return simulator.positions(0) - simulator.tissues()[0].restPositions();
+  return makeHeldBlock(material, tissue, scene + kCholesky + kAwake);
 }
 
 void rest(Simulator& simulator) {
   for (int k = 0; k < 400; ++k) simulator.advance(0.01, {});
-}
-
-/// Mean over the area of the base, m.
-double meanSinking(const Simulator& simulator) {
-  const Tissue& tissue = simulator.tissues()[0];
-  const NodalVectors u = displacement(simulator);
-  double sum = 0.0;
-  double area = 0.0;
-  for (const Triangle& triangle : tissue.surface()) {
-    double height = 0.0;
-    for (const int node : triangle) height += tissue.restPositions()(2, node);
-    if (height > 1e-6 * kHeight) continue;
-    const double own = triangleArea(tissue.restPositions(), triangle);
-    area += own;
-    for (const int node : triangle) sum -= own / 3.0 * u(2, node);
-  }
-  return sum / area;
 }
 
 // What is left after 4 s of damped motion is round-off of coordinates; 1e-6 of the sinking is what we ask for.
@@ -102,8 +72,7 @@ void shrinks(Report& report) {
                                     "    pressure_pa: 1600\n    damping: {stiffness_s: 0.01}\n", "");
     rest(simulator);
     const double bulk = kYoung / (3.0 * (1.0 - 2.0 * nu));
-    double strain = 0.0;
-    for (int k = 0; k < 100; ++k) strain = -kPressure * (1.0 + strain) * (1.0 + strain) / (3.0 * bulk);
+    const double strain = uniformStrain(kPressure, bulk);
     const NodalVectors& at_rest = simulator.tissues()[0].restPositions();
     const VectorX& masses = simulator.tissues()[0].nodeMasses();
     const Vector3 centre = at_rest * masses / masses.sum();

@@ -1,5 +1,5 @@
 /// Form J: closed forms of membranes and plates: patch test, strips in tension, a taut strip pushed aside, bending and twisting.
-#include "tissue_contact/tissue/membrane.h"
+#include "tissue/membrane.h"
 
 #include <algorithm>
 #include <cmath>

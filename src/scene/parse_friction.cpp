@@ -89,24 +89,12 @@ void parseAxis(const YamlMap& map, Law& law) {
   }
 }
 
-void parseSpeeds(const YamlMap& map, Law& law) {
-  const YamlCursor* speeds = map.find("speeds_m_per_s");
-  const YamlCursor* factors = map.find("speed_factors");
-  if (speeds == nullptr && factors == nullptr) return;
-  law.speeds_m_per_s = numbers(map.get("speeds_m_per_s").list(2, kMaxTableEntries), Law::kSpeeds);
-  law.speed_factors =
-      numbers(map.get("speed_factors").tuple(law.speeds_m_per_s.size(), "numbers, one for each of speeds_m_per_s"),
-              Law::kSpeedFactors);
-}
-
-void parsePressures(const YamlMap& map, Law& law) {
-  const YamlCursor* pressures = map.find("pressures_pa");
-  const YamlCursor* factors = map.find("pressure_factors");
-  if (pressures == nullptr && factors == nullptr) return;
-  law.pressures_pa = numbers(map.get("pressures_pa").list(2, kMaxTableEntries), Law::kPressures);
-  law.pressure_factors =
-      numbers(map.get("pressure_factors").tuple(law.pressures_pa.size(), "numbers, one for each of pressures_pa"),
-              Law::kPressureFactors);
+/// The lists of one factor over another quantity; none where neither key is given.
+void parseFactors(const YamlMap& map, const std::string& over, const Range& over_range, std::vector<double>& values,
+                  const std::string& factor, const Range& factor_range, std::vector<double>& factors) {
+  if (map.find(over) == nullptr && map.find(factor) == nullptr) return;
+  values = numbers(map.get(over).list(2, kMaxTableEntries), over_range);
+  factors = numbers(map.get(factor).tuple(values.size(), "numbers, one for each of " + over), factor_range);
 }
 
 Law parseLaw(const YamlMap& map) {
@@ -121,8 +109,10 @@ Law parseLaw(const YamlMap& map) {
   const YamlCursor* kinetic = map.find("kinetic");
   law.kinetic_coefficients = kinetic == nullptr ? law.static_coefficients : parseCoefficients(*kinetic, law);
   parseAxis(map, law);
-  parseSpeeds(map, law);
-  parsePressures(map, law);
+  parseFactors(map, "speeds_m_per_s", Law::kSpeeds, law.speeds_m_per_s, "speed_factors", Law::kSpeedFactors,
+               law.speed_factors);
+  parseFactors(map, "pressures_pa", Law::kPressures, law.pressures_pa, "pressure_factors", Law::kPressureFactors,
+               law.pressure_factors);
   return law;
 }
 

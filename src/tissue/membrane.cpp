@@ -1,4 +1,4 @@
-#include "tissue_contact/tissue/membrane.h"
+#include "tissue/membrane.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "tissue/attached_elasticity.h"
+#include "tissue/membrane.h"
 #include "tissue/placed_mesh.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/entry_error.h"
@@ -12,7 +13,6 @@
 #include "tissue_contact/mesh/tissue_surface.h"
 #include "tissue_contact/mesh/triangle_mesh.h"
 #include "tissue_contact/tissue/make_elasticity.h"
-#include "tissue_contact/tissue/membrane.h"
 
 namespace tissue_contact {
 namespace {

@@ -57,6 +57,8 @@ class CheckRoomsTest(unittest.TestCase):
         user = self.root / "src/tissue/a.cpp"
         user.parent.mkdir(parents=True)
         user.write_text('#include "tissue_contact/tissue/a.h"\n', encoding="utf-8")
+        (self.root / "validation").mkdir()
+        (self.root / "validation/a.cpp").write_text(user.read_text(encoding="utf-8"), encoding="utf-8")
         found = check_rooms.check_public(self.root)
         self.assertEqual(len(found), 1, found)
         self.assertIn("include/tissue_contact/tissue/a.h", found[0])

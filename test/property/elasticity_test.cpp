@@ -14,10 +14,10 @@
 
 #include "tissue/attached_elasticity.h"
 #include "tissue/element_patches.h"
+#include "tissue/membrane.h"
 #include "tissue_contact/mesh/tet_mesh.h"
 #include "tissue_contact/mesh/triangle_mesh.h"
 #include "tissue_contact/tissue/make_elasticity.h"
-#include "tissue_contact/tissue/membrane.h"
 #include "validation/elasticity_helpers.h"
 
 namespace {
@@ -65,10 +65,7 @@ std::vector<bool> firstFixed(int fixed_nodes, Eigen::Index nodes) {
 }
 
 Body makeBlock(const ElementMaterials& materials, int fixed_nodes) {
-  BlockDescription block;
-  block.size_m = Vector3(0.03, 0.02, 0.02);
-  block.cells = {2, 2, 2};
-  TetMesh mesh = makeBlockMesh(block);
+  TetMesh mesh = makeBlockMesh({Vector3(0.03, 0.02, 0.02), {2, 2, 2}, {}});
   auto elasticity =
       makeVolumeElasticity(mesh.positions, mesh.tetrahedra, firstFixed(fixed_nodes, mesh.positions.cols()), materials,
                            patchesByFaces(mesh.positions, mesh.tetrahedra));

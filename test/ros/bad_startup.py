@@ -102,8 +102,10 @@ class BadStartup(harness.TestCase):
             self.assert_refused(["_scene:=" + harness.SCENE, "_tf_timeout_s:=" + bad], "tf_timeout_s")
 
     def test_bad_marker_scale(self):
-        self.assert_refused(["_scene:=" + harness.SCENE, "_markers/displacement_full_scale_m:=0.0"],
-                            "displacement_full_scale_m")
+        for name in ["markers/displacement_full_scale_m", "markers/force_arrow_m_per_n"]:
+            for bad in ["0.0", "-1.0", "nan"]:
+                self.assert_refused(["_scene:=" + harness.SCENE, "_%s:=%s" % (name, bad)], "/tissue_contact/" + name)
+            rospy.delete_param("/tissue_contact/" + name)
 
     def test_misspelt_argument(self):
         self.assert_refused(["_sceen:=" + harness.SCENE], "/tissue_contact/sceen", "'scene'", "_sceen:=")

@@ -3,7 +3,10 @@ import math
 import re
 import signal
 import socket
+import threading
 import time
+
+import rospy
 
 import harness
 
@@ -42,6 +45,35 @@ def free_port():
     with socket.socket() as probe:
         probe.bind(("localhost", 0))
         return probe.getsockname()[1]
+
+
+class Driver:
+    """Sends joint states at a rate, stamped with the present, from a thread of its own until stopped."""
+
+    def __init__(self, rate_hz, path):
+        self.stamps = []
+        self._source = harness.JointSource()
+        self._period = 1.0 / rate_hz
+        self._path = path
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run)
+        self._thread.start()
+
+    def _run(self):
+        start = time.monotonic()
+        while not self._stop.is_set():
+            due = start + len(self.stamps) * self._period
+            time.sleep(max(0.0, due - time.monotonic()))
+            stamp = rospy.Time.from_sec(time.time())
+            if self.stamps and stamp <= self.stamps[-1]:
+                continue  # two in a microsecond
+            self.stamps.append(stamp)
+            self._source.send(stamp, self._path(time.monotonic() - start))
+
+    def stop(self):
+        self._stop.set()
+        self._thread.join()
+        return len(self.stamps)
 
 
 def counts_at_the_end(process, number=signal.SIGINT):

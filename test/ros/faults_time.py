@@ -4,7 +4,6 @@ and the answers that follow are right."""
 import math
 import signal
 import sys
-import threading
 import time
 import unittest
 
@@ -20,27 +19,8 @@ import harness
 NODE = "/tissue_contact"
 
 
-class Driver:
-    """Joint states stamped with the present, at 200 Hz from a thread of its own until stopped."""
-
-    def __init__(self):
-        self.sent = 0
-        self.last = rospy.Time()
-        self._source = harness.JointSource()
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._run)
-        self._thread.start()
-
-    def _run(self):
-        while not self._stop.wait(0.005):
-            stamp = rospy.Time.from_sec(time.time())
-            self._source.send(stamp, (0.0, 0.0, -0.002 + 0.001 * math.sin(6.0 * time.monotonic())))
-            self.sent += 1
-            self.last = stamp
-
-    def stop(self):
-        self._stop.set()
-        self._thread.join()
+def path(time_s):
+    return (0.0, 0.0, -0.002 + 0.001 * math.sin(6.0 * time_s))
 
 
 class FaultsTime(unittest.TestCase):
@@ -48,7 +28,7 @@ class FaultsTime(unittest.TestCase):
         with harness.node(harness.SCENE) as process:
             wrenches = harness.Listener(NODE + "/probe/wrench", WrenchStamped)
             diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
-            driver = Driver()
+            driver = faults.Driver(200, path)
             try:
                 wrenches.wait(lambda all: len(all) > 100, "wrenches before")
                 process.send_signal(signal.SIGSTOP)
@@ -60,13 +40,13 @@ class FaultsTime(unittest.TestCase):
                 wrenches.wait(lambda all: len([w for w in all if w.header.stamp > now]) > 100, "wrenches after")
             finally:
                 process.send_signal(signal.SIGCONT)
-                driver.stop()
-            wrenches.wait_for_stamp(driver.last)
-            values = faults.all_told(diagnostics, driver.sent)
+                sent = driver.stop()
+            wrenches.wait_for_stamp(driver.stamps[-1])
+            values = faults.all_told(diagnostics, sent)
             counts = faults.counts_at_the_end(process)
         self.assertEqual(values["policy"], "newest_state")
-        self.assertEqual((counts["received"], counts["dropped"], counts["refused"]), (driver.sent, 0, 0))
-        self.assertEqual(counts["accepted"] + counts["merged"], driver.sent)
+        self.assertEqual((counts["received"], counts["dropped"], counts["refused"]), (sent, 0, 0))
+        self.assertEqual(counts["accepted"] + counts["merged"], sent)
         self.assertEqual(len(wrenches.messages), counts["wrenches"])
         self.assertEqual(values["joint states: missing by header.seq"], "0")
         self.assertTrue(all(map(faults.is_finite, wrenches.messages)))

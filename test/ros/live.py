@@ -29,35 +29,6 @@ def press_at(time_s):
     return 0.002 * math.sin(0.5 * turn), 0.0, -0.0035 + 0.0015 * math.cos(turn)
 
 
-class Driver:
-    """Sends joint states at a rate, stamped with the present, from a thread of its own until stopped."""
-
-    def __init__(self, rate_hz, path):
-        self.stamps = []
-        self._source = harness.JointSource()
-        self._period = 1.0 / rate_hz
-        self._path = path
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._run)
-        self._thread.start()
-
-    def _run(self):
-        start = time.monotonic()
-        while not self._stop.is_set():
-            due = start + len(self.stamps) * self._period
-            time.sleep(max(0.0, due - time.monotonic()))
-            stamp = rospy.Time.from_sec(time.time())
-            if self.stamps and stamp <= self.stamps[-1]:
-                continue  # two in a microsecond
-            self.stamps.append(stamp)
-            self._source.send(stamp, self._path(time.monotonic() - start))
-
-    def stop(self):
-        self._stop.set()
-        self._thread.join()
-        return len(self.stamps)
-
-
 class Arrivals:
     """When the messages of a topic come, by the test's clock."""
 
@@ -154,7 +125,7 @@ class Live(harness.TestCase):
             lag_arrivals = Arrivals("/tissue_contact/status", Status)
             delay = RunDelay(process.pid)
             start = time.monotonic()
-            driver = Driver(rate_hz, path)
+            driver = faults.Driver(rate_hz, path)
             try:
                 wrenches.wait(len, "the first wrench")
                 first = time.monotonic()
@@ -175,7 +146,7 @@ class Live(harness.TestCase):
             seen["silence"] = answers.longest_silence(first, end, delay.between)
             seen["diagnostics silence"] = told.longest_silence(start, end)
             seen["bulky"] = [len(b.times) for b in bulky]
-            driver = Driver(rate_hz, path)  # under load again
+            driver = faults.Driver(rate_hz, path)  # under load again
             try:
                 answered = len(wrenches.messages)
                 wrenches.wait(lambda all: len(all) > answered + 20, "wrenches of the second drive")
@@ -230,7 +201,7 @@ class Live(harness.TestCase):
                               "[14, 10, 5]": "[36, 28, 14]"})
         with harness.node(scene) as process:
             diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
-            driver = Driver(500.0, press_at)
+            driver = faults.Driver(500.0, press_at)
             try:
                 def far_behind(messages):
                     return any(m.status[0].level == faults.ERROR and "late by" in m.status[0].message for m in messages)

@@ -38,10 +38,7 @@ struct PressedBlock {
   }
 
   PressedBlock(double mu, double dt) {
-    BlockDescription block;
-    block.size_m = Vector3(0.04, 0.04, 0.02);
-    block.cells = {4, 4, 2};
-    mesh = makeBlockMesh(block);
+    mesh = makeBlockMesh({Vector3(0.04, 0.04, 0.02), {4, 4, 2}, {}});
     fixed = fixedNodes(mesh.positions, {PlaneRegion{}}, "block");
     const MaterialDescription material{ElasticModel::kLinear, 5e3, 0.45, 1000.0};
     state = TetElasticity(mesh.positions, mesh.tetrahedra, fixed, material).makeState();

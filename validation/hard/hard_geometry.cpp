@@ -45,10 +45,7 @@ std::string tipUrdf(const std::string& geometry) {
 /// Block whose grid lines pair up at a thousandth of the cell size in the middle of each axis: cells between two pairs
 /// are flat (1000 x 1000 x 1), long (1000 x 1 x 1) and regular; in legacy VTK text. `spoil` may change the mesh first.
 std::string sliverVtk(const std::function<void(TetMesh&)>& spoil = {}) {
-  BlockDescription block;
-  block.size_m = Vector3(7.0, 7.0, 5.0);
-  block.cells = {7, 7, 5};
-  TetMesh mesh = makeBlockMesh(block);
+  TetMesh mesh = makeBlockMesh({Vector3(7.0, 7.0, 5.0), {7, 7, 5}, {}});
   const auto place = [](double line, int cells) {  // the middle cell shrinks to a thousandth of 1
     const double at = line < 0.5 * cells ? line : line - 0.999;
     return 0.06 / 6.001 * (at - 0.5 * (cells - 0.999));

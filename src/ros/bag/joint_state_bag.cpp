@@ -1,4 +1,4 @@
-#include "tissue_contact/ros/joint_state_bag.h"
+#include "ros/bag/joint_state_bag.h"
 
 #include <ros/message_traits.h>
 #include <sensor_msgs/JointState.h>

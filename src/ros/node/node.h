@@ -59,7 +59,6 @@ class Node {
   void stop();
 
   ShutdownGuard& guard_;
-  ros::NodeHandle node_;
   ros::NodeHandle private_node_;
   PublishOptions publish_;
   Simulator simulator_;

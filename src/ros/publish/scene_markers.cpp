@@ -10,7 +10,6 @@
 
 #include "mesh/edge_table.h"
 #include "ros/conversions.h"
-#include "tissue_contact/core/check.h"
 
 namespace tissue_contact {
 namespace {
@@ -100,8 +99,6 @@ std_msgs::ColorRGBA displacementColor(double fraction) {
 
 SceneMarkers::SceneMarkers(const Simulator& simulator, const MarkerStyle& style, bool is_shown)
     : simulator_(simulator), style_(style) {
-  requirePositive("displacement_full_scale_m", style.displacement_full_scale_m, "m");
-  requirePositive("force_arrow_m_per_n", style.force_arrow_m_per_n, "m/N");
   addTissues();
   for (std::size_t i = 0; i < simulator.instruments().size(); ++i) addInstrument(static_cast<int>(i), is_shown);
   first_arrow_ = message_.markers.size();

@@ -15,7 +15,8 @@
 
 namespace tissue_contact {
 
-/// How markers are drawn. Fixed scales, so that pictures taken at different times compare.
+/// How markers are drawn, in positive numbers (the node's parameters, which `Outputs` checks). Fixed scales, so that pictures
+/// taken at different times compare.
 struct MarkerStyle {
   double displacement_full_scale_m = 0.005;  ///< displacement drawn in the last colour, m: a deep press of soft tissue
   double force_arrow_m_per_n = 0.5;          ///< arrow length per newton: 0.02 N at one contact is seen as 1 cm
@@ -32,7 +33,6 @@ std_msgs::ColorRGBA displacementColor(double fraction);
 /// held contacts blue, sliding ones red).
 class SceneMarkers {
  public:
-  /// @throws std::invalid_argument when a number of `style` is not finite and > 0.
   /// @param simulator must outlive this; only what never changes is read of it.
   /// @param is_shown if not, the surfaces of sampled meshes are not looked for, which takes a while.
   SceneMarkers(const Simulator& simulator, const MarkerStyle& style, bool is_shown = true);

@@ -26,7 +26,6 @@ class SnapshotPublisher {
  public:
   /// Advertises nothing yet.
   /// @param simulator must outlive this; only what never changes is read of it.
-  /// @throws std::invalid_argument for a bad style.
   SnapshotPublisher(const Simulator& simulator, const PublishOptions& options, const MarkerStyle& style);
   ~SnapshotPublisher();
   SnapshotPublisher(const SnapshotPublisher&) = delete;

@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "ros/bag/joint_state_bag.h"
 #include "ros/conversions.h"
 #include "ros/publish/publish_options.h"
 #include "ros/replay/replay_progress.h"
@@ -23,7 +24,6 @@
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/core/whole_file.h"
 #include "tissue_contact/ros/environment.h"
-#include "tissue_contact/ros/joint_state_bag.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 #include "tissue_contact/simulation/simulator.h"
 

@@ -9,15 +9,8 @@
 
 #include "contact_test_utilities.h"
 
-namespace tissue_contact {
+namespace tissue_contact::contact_test {
 namespace {
-
-using contact_test::at;
-using contact_test::boxSurface;
-using contact_test::makeInstrument;
-using contact_test::Random;
-using contact_test::sameBits;
-using contact_test::Surface;
 
 ShapeDescription sphere(double radius, const Vector3& p) { return {SphereGeometry{radius}, at(p)}; }
 
@@ -62,7 +55,7 @@ double slowApproach(const TwoByTwo& scene, int instrument) {
       for (const Triangle& t : scene.surfaces[tissue].triangles) {
         const TrianglePoints points(X_SW * Vector3(x.col(t[0])), X_SW * Vector3(x.col(t[1])),
                                     X_SW * Vector3(x.col(t[2])));
-        nearest = std::min(nearest, contact_test::bruteForceMinimum(*distance, points));
+        nearest = std::min(nearest, bruteForceMinimum(*distance, points));
       }
     }
   }
@@ -279,9 +272,9 @@ TEST(SmallestHalfExtent, OfEveryShape) {
   EXPECT_DOUBLE_EQ(smallestHalfExtent(shape), 0.004);
   shape.geometry = MeshGeometry{"jaw.stl", Vector3::Ones()};
   EXPECT_THROW(smallestHalfExtent(shape), std::invalid_argument);
-  shape.mesh = std::make_shared<TriangleMesh>(contact_test::boxMesh({0.01, 0.002, 0.003}, 2));
+  shape.mesh = std::make_shared<TriangleMesh>(boxMesh({0.01, 0.002, 0.003}, 2));
   EXPECT_DOUBLE_EQ(smallestHalfExtent(shape), 0.002);
 }
 
 }  // namespace
-}  // namespace tissue_contact
+}  // namespace tissue_contact::contact_test

@@ -198,9 +198,10 @@ inline double bruteForceMinimum(const ShapeDistance& shape, const TrianglePoints
   });
 }
 
+/// @param fixed by node; none given: all move.
 inline std::vector<ShapeContact> findContacts(const ShapeDistance& shape, const Pose& X_WS, const Surface& surface,
-                                              double margin) {
-  const MovingSurface moving(0, {surface.triangles, surface.fixed()}, surface.nodes);
+                                              double margin, const std::vector<bool>& fixed = {}) {
+  const MovingSurface moving(0, {surface.triangles, fixed.empty() ? surface.fixed() : fixed}, surface.nodes);
   NarrowPhase narrow_phase;
   std::vector<int> all(surface.triangles.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
@@ -209,8 +210,9 @@ inline std::vector<ShapeContact> findContacts(const ShapeDistance& shape, const 
   return contacts;
 }
 
+using tissue_contact::pointOf;
 inline Vector3 pointOf(const ShapeContact& contact, const NodalVectors& nodes) {
-  return tissue_contact::pointOf(nodes, contact.nodes, contact.weights);
+  return pointOf(nodes, contact.nodes, contact.weights);
 }
 
 /// A rigid instrument: root, and a tip link with the given shapes.

@@ -3,12 +3,8 @@
 
 #include "contact_test_utilities.h"
 
-namespace tissue_contact {
+namespace tissue_contact::contact_test {
 namespace {
-
-using contact_test::at;
-using contact_test::findContacts;
-using contact_test::Surface;
 
 /// Pyramid with its point down at the origin, four sides, half angle of 14 degrees: its flanks alone give no direction
 /// that pushes down. Only its corner and, as far as vertices of the tissue ask, its flanks.
@@ -84,10 +80,10 @@ TEST(CornerInFold, TipBesideTheFoldIsLeftToItsTriangle) {
 // Next to a block and below its upper face there is nothing to push down.
 TEST(CornerInFold, TipNextToARimIsNotInside) {
   const Needle shape;
-  const Surface block = contact_test::boxSurface({0.1, 0.1, 0.03}, {10, 10, 3});
+  const Surface block = boxSurface({0.1, 0.1, 0.03}, {10, 10, 3});
   const auto contacts = findContacts(shape, at({-0.006, 0.052, 0.02}), block, 1e-3);
   EXPECT_EQ(cornerContact(contacts), nullptr);
 }
 
 }  // namespace
-}  // namespace tissue_contact
+}  // namespace tissue_contact::contact_test

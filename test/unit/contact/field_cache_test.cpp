@@ -13,7 +13,7 @@
 #include "contact_test_utilities.h"
 #include "support/temporary_directory.h"
 
-namespace tissue_contact {
+namespace tissue_contact::contact_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,7 +41,7 @@ class FieldCache : public testing::Test {
   fs::path directory_ = temporary_.path() / "cache";
   MeshPreparation preparation_;
   std::vector<std::string> said_;
-  TriangleMesh mesh_ = contact_test::boxMesh({0.01, 0.002, 0.002}, 2);
+  TriangleMesh mesh_ = boxMesh({0.01, 0.002, 0.002}, 2);
 };
 
 TEST_F(FieldCache, SecondTimeTheSameBitsComeFromTheFile) {
@@ -154,4 +154,4 @@ TEST_F(FieldCache, TwoAtOnceLeaveOneWholeFile) {
 }
 
 }  // namespace
-}  // namespace tissue_contact
+}  // namespace tissue_contact::contact_test

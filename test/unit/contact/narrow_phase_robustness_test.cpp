@@ -6,18 +6,8 @@
 
 #include "contact_test_utilities.h"
 
-namespace tissue_contact {
+namespace tissue_contact::contact_test {
 namespace {
-
-using contact_test::at;
-using contact_test::boxMesh;
-using contact_test::boxSurface;
-using contact_test::findContacts;
-using contact_test::makeMeshDistance;
-using contact_test::pointOf;
-using contact_test::Random;
-using contact_test::sphereMesh;
-using contact_test::Surface;
 
 const Vector3 kBlock(0.1, 0.1, 0.03);
 constexpr double kPi = 3.14159265358979323846;
@@ -287,14 +277,9 @@ TEST_P(AnyShape, FixedFeaturesAreLeftOut) {
   const Surface block = boxSurface(kBlock, {10, 10, 3});
   std::vector<bool> fixed(block.nodes.cols());
   for (Eigen::Index i = 0; i < block.nodes.cols(); ++i) fixed[i] = block.nodes(0, i) < 0.051;
-  const MovingSurface moving(0, {block.triangles, fixed}, block.nodes);
-  NarrowPhase narrow_phase;
-  std::vector<int> all(block.triangles.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   int left_out = 0;
   for (const Pose& X : pressingPoses(60, 36)) {
-    std::vector<ShapeContact> contacts;
-    narrow_phase.findContacts(*shape_, X, moving, all, 1e-3, contacts);
+    const std::vector<ShapeContact> contacts = findContacts(*shape_, X, block, 1e-3, fixed);
     for (const ShapeContact& c : contacts) {
       bool moves = false;
       for (int i = 0; i < 3; ++i) moves |= c.weights[i] > 0.0 && !fixed[c.nodes[i]];
@@ -327,4 +312,4 @@ TEST(NarrowPhase, NotConvexMeshTouchesWhereItShould) {
 }
 
 }  // namespace
-}  // namespace tissue_contact
+}  // namespace tissue_contact::contact_test

@@ -5,19 +5,8 @@
 
 #include "contact_test_utilities.h"
 
-namespace tissue_contact {
+namespace tissue_contact::contact_test {
 namespace {
-
-using contact_test::at;
-using contact_test::boxMesh;
-using contact_test::boxSurface;
-using contact_test::bruteForceMinimum;
-using contact_test::findContacts;
-using contact_test::makeMeshDistance;
-using contact_test::pointOf;
-using contact_test::Random;
-using contact_test::sphereMesh;
-using contact_test::Surface;
 
 const Vector3 kBlock(0.1, 0.1, 0.03);
 constexpr double kPi = 3.14159265358979323846;
@@ -309,4 +298,4 @@ TEST(NarrowPhase, MeshBoxMakesTheContactsOfTheBox) {
 }
 
 }  // namespace
-}  // namespace tissue_contact
+}  // namespace tissue_contact::contact_test

@@ -6,12 +6,8 @@
 
 #include "contact_test_utilities.h"
 
-namespace tissue_contact {
+namespace tissue_contact::contact_test {
 namespace {
-
-using contact_test::bruteForceMinimum;
-using contact_test::makeMeshDistance;
-using contact_test::Random;
 
 struct NamedShape {
   std::string name;
@@ -197,4 +193,4 @@ TEST(ShapeDistance, WorldBoxIsTight) {
 }
 
 }  // namespace
-}  // namespace tissue_contact
+}  // namespace tissue_contact::contact_test

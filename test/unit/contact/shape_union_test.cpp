@@ -8,12 +8,8 @@
 
 #include "contact_test_utilities.h"
 
-namespace tissue_contact {
+namespace tissue_contact::contact_test {
 namespace {
-
-using contact_test::at;
-using contact_test::makeInstrument;
-using contact_test::Random;
 
 constexpr double kR = 1.5e-3;  // two cylinders side by side along y, like a closed pair of jaws
 constexpr double kRho = 0.75e-3;
@@ -149,4 +145,4 @@ TEST(ShapeUnion, ATipWithoutRoomIsLetGoAndCounted) {
 }
 
 }  // namespace
-}  // namespace tissue_contact
+}  // namespace tissue_contact::contact_test

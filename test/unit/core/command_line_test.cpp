@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "support/refusal.h"
+
 namespace tissue_contact {
 namespace {
 
@@ -14,15 +16,12 @@ using Words = std::vector<std::string>;
 const CommandLine::Keys kKeys{{"--csv", "--size", "--steps"}, {"--quick"}, {"--case"}};
 
 std::string refusal(const Words& arguments) {
-  try {
+  return tissue_contact::refusal([&] {
     const CommandLine line(arguments, kKeys);
     line.number("--size", 0.0, {0.0, 2.0, "m", "", true});
     line.integer("--steps", 0, 1, 9);
     line.required("--csv");
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  });
 }
 
 TEST(CommandLine, BothFormsAreTheSame) {

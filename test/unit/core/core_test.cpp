@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "support/refusal.h"
 #include "tissue_contact/core/block_matrix.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/nearest_word.h"
@@ -33,12 +34,9 @@ TEST(Range, HoldsItsBoundsUnlessExcludedAndNeverNan) {
 }
 
 TEST(Range, MessageNamesThingValueUnitRangeAndFix) {
-  try {
-    Range{-1.0, 0.5, "m", "give metres", true}.require("length_m", 0.7);
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "length_m is 0.69999999999999996 m; it must be > -1 and <= 0.5 m; give metres");
-  }
+  const Range range{-1.0, 0.5, "m", "give metres", true};
+  EXPECT_EQ(refusal([&] { range.require("length_m", 0.7); }),
+            "length_m is 0.69999999999999996 m; it must be > -1 and <= 0.5 m; give metres");
 }
 
 TEST(Printable, KeepsNamesShortAndFreeOfControlCharacters) {

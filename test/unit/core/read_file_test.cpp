@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "support/refusal.h"
 #include "support/temporary_directory.h"
 
 namespace tissue_contact {
@@ -25,12 +26,7 @@ class ReadFile : public testing::Test {
   std::string path(const std::string& name) const { return temporary_.path(name); }
   std::string write(const std::string& name, const std::string& text) const { return temporary_.write(name, text); }
   static std::string refusal(const std::string& file) {
-    try {
-      readFile(file, "test file", 100);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+    return tissue_contact::refusal([&] { readFile(file, "test file", 100); });
   }
 
   TemporaryDirectory temporary_;

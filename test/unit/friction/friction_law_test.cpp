@@ -7,6 +7,8 @@
 #include <functional>
 #include <limits>
 
+#include "support/refusal.h"
+
 namespace tissue_contact {
 namespace {
 
@@ -178,14 +180,45 @@ TEST(ContactPlaneFriction, ForwardIsTheInstrumentMovingAlongAxis1) {
   EXPECT_EQ(frictionUse(law, {0.0, 0.2}, false), kInfinity);
 }
 
+using Law = FrictionLawDescription;
+using List = std::vector<double> Law::*;
+constexpr List kStatic = &Law::static_coefficients;
+constexpr List kKinetic = &Law::kinetic_coefficients;
+constexpr List kAngles = &Law::angles_rad;
+
 struct BadLaw {
   const char* name;
-  std::function<void(FrictionLawDescription&)> spoil;  ///< starts from the good law of `kind`
-  Kind kind;
-  std::vector<const char*> message;
+  Kind kind;  ///< spoils the good law of it
+  std::function<void(Law&)> spoil;
+  std::vector<std::string> message;
 };
 
 void PrintTo(const BadLaw& bad, std::ostream* stream) { *stream << bad.name; }
+
+auto entry(List list, std::size_t i, double value) {
+  return [=](Law& law) { (law.*list)[i] = value; };
+}
+auto whole(List list, const std::vector<double>& values) {
+  return [=](Law& law) { law.*list = values; };
+}
+auto coefficients(const std::vector<double>& fixed, const std::vector<double>& kinetic) {
+  return [=](Law& law) {
+    law.static_coefficients = fixed;
+    law.kinetic_coefficients = kinetic;
+  };
+}
+auto speeds(const std::vector<double>& speeds_m_per_s, const std::vector<double>& factors) {
+  return [=](Law& law) {
+    law.speeds_m_per_s = speeds_m_per_s;
+    law.speed_factors = factors;
+  };
+}
+auto pressures(const std::vector<double>& pressures_pa, const std::vector<double>& factors) {
+  return [=](Law& law) {
+    law.pressures_pa = pressures_pa;
+    law.pressure_factors = factors;
+  };
+}
 
 FrictionLawDescription goodLaw(Kind kind) {
   switch (kind) {
@@ -219,157 +252,64 @@ class BadFrictionLaw : public testing::TestWithParam<BadLaw> {};
 TEST_P(BadFrictionLaw, IsRefusedByName) {
   FrictionLawDescription law = goodLaw(GetParam().kind);
   GetParam().spoil(law);
-  try {
-    makeAnisotropicFriction(law);
-    FAIL() << "accepted";
-  } catch (const std::invalid_argument& error) {
-    for (const char* part : GetParam().message) {
-      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << part << " not in: " << error.what();
-    }
-  }
+  expectRefusal([&] { makeAnisotropicFriction(law); }, GetParam().message);
 }
 
-using Law = FrictionLawDescription;
-INSTANTIATE_TEST_SUITE_P(
-    All, BadFrictionLaw,
-    testing::Values(
-        BadLaw{"NoCoefficient", [](Law& l) { l.static_coefficients.clear(); }, Kind::kIsotropic, {"static has 0", "1"}},
-        BadLaw{"OneTooMany",
-               [](Law& l) { l.kinetic_coefficients.push_back(0.1); },
-               Kind::kOrthotropic,
-               {"orthotropic", "kinetic has 3 values", "2"}},
-        BadLaw{"OneTooFew",
-               [](Law& l) { l.static_coefficients.pop_back(); },
-               Kind::kAsymmetric,
-               {"asymmetric", "static has 2 values", "3"}},
-        BadLaw{"TensorOfThree",
-               [](Law& l) { l.static_coefficients.pop_back(); },
-               Kind::kTensor,
-               {"tensor", "static has 3 values", "4"}},
-        BadLaw{"TableCount",
-               [](Law& l) { l.kinetic_coefficients.pop_back(); },
-               Kind::kTable,
-               {"table", "kinetic has 2 values", "3", "one per angle"}},
-        BadLaw{"Negative",
-               [](Law& l) { l.kinetic_coefficients[0] = -0.1; },
-               Kind::kIsotropic,
-               {"isotropic", "kinetic[0] is -0.1", ">= 0 and <= 1e+06"}},
-        BadLaw{"NegativeAcross",
-               [](Law& l) { l.kinetic_coefficients[1] = -0.5; },
-               Kind::kOrthotropic,
-               {"kinetic[1] is -0.5", ">= 0 and <= 1e+06"}},
-        BadLaw{"NotANumber", [](Law& l) { l.static_coefficients[2] = kNan; }, Kind::kAsymmetric, {"static[2] is nan"}},
-        BadLaw{
-            "KineticNotANumber", [](Law& l) { l.kinetic_coefficients[1] = kNan; }, Kind::kTable, {"kinetic[1] is nan"}},
-        BadLaw{"Infinite", [](Law& l) { l.static_coefficients[0] = kInfinity; }, Kind::kTable, {"static[0] is inf"}},
-        BadLaw{"Huge", [](Law& l) { l.static_coefficients[0] = 1e7; }, Kind::kIsotropic, {"static[0] is 10000000"}},
-        BadLaw{"StaticBelowKinetic",
-               [](Law& l) { l.static_coefficients[1] = 0.45; },
-               Kind::kOrthotropic,
-               {"static[1] is 0.45", ">= kinetic[1] = 0.5"}},
-        BadLaw{"StaticBelowKineticBackward",
-               [](Law& l) { l.static_coefficients[1] = 0.45; },
-               Kind::kAsymmetric,
-               {"static[1] is 0.45", ">= kinetic[1] = 0.5"}},
-        BadLaw{"StaticBelowKineticInTable",
-               [](Law& l) { l.static_coefficients[2] = 0.0; },
-               Kind::kTable,
-               {"static[2] is 0", ">= kinetic[2]"}},
-        BadLaw{"NoAngles", [](Law& l) { l.angles_rad.clear(); }, Kind::kTable, {"angles_rad is empty"}},
-        BadLaw{"AnglesNotFrom0", [](Law& l) { l.angles_rad[0] = 0.5; }, Kind::kTable, {"angles_rad[0] is 0.5 rad"}},
-        BadLaw{"AnglesDescend", [](Law& l) { l.angles_rad[2] = 2.0; }, Kind::kTable, {"angles_rad[2] is 2 rad", "> 2"}},
-        BadLaw{"AngleNotANumber", [](Law& l) { l.angles_rad[1] = kNan; }, Kind::kTable, {"angles_rad[1] is nan"}},
-        BadLaw{"AngleOfATurn",
-               [](Law& l) { l.angles_rad[2] = 2.0 * M_PI; },
-               Kind::kTable,
-               {"angles_rad[2] is 6.28", "< 2 pi"}},
-        BadLaw{"TensorNotFinite",
-               [](Law& l) { l.kinetic_coefficients[1] = kNan; },
-               Kind::kTensor,
-               {"tensor", "kinetic[1] is nan"}},
-        BadLaw{"TensorDrives",
-               [](Law& l) {
-                 l.kinetic_coefficients = {0.25, 0.5, 0.5, 0.25};
-               },
-               Kind::kTensor,
-               {"symmetric part of 'kinetic'", "-0.25", "drives sliding"}},
-        // Every entry of `static` is the larger one, yet across the diagonal it holds 0.1 and kinetic friction pulls
-        // 0.3.
-        BadLaw{"TensorStaticBelowInOneDirection",
-               [](Law& l) {
-                 l.kinetic_coefficients = {0.4, 0.1, 0.1, 0.4};
-                 l.static_coefficients = {0.5, 0.4, 0.4, 0.5};
-               },
-               Kind::kTensor,
-               {"S S' - K K'", "static friction is below kinetic"}},
-        // Friction acts along axis 1 when sliding, along axis 2 when held: both matrices are singular.
-        BadLaw{"TensorRangesDiffer",
-               [](Law& l) {
-                 l.kinetic_coefficients = {0.4, 0.0, 0.0, 0.0};
-                 l.static_coefficients = {0.0, 0.0, 0.0, 0.9};
-               },
-               Kind::kTensor,
-               {"S S' - K K'"}},
-        BadLaw{"SpeedCount", [](Law& l) { l.speeds_m_per_s = {0.0}; }, Kind::kIsotropic, {"speed_factors has 0", "1"}},
-        BadLaw{"FactorsAlone", [](Law& l) { l.speed_factors = {1.0}; }, Kind::kOrthotropic, {"speed_factors has 1"}},
-        BadLaw{"SpeedsNotFrom0",
-               [](Law& l) {
-                 l.speeds_m_per_s = {0.5};
-                 l.speed_factors = {1.0};
-               },
-               Kind::kIsotropic,
-               {"speeds_m_per_s[0] is 0.5 m/s", "must be 0"}},
-        BadLaw{"SpeedsDescend",
-               [](Law& l) {
-                 l.speeds_m_per_s = {0.0, 0.2, 0.1};
-                 l.speed_factors = {1.0, 1.0, 1.0};
-               },
-               Kind::kTensor,
-               {"speeds_m_per_s[2] is 0.1", "> 0.2"}},
-        BadLaw{"FactorAbove1",
-               [](Law& l) {
-                 l.speeds_m_per_s = {0.0, 0.2};
-                 l.speed_factors = {1.0, 1.1};
-               },
-               Kind::kTable,
-               {"speed_factors[1] is 1.1", ">= 0 and <= 1"}},
-        BadLaw{"FactorNotANumber",
-               [](Law& l) {
-                 l.speeds_m_per_s = {0.0};
-                 l.speed_factors = {kNan};
-               },
-               Kind::kAsymmetric,
-               {"speed_factors[0] is nan"}},
-        BadLaw{"PressuresAlone", [](Law& l) { l.pressures_pa = {0.0}; }, Kind::kTensor, {"pressure_factors has 0"}},
-        BadLaw{"PressuresNotFrom0",
-               [](Law& l) {
-                 l.pressures_pa = {600.0};
-                 l.pressure_factors = {1.0};
-               },
-               Kind::kIsotropic,
-               {"pressures_pa[0] is 600 Pa", "must be 0"}},
-        BadLaw{"PressuresDescend",
-               [](Law& l) {
-                 l.pressures_pa = {0.0, 200.0, 100.0};
-                 l.pressure_factors = {1.0, 1.0, 1.0};
-               },
-               Kind::kTable,
-               {"pressures_pa[2] is 100", "> 200"}},
-        BadLaw{"PressureFactorNegative",
-               [](Law& l) {
-                 l.pressures_pa = {0.0};
-                 l.pressure_factors = {-0.1};
-               },
-               Kind::kAsymmetric,
-               {"pressure_factors[0] is -0.1", ">= 0 and <= 10"}},
-        BadLaw{"PressureFactorNotANumber",
-               [](Law& l) {
-                 l.pressures_pa = {0.0};
-                 l.pressure_factors = {kNan};
-               },
-               Kind::kOrthotropic,
-               {"pressure_factors[0] is nan"}}),
-    [](const testing::TestParamInfo<BadLaw>& bad) { return bad.param.name; });
+const BadLaw kBadLaws[] = {
+    {"NoCoefficient", Kind::kIsotropic, whole(kStatic, {}), {"static has 0", "1"}},
+    {"OneTooMany", Kind::kOrthotropic, whole(kKinetic, {0.4, 0.5, 0.1}), {"orthotropic", "kinetic has 3 values", "2"}},
+    {"OneTooFew", Kind::kAsymmetric, whole(kStatic, {0.5, 0.6}), {"asymmetric", "static has 2 values", "3"}},
+    {"TensorOfThree", Kind::kTensor, whole(kStatic, {0.6, 0.1, 0.1}), {"tensor", "static has 3 values", "4"}},
+    {"TableCount", Kind::kTable, whole(kKinetic, {0.4, 0.5}), {"table", "kinetic has 2 values", "3", "one per angle"}},
+    {"Negative", Kind::kIsotropic, entry(kKinetic, 0, -0.1), {"isotropic", "kinetic[0] is -0.1", ">= 0 and <= 1e+06"}},
+    {"NegativeAcross", Kind::kOrthotropic, entry(kKinetic, 1, -0.5), {"kinetic[1] is -0.5", ">= 0 and <= 1e+06"}},
+    {"NotANumber", Kind::kAsymmetric, entry(kStatic, 2, kNan), {"static[2] is nan"}},
+    {"KineticNotANumber", Kind::kTable, entry(kKinetic, 1, kNan), {"kinetic[1] is nan"}},
+    {"Infinite", Kind::kTable, entry(kStatic, 0, kInfinity), {"static[0] is inf"}},
+    {"Huge", Kind::kIsotropic, entry(kStatic, 0, 1e7), {"static[0] is 10000000"}},
+    {"StaticBelowKinetic", Kind::kOrthotropic, entry(kStatic, 1, 0.45), {"static[1] is 0.45", ">= kinetic[1] = 0.5"}},
+    {"StaticBelowKineticBackward",
+     Kind::kAsymmetric,
+     entry(kStatic, 1, 0.45),
+     {"static[1] is 0.45", ">= kinetic[1] = 0.5"}},
+    {"StaticBelowKineticInTable", Kind::kTable, entry(kStatic, 2, 0.0), {"static[2] is 0", ">= kinetic[2]"}},
+    {"NoAngles", Kind::kTable, whole(kAngles, {}), {"angles_rad is empty"}},
+    {"AnglesNotFrom0", Kind::kTable, entry(kAngles, 0, 0.5), {"angles_rad[0] is 0.5 rad"}},
+    {"AnglesDescend", Kind::kTable, entry(kAngles, 2, 2.0), {"angles_rad[2] is 2 rad", "> 2"}},
+    {"AngleNotANumber", Kind::kTable, entry(kAngles, 1, kNan), {"angles_rad[1] is nan"}},
+    {"AngleOfATurn", Kind::kTable, entry(kAngles, 2, 2.0 * M_PI), {"angles_rad[2] is 6.28", "< 2 pi"}},
+    {"TensorNotFinite", Kind::kTensor, entry(kKinetic, 1, kNan), {"tensor", "kinetic[1] is nan"}},
+    {"TensorDrives",
+     Kind::kTensor,
+     whole(kKinetic, {0.25, 0.5, 0.5, 0.25}),
+     {"symmetric part of 'kinetic'", "-0.25", "drives sliding"}},
+    // Every entry of `static` is the larger one, yet across the diagonal it holds 0.1 and kinetic friction pulls 0.3.
+    {"TensorStaticBelowInOneDirection",
+     Kind::kTensor,
+     coefficients({0.5, 0.4, 0.4, 0.5}, {0.4, 0.1, 0.1, 0.4}),
+     {"S S' - K K'", "static friction is below kinetic"}},
+    // Friction acts along axis 1 when sliding, along axis 2 when held: both matrices are singular.
+    {"TensorRangesDiffer", Kind::kTensor, coefficients({0.0, 0.0, 0.0, 0.9}, {0.4, 0.0, 0.0, 0.0}), {"S S' - K K'"}},
+    {"SpeedCount", Kind::kIsotropic, speeds({0.0}, {}), {"speed_factors has 0", "1"}},
+    {"FactorsAlone", Kind::kOrthotropic, speeds({}, {1.0}), {"speed_factors has 1"}},
+    {"SpeedsNotFrom0", Kind::kIsotropic, speeds({0.5}, {1.0}), {"speeds_m_per_s[0] is 0.5 m/s", "must be 0"}},
+    {"SpeedsDescend", Kind::kTensor, speeds({0.0, 0.2, 0.1}, {1.0, 1.0, 1.0}), {"speeds_m_per_s[2] is 0.1", "> 0.2"}},
+    {"FactorAbove1", Kind::kTable, speeds({0.0, 0.2}, {1.0, 1.1}), {"speed_factors[1] is 1.1", ">= 0 and <= 1"}},
+    {"FactorNotANumber", Kind::kAsymmetric, speeds({0.0}, {kNan}), {"speed_factors[0] is nan"}},
+    {"PressuresAlone", Kind::kTensor, pressures({0.0}, {}), {"pressure_factors has 0"}},
+    {"PressuresNotFrom0", Kind::kIsotropic, pressures({600.0}, {1.0}), {"pressures_pa[0] is 600 Pa", "must be 0"}},
+    {"PressuresDescend",
+     Kind::kTable,
+     pressures({0.0, 200.0, 100.0}, {1.0, 1.0, 1.0}),
+     {"pressures_pa[2] is 100", "> 200"}},
+    {"PressureFactorNegative",
+     Kind::kAsymmetric,
+     pressures({0.0}, {-0.1}),
+     {"pressure_factors[0] is -0.1", ">= 0 and <= 10"}},
+    {"PressureFactorNotANumber", Kind::kOrthotropic, pressures({0.0}, {kNan}), {"pressure_factors[0] is nan"}},
+};
+INSTANTIATE_TEST_SUITE_P(All, BadFrictionLaw, testing::ValuesIn(kBadLaws),
+                         [](const testing::TestParamInfo<BadLaw>& bad) { return bad.param.name; });
 
 }  // namespace
 }  // namespace tissue_contact

@@ -1,34 +1,17 @@
 /// @file
-/// What the tests of the room `instrument` share: temporary files, short URDFs, and the message of a refused input.
+/// What the tests of the room `instrument` share: short URDFs and poses.
 #pragma once
 
 #include <gtest/gtest.h>
 
-#include <stdexcept>
 #include <string>
 
+#include "support/refusal.h"
 #include "support/temporary_directory.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/instrument/parse_urdf.h"
 
 namespace tissue_contact {
-
-/// Message of the std::invalid_argument that `action` must throw; the test fails when it throws none.
-template <typename Action>
-std::string refusal(Action action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was refused";
-  return "";
-}
-
-/// Fails unless `text` contains every one of `parts`.
-inline void expectContains(const std::string& text, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << " is not in: " << text;
-}
 
 inline std::string robot(const std::string& content) { return "<robot name=\"r\">" + content + "</robot>"; }
 

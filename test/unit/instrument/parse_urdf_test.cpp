@@ -17,99 +17,121 @@ std::string refusalOf(const std::string& xml) {
   return refusal([&] { parseUrdf(xml, "test.urdf", "", nullptr); });
 }
 
-TEST(MalformedUrdf, Empty) { expectContains(refusalOf(""), {"test.urdf", "empty"}); }
+struct Malformed {
+  const char* name;
+  std::string xml;
+  std::vector<std::string> words;  ///< of the refusal, beside the name of the file
+};
 
-TEST(MalformedUrdf, NotXml) { expectContains(refusalOf("hello"), {"test.urdf", "urdfdom refuses"}); }
+class MalformedUrdf : public testing::TestWithParam<Malformed> {};
 
-TEST(MalformedUrdf, NotARobot) { expectContains(refusalOf("<house name=\"r\"/>"), {"test.urdf", "robot"}); }
-
-TEST(MalformedUrdf, UnclosedElementIsNamedWithItsLine) {
-  expectContains(refusalOf("<robot name=\"r\">\n  <link name=\"a\">\n</robot>"),
-                 {"test.urdf:3:", "</robot>", "<link> of line 2"});
-  expectContains(refusalOf("<robot name=\"r\">\n <link name=\"a\"/>\n"), {"test.urdf:1:", "<robot>", "never closed"});
-  expectContains(refusalOf("<robot name=\"r\"></robot></robot>"), {"test.urdf:1:", "closes nothing"});
+TEST_P(MalformedUrdf, IsRefusedInWords) {
+  const std::string message = refusalOf(GetParam().xml);
+  expectContains(message, {"test.urdf"});
+  expectContains(message, GetParam().words);
 }
 
-TEST(MalformedUrdf, BrokenAttribute) {
-  expectContains(refusalOf("<robot name=\"r\"><link name></link></robot>"), {"test.urdf", "urdfdom refuses"});
-}
+std::string nameOf(const testing::TestParamInfo<Malformed>& info) { return info.param.name; }
 
-TEST(MalformedUrdf, ZeroByte) {
-  expectContains(refusalOf(robot("\n<link name=\"a\"/>") + std::string(1, '\0')), {"test.urdf:2:", "zero byte"});
-}
+const Malformed kTexts[] = {
+    {"Empty", "", {"empty"}},
+    {"NotXml", "hello", {"urdfdom refuses"}},
+    {"NotARobot", "<house name=\"r\"/>", {"robot"}},
+    {"UnclosedElement",
+     "<robot name=\"r\">\n  <link name=\"a\">\n</robot>",
+     {"test.urdf:3:", "</robot>", "<link> of line 2"}},
+    {"NeverClosed", "<robot name=\"r\">\n <link name=\"a\"/>\n", {"test.urdf:1:", "<robot>", "never closed"}},
+    {"ClosesNothing", "<robot name=\"r\"></robot></robot>", {"test.urdf:1:", "closes nothing"}},
+    {"BrokenAttribute", "<robot name=\"r\"><link name></link></robot>", {"urdfdom refuses"}},
+    {"ZeroByte", robot("\n<link name=\"a\"/>") + std::string(1, '\0'), {"test.urdf:2:", "zero byte"}},
+};
+INSTANTIATE_TEST_SUITE_P(Texts, MalformedUrdf, testing::ValuesIn(kTexts), nameOf);
 
-TEST(MalformedUrdf, NoName) { expectContains(refusalOf("<robot><link name=\"a\"/></robot>"), {"test.urdf", "name"}); }
+const std::string kC = "<link name=\"c\"/>";
 
-TEST(MalformedUrdf, NoLink) { expectContains(refusalOf(robot("")), {"test.urdf", "No link"}); }
+const Malformed kTrees[] = {
+    {"NoName", "<robot><link name=\"a\"/></robot>", {"name"}},
+    {"NoLink", robot(""), {"No link"}},
+    {"EmptyNameOfALink", robot("<link name=\"\"/>"), {"link", "empty name"}},
+    {"NoNameOfALink", robot("<link/>"), {"No name given for the link"}},
+    {"EmptyNameOfAJoint", robot(kTwoLinks + joint("", "fixed", "a", "b")), {"link 'b'", "empty name"}},
+    {"DuplicateLink", robot("<link name=\"a\"/><link name=\"a\"/>"), {"'a'", "not unique"}},
+    {"DuplicateJoint",
+     robot(kTwoLinks + kC + joint("j", "fixed", "a", "b") + joint("j", "fixed", "a", "c")),
+     {"'j'", "not unique"}},
+    {"UnknownChildLink", robot(kTwoLinks + joint("j", "fixed", "a", "nowhere")), {"nowhere", "j"}},
+    {"UnknownParentLink", robot(kTwoLinks + joint("j", "fixed", "nowhere", "b")), {"nowhere", "j"}},
+    {"TwoRoots", robot(kTwoLinks), {"root", "a", "b"}},
+    {"NoRoot", robot(kTwoLinks + joint("ab", "fixed", "a", "b") + joint("ba", "fixed", "b", "a")), {"No root link"}},
+    {"RingApartFromTheRoot",
+     robot("<link name=\"root\"/>" + kTwoLinks + joint("ab", "fixed", "a", "b") + joint("ba", "fixed", "b", "a")),
+     {"link 'a'", "not connected to the root 'root'"}},
+    {"LinkWithTwoParents",
+     robot(kTwoLinks + kC + joint("ab", "fixed", "a", "b") + joint("ac", "fixed", "a", "c") +
+           joint("bc", "fixed", "b", "c")),
+     {"link 'c'", "'ac'", "'bc'", "one parent"}},
+};
+INSTANTIATE_TEST_SUITE_P(Trees, MalformedUrdf, testing::ValuesIn(kTrees), nameOf);
 
-TEST(MalformedUrdf, EmptyNames) {
-  expectContains(refusalOf(robot("<link name=\"\"/>")), {"test.urdf", "link", "empty name"});
-  expectContains(refusalOf(robot("<link/>")), {"test.urdf", "No name given for the link"});
-  expectContains(refusalOf(robot(kTwoLinks + joint("", "fixed", "a", "b"))), {"test.urdf", "link 'b'", "empty name"});
-}
+const std::string kDriven = kTwoLinks + kC + "<link name=\"d\"/>" + joint("drive", "revolute", "a", "b");
 
-TEST(MalformedUrdf, DuplicateLink) {
-  expectContains(refusalOf(robot("<link name=\"a\"/><link name=\"a\"/>")), {"test.urdf", "'a'", "not unique"});
-}
+const Malformed kJoints[] = {
+    {"Planar",
+     robot(kTwoLinks + joint("j", "planar", "a", "b")),
+     {"joint 'j'", "planar", "use fixed, revolute, continuous or prismatic"}},
+    {"Floating",
+     robot(kTwoLinks + joint("j", "floating", "a", "b")),
+     {"joint 'j'", "floating", "use fixed, revolute, continuous or prismatic"}},
+    {"UnknownType", robot(kTwoLinks + joint("j", "screw", "a", "b")), {"[j]", "screw"}},
+    {"MissingLimits",
+     robot(kTwoLinks + "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/></joint>"),
+     {"[j]", "limits"}},
+    {"ZeroAxis",
+     robot(kTwoLinks + joint("j", "revolute", "a", "b", "<axis xyz=\"0 0 0\"/>")),
+     {"joint 'j'", "zero <axis>", "0 0 1"}},
+    {"MimicOfAnUnknownJoint",
+     robot(kTwoLinks + joint("j", "revolute", "a", "b", "<mimic joint=\"ghost\"/>")),
+     {"joint 'j'", "unknown joint 'ghost'"}},
+    {"MimicOfAFixedJoint",
+     robot(kTwoLinks + kC + joint("still", "fixed", "a", "b") +
+           joint("j", "revolute", "b", "c", "<mimic joint=\"still\"/>")),
+     {"joint 'j'", "'still'", "fixed"}},
+    {"MimicOfItself",
+     robot(kTwoLinks + joint("j", "revolute", "a", "b", "<mimic joint=\"j\"/>")),
+     {"joint 'j'", "cycle"}},
+    {"MimicsInACycle",
+     robot(kTwoLinks + kC + joint("j", "revolute", "a", "b", "<mimic joint=\"k\"/>") +
+           joint("k", "revolute", "b", "c", "<mimic joint=\"j\"/>")),
+     {"cycle"}},
+    {"MimicOffsetNan",
+     robot(kDriven + joint("j", "revolute", "b", "c", "<mimic joint=\"drive\" offset=\"nan\"/>")),
+     {"[j]", "nan"}},
+    // Each number is finite, their product is not.
+    {"MimicProductOverflows",
+     robot(kDriven + joint("j", "revolute", "b", "c", "<mimic joint=\"drive\" multiplier=\"1e200\"/>") +
+           joint("k", "revolute", "c", "d", "<mimic joint=\"j\" multiplier=\"1e200\"/>")),
+     {"joint 'k'", "not finite"}},
+};
+INSTANTIATE_TEST_SUITE_P(Joints, MalformedUrdf, testing::ValuesIn(kJoints), nameOf);
 
-TEST(MalformedUrdf, DuplicateJoint) {
-  expectContains(refusalOf(robot(kTwoLinks + "<link name=\"c\"/>" + joint("j", "fixed", "a", "b") +
-                                 joint("j", "fixed", "a", "c"))),
-                 {"test.urdf", "'j'", "not unique"});
-}
+const Malformed kGeometries[] = {
+    {"Undefined",
+     robot("<link name=\"a\"><collision><geometry><torus/></geometry></collision></link>"),
+     {"torus", "a"}},
+    // The collision shape is fine; urdfdom stops reading the link at the inertia and only logs that.
+    {"BehindAPartThatUrdfdomDrops",
+     robot("<link name=\"a\"><inertial><mass value=\"1\"/></inertial><collision><geometry><sphere radius=\"1\"/>"
+           "</geometry></collision></link>"),
+     {"inertia", "[a]"}},
+};
+INSTANTIATE_TEST_SUITE_P(Geometries, MalformedUrdf, testing::ValuesIn(kGeometries), nameOf);
 
-TEST(MalformedUrdf, UnknownChildLink) {
-  expectContains(refusalOf(robot(kTwoLinks + joint("j", "fixed", "a", "nowhere"))), {"test.urdf", "nowhere", "j"});
-}
-
-TEST(MalformedUrdf, UnknownParentLink) {
-  expectContains(refusalOf(robot(kTwoLinks + joint("j", "fixed", "nowhere", "b"))), {"test.urdf", "nowhere", "j"});
-}
-
-TEST(MalformedUrdf, TwoRoots) { expectContains(refusalOf(robot(kTwoLinks)), {"test.urdf", "root", "a", "b"}); }
-
-TEST(MalformedUrdf, NoRoot) {
-  expectContains(refusalOf(robot(kTwoLinks + joint("ab", "fixed", "a", "b") + joint("ba", "fixed", "b", "a"))),
-                 {"test.urdf", "No root link"});
-}
-
-TEST(MalformedUrdf, RingApartFromTheRoot) {
-  expectContains(refusalOf(robot("<link name=\"root\"/>" + kTwoLinks + joint("ab", "fixed", "a", "b") +
-                                 joint("ba", "fixed", "b", "a"))),
-                 {"test.urdf", "link 'a'", "not connected to the root 'root'"});
-}
-
-TEST(MalformedUrdf, LinkWithTwoParents) {
-  expectContains(refusalOf(robot(kTwoLinks + "<link name=\"c\"/>" + joint("ab", "fixed", "a", "b") +
-                                 joint("ac", "fixed", "a", "c") + joint("bc", "fixed", "b", "c"))),
-                 {"test.urdf", "link 'c'", "'ac'", "'bc'", "one parent"});
-}
-
-TEST(MalformedUrdf, UnsupportedJointTypes) {
-  expectContains(refusalOf(robot(kTwoLinks + joint("j", "planar", "a", "b"))),
-                 {"test.urdf", "joint 'j'", "planar", "use fixed, revolute, continuous or prismatic"});
-  expectContains(refusalOf(robot(kTwoLinks + joint("j", "floating", "a", "b"))),
-                 {"test.urdf", "joint 'j'", "floating", "use fixed, revolute, continuous or prismatic"});
-  expectContains(refusalOf(robot(kTwoLinks + joint("j", "screw", "a", "b"))), {"test.urdf", "[j]", "screw"});
-}
-
-TEST(MalformedUrdf, MissingLimits) {
-  expectContains(refusalOf(robot(kTwoLinks + "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child "
-                                             "link=\"b\"/></joint>")),
-                 {"test.urdf", "[j]", "limits"});
-}
-
-TEST(MalformedUrdf, ZeroAxis) {
-  expectContains(refusalOf(robot(kTwoLinks + joint("j", "revolute", "a", "b", "<axis xyz=\"0 0 0\"/>"))),
-                 {"test.urdf", "joint 'j'", "zero <axis>", "0 0 1"});
-}
-
-TEST(MalformedUrdf, TinyAxisIsADirection) {
+TEST(ParseUrdf, ATinyAxisIsADirection) {
   const RobotModel model = parse(kTwoLinks + joint("j", "revolute", "a", "b", "<axis xyz=\"0 1e-200 0\"/>"));
   EXPECT_EQ(model.links()[1].axis, Vector3::UnitY());
 }
 
-TEST(MalformedUrdf, NumbersThatAreNotFinite) {
+TEST(ParseUrdf, RefusesNumbersThatAreNotFinite) {
   const auto refusalOfJoint = [](const std::string& element) {
     return refusalOf(robot(kTwoLinks + joint("j", "revolute", "a", "b", element)));
   };
@@ -126,50 +148,6 @@ TEST(MalformedUrdf, NumbersThatAreNotFinite) {
                                    "\"/></geometry></collision></link>")),
                    {"test.urdf", bad, "a"});
   }
-}
-
-TEST(MalformedUrdf, MimicOfAnUnknownJoint) {
-  expectContains(refusalOf(robot(kTwoLinks + joint("j", "revolute", "a", "b", "<mimic joint=\"ghost\"/>"))),
-                 {"test.urdf", "joint 'j'", "unknown joint 'ghost'"});
-}
-
-TEST(MalformedUrdf, MimicOfAFixedJoint) {
-  expectContains(refusalOf(robot(kTwoLinks + "<link name=\"c\"/>" + joint("still", "fixed", "a", "b") +
-                                 joint("j", "revolute", "b", "c", "<mimic joint=\"still\"/>"))),
-                 {"test.urdf", "joint 'j'", "'still'", "fixed"});
-}
-
-TEST(MalformedUrdf, MimicCycles) {
-  expectContains(refusalOf(robot(kTwoLinks + joint("j", "revolute", "a", "b", "<mimic joint=\"j\"/>"))),
-                 {"test.urdf", "joint 'j'", "cycle"});
-  expectContains(
-      refusalOf(robot(kTwoLinks + "<link name=\"c\"/>" + joint("j", "revolute", "a", "b", "<mimic joint=\"k\"/>") +
-                      joint("k", "revolute", "b", "c", "<mimic joint=\"j\"/>"))),
-      {"test.urdf", "cycle"});
-}
-
-TEST(MalformedUrdf, MimicNumbers) {
-  const std::string start = kTwoLinks + "<link name=\"c\"/><link name=\"d\"/>" + joint("drive", "revolute", "a", "b");
-  expectContains(refusalOf(robot(start + joint("j", "revolute", "b", "c", "<mimic joint=\"drive\" offset=\"nan\"/>"))),
-                 {"test.urdf", "[j]", "nan"});
-  // Each number is finite, their product is not.
-  expectContains(
-      refusalOf(robot(start + joint("j", "revolute", "b", "c", "<mimic joint=\"drive\" multiplier=\"1e200\"/>") +
-                      joint("k", "revolute", "c", "d", "<mimic joint=\"j\" multiplier=\"1e200\"/>"))),
-      {"test.urdf", "joint 'k'", "not finite"});
-}
-
-TEST(MalformedUrdf, UndefinedGeometry) {
-  expectContains(refusalOf(robot("<link name=\"a\"><collision><geometry><torus/></geometry></collision></link>")),
-                 {"test.urdf", "torus", "a"});
-}
-
-TEST(MalformedUrdf, APartThatUrdfdomWouldDropSilently) {
-  // The collision shape is fine; urdfdom stops reading the link at the inertia and only logs that.
-  expectContains(
-      refusalOf(robot("<link name=\"a\"><inertial><mass value=\"1\"/></inertial><collision><geometry><sphere "
-                      "radius=\"1\"/></geometry></collision></link>")),
-      {"test.urdf", "inertia", "[a]"});
 }
 
 TEST(ParseUrdf, AMalformedColourCostsNothing) {

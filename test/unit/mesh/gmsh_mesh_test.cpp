@@ -29,14 +29,6 @@ const char* const kText41 =
     "$Elements\n2 3 1 9\n0 1 15 1\n1 70\n3 1 4 2\n9 70 9000000000000000001 3 41\n"                 // 19 to 24
     "8 9000000000000000001 3 41 5\n$EndElements\n";                                                // 25 to 26
 
-TetMesh twoTetrahedra() {
-  TetMesh mesh;
-  mesh.positions.resize(3, 5);
-  mesh.positions.transpose() << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1;
-  mesh.tetrahedra = {{0, 1, 2, 3}, {1, 2, 3, 4}};
-  return mesh;
-}
-
 TEST(GmshMesh, TextOfEveryVersionWithSparseTags) {
   for (const char* text : {kText22, kText40, kText41}) expectSameMesh(loadBytes(text), twoTetrahedra());
 }
@@ -151,7 +143,7 @@ TEST(GmshMesh, BinaryCountsAreCheckedBeforeAnythingIsAllocated) {
   const std::size_t blocks =
       bytes.find("$Elements\n3\n") + 12 + 28;  // behind the header and the only element of the first block
   bytes.replace(blocks + 4, 4, ByteWriter(false).integer(0, 4).bytes());
-  expectRefused(bytes, {("byte " + std::to_string(blocks + 4)).c_str(), "a block has 0 elements"});
+  expectRefused(bytes, {"byte " + std::to_string(blocks + 4), "a block has 0 elements"});
 }
 
 TEST(GmshMesh, NamesNumbersThatAreWrong) {

@@ -6,12 +6,8 @@
 #include "mesh/surface/moving_surface.h"
 #include "unit/contact/contact_test_utilities.h"
 
-namespace tissue_contact {
+namespace tissue_contact::contact_test {
 namespace {
-
-using contact_test::boxSurface;
-using contact_test::Random;
-using contact_test::Surface;
 
 TEST(EdgeTable, NamesBothTrianglesOfAnEdgeAndTheWayTheyRunIt) {
   const EdgeTable table({{0, 1, 2}, {2, 1, 3}});
@@ -94,4 +90,4 @@ TEST(MovingSurface, IsWhereItWasPlacedLastWhateverCameBefore) {
 }
 
 }  // namespace
-}  // namespace tissue_contact
+}  // namespace tissue_contact::contact_test

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <initializer_list>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "mesh_writers.h"
 
 namespace tissue_contact {
 namespace {
@@ -16,30 +16,8 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Two tetrahedra on a common face of the unit corner; nodes 0 to 4.
-TetMesh twoTetrahedra() {
-  TetMesh mesh;
-  mesh.positions.resize(3, 5);
-  mesh.positions.transpose() << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1;
-  mesh.tetrahedra = {{0, 1, 2, 3}, {1, 2, 3, 4}};
-  return mesh;
-}
-
-template <typename Call>
-void expectMessage(const Call& call, std::initializer_list<const char*> words) {
-  try {
-    call();
-    ADD_FAILURE() << "nothing thrown; expected: " << *words.begin();
-  } catch (const std::invalid_argument& error) {
-    for (const char* word : words) {
-      EXPECT_NE(std::string(error.what()).find(word), std::string::npos)
-          << "no \"" << word << "\" in: " << error.what();
-    }
-  }
-}
-
-void expectRefused(const TetMesh& mesh, std::initializer_list<const char*> words) {
-  expectMessage([&] { checkTetMesh(mesh, "tissue 'liver'"); }, words);
+void expectRefused(const TetMesh& mesh, const std::vector<std::string>& words) {
+  expectRefusal([&] { checkTetMesh(mesh, "tissue 'liver'"); }, words);
 }
 
 TEST(CheckTetMesh, AcceptsAGoodMeshInAnyUnit) {
@@ -72,7 +50,7 @@ TEST(CheckTetMesh, NamesTheElementWithAnIndexOutOfRange) {
   for (const int bad : {-1, 5, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()}) {
     TetMesh mesh = twoTetrahedra();
     mesh.tetrahedra[1][2] = bad;
-    expectRefused(mesh, {"tetrahedron 1 ", std::to_string(bad).c_str(), "5 nodes"});
+    expectRefused(mesh, {"tetrahedron 1 ", std::to_string(bad), "5 nodes"});
   }
 }
 
@@ -155,7 +133,7 @@ TEST(BoundaryTriangles, AreOutwardAndInTheOrderOfTheElements) {
 TEST(BoundaryTriangles, RefusesAFaceOfThreeElements) {
   std::vector<Tetrahedron> tetrahedra = twoTetrahedra().tetrahedra;
   tetrahedra.push_back({1, 2, 3, 5});
-  expectMessage([&] { boundaryTriangles(tetrahedra); }, {"nodes 1, 2, 3 belongs to 3 tetrahedra", "0, 1 and 2"});
+  expectRefusal([&] { boundaryTriangles(tetrahedra); }, {"nodes 1, 2, 3 belongs to 3 tetrahedra", "0, 1 and 2"});
 }
 
 TEST(BoundaryTriangles, OfNothingIsNothing) { EXPECT_TRUE(boundaryTriangles({}).empty()); }
@@ -192,23 +170,23 @@ TEST(FixedNodes, CountsANodeOnTheBoundaryDespiteRounding) {
 
 TEST(FixedNodes, NamesTheRegionThatHoldsNoNodeAndTheMesh) {
   const Region good = SphereRegion{{0, 0, 0}, 0.1};
-  expectMessage(
+  expectRefusal(
       [&] {
         fixedOf({good, BoxRegion{{2, 3, 4}, {5, 6, 7}}});
       },
       {"tissue 'liver': fixed region 1 (box", "2 3 4", "5 6 7", "0 0 0", "1 1 1"});
-  expectMessage([&] { fixedOf({PlaneRegion{{0, 0, -9}, {0, 0, 1}}}); }, {"fixed region 0 (plane", "0  0 -9"});
-  expectMessage([&] { fixedOf({SphereRegion{{0, 0, 8}, 0.5}}); }, {"fixed region 0 (sphere", "0 0 8", "0.5"});
+  expectRefusal([&] { fixedOf({PlaneRegion{{0, 0, -9}, {0, 0, 1}}}); }, {"fixed region 0 (plane", "0  0 -9"});
+  expectRefusal([&] { fixedOf({SphereRegion{{0, 0, 8}, 0.5}}); }, {"fixed region 0 (sphere", "0 0 8", "0.5"});
 }
 
 TEST(FixedNodes, RefusesRegionsThatAreNotNumbersOrHaveNoDirection) {
-  expectMessage([&] { fixedOf({BoxRegion{{kNan, 0, 0}, {1, 1, 1}}}); }, {"fixed region 0", "nan"});
-  expectMessage([&] { fixedOf({PlaneRegion{{kNan, 0, 0}, {0, 0, 1}}}); }, {"fixed region 0", "nan"});
-  expectMessage([&] { fixedOf({PlaneRegion{{0, 0, 0}, {0, 0, 0}}}); }, {"fixed region 0"});
-  expectMessage([&] { fixedOf({PlaneRegion{{0, 0, 0}, {kNan, 0, 0}}}); }, {"fixed region 0"});
-  expectMessage([&] { fixedOf({SphereRegion{{0, 0, 0}, kNan}}); }, {"fixed region 0", "nan"});
-  expectMessage([&] { fixedOf({SphereRegion{{0, 0, 0}, -1.0}}); }, {"fixed region 0"});
-  expectMessage([&] { fixedNodes(NodalVectors(3, 0), {SphereRegion{{0, 0, 0}, 1}}, "m"); }, {"no nodes"});
+  expectRefusal([&] { fixedOf({BoxRegion{{kNan, 0, 0}, {1, 1, 1}}}); }, {"fixed region 0", "nan"});
+  expectRefusal([&] { fixedOf({PlaneRegion{{kNan, 0, 0}, {0, 0, 1}}}); }, {"fixed region 0", "nan"});
+  expectRefusal([&] { fixedOf({PlaneRegion{{0, 0, 0}, {0, 0, 0}}}); }, {"fixed region 0"});
+  expectRefusal([&] { fixedOf({PlaneRegion{{0, 0, 0}, {kNan, 0, 0}}}); }, {"fixed region 0"});
+  expectRefusal([&] { fixedOf({SphereRegion{{0, 0, 0}, kNan}}); }, {"fixed region 0", "nan"});
+  expectRefusal([&] { fixedOf({SphereRegion{{0, 0, 0}, -1.0}}); }, {"fixed region 0"});
+  expectRefusal([&] { fixedNodes(NodalVectors(3, 0), {SphereRegion{{0, 0, 0}, 1}}, "m"); }, {"no nodes"});
 }
 
 }  // namespace

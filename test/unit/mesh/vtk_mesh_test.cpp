@@ -24,14 +24,6 @@ const char* const kText5 =
     "CONNECTIVITY vtktypeint64\n0 1 2 0 1 2 3\n1 2 3 4\n"                             // 13 to 15
     "CELL_TYPES 3\n5\n10\n10\n";                                                      // 16 to 19
 
-TetMesh twoTetrahedra() {
-  TetMesh mesh;
-  mesh.positions.resize(3, 5);
-  mesh.positions.transpose() << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1;
-  mesh.tetrahedra = {{0, 1, 2, 3}, {1, 2, 3, 4}};
-  return mesh;
-}
-
 std::vector<VtkStyle> allStyles() {
   std::vector<VtkStyle> styles;
   for (const char* version : {"2.0", "3.0", "4.2", "5.0", "5.1"}) {
@@ -153,7 +145,7 @@ TEST(VtkMesh, BinaryPlacesAreBytes) {
   const std::size_t last_point = bytes.find("\nCELL_TYPES") - 8;
   std::string bad = bytes;
   bad.replace(last_point, 8, ByteWriter(true).integer(-3, 8).bytes());
-  expectRefused(bad, {("byte " + std::to_string(last_point) + ": cell 2 refers to point -3").c_str()});
+  expectRefused(bad, {"byte " + std::to_string(last_point) + ": cell 2 refers to point -3"});
 }
 
 TEST(VtkMesh, FieldDataThatCannotBeSkippedIsNamed) {

@@ -7,6 +7,7 @@
 #include <std_msgs/String.h>
 
 #include "bag_fixture.h"
+#include "support/refusal.h"
 
 namespace tissue_contact {
 namespace {
@@ -37,13 +38,9 @@ class BagReaderTest : public testing::Test {
   }
 
   void expectRefused(const BagLimits& limits, const std::string& words) const {
-    try {
-      read(limits);
-      ADD_FAILURE() << "not refused: " << words;
-    } catch (const std::runtime_error& error) {
-      EXPECT_EQ(std::string(error.what()).find("bag '" + file_ + "': "), 0u) << error.what();
-      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-    }
+    const std::string error = refusal<std::runtime_error>([&] { read(limits); });
+    EXPECT_EQ(error.find("bag '" + file_ + "': "), 0u) << error;
+    expectContains(error, {words});
   }
 
   /// A joint state behind `bytes` of another topic that compress to almost nothing.
@@ -95,12 +92,7 @@ TEST_F(BagReaderTest, ChunksHaveOneIndexForEachConnection) {
   const std::uint32_t first = numberAt<std::uint32_t>(bytes, recordOf(bytes, kIndexOp, 3).field.at("conn"));
   for (const std::size_t index : {std::size_t{4}, std::size_t{5}}) {  // of the second chunk
     writeBytes(file_, patched(bytes, recordOf(bytes, kIndexOp, index).field.at("conn"), bytesOf(first)));
-    try {
-      select_all();
-      ADD_FAILURE() << index;
-    } catch (const std::runtime_error& error) {
-      EXPECT_NE(std::string(error.what()).find("second of one connection"), std::string::npos) << error.what();
-    }
+    expectRefusal<std::runtime_error>(select_all, {"second of one connection"});
   }
   writeBytes(file_, bytes);
   EXPECT_NO_THROW(select_all());

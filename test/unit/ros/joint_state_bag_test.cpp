@@ -2,7 +2,7 @@
 /// Joint states of a bag: those that were recorded, in rosbag's order, and from a bag that somebody has spoilt or made
 /// up nothing but an error. rosbag itself reads outside its buffers, or takes gigabytes, on most of the bags here.
 
-#include "tissue_contact/ros/joint_state_bag.h"
+#include "ros/bag/joint_state_bag.h"
 
 #include <gtest/gtest.h>
 #include <rosbag/view.h>
@@ -11,11 +11,11 @@
 
 #include <functional>
 #include <iostream>
-#include <optional>
 #include <random>
 #include <tuple>
 
 #include "bag_fixture.h"
+#include "support/refusal.h"
 
 namespace tissue_contact {
 namespace {
@@ -36,14 +36,8 @@ std::vector<Row> rowsOf(const std::string& file, const std::vector<std::string>&
   return rows;
 }
 
-/// What reading says; nothing when it succeeds.
-std::optional<std::string> errorOf(const std::string& file) {
-  try {
-    rowsOf(file);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return std::nullopt;
+std::string errorOf(const std::string& file) {
+  return refusal<std::runtime_error>([&] { rowsOf(file); });
 }
 
 class JointStateBagTest : public testing::Test {
@@ -61,10 +55,9 @@ class JointStateBagTest : public testing::Test {
 
   void expectRefused(const std::string& bytes, const std::vector<std::string>& words) const {
     const std::string file = write("spoilt.bag", bytes);
-    const std::optional<std::string> error = errorOf(file);
-    ASSERT_TRUE(error) << "not refused: " << words.front();
-    EXPECT_NE(error->find("bag '" + file + "'"), std::string::npos) << *error;
-    for (const std::string& word : words) EXPECT_NE(error->find(word), std::string::npos) << *error;
+    const std::string error = errorOf(file);
+    expectContains(error, {"bag '" + file + "'"});
+    expectContains(error, words);
   }
 
   TemporaryDirectory directory_;
@@ -147,9 +140,7 @@ TEST_F(JointStateBagTest, MessagesOfOtherTopicsArePassedOver) {
 
 TEST_F(JointStateBagTest, FileThatIsNoBag) {
   const std::string none = directory_.path("none.bag");
-  const std::optional<std::string> missing = errorOf(none);
-  ASSERT_TRUE(missing);
-  EXPECT_EQ(*missing, "bag '" + none + "' does not exist; correct the path");
+  EXPECT_EQ(errorOf(none), "bag '" + none + "' does not exist; correct the path");
   expectRefused("", {"empty"});
   expectRefused("not a bag, but a text", {"no ROS bag"});
   expectRefused("#ROSBAG V2.0\n", {"cut off"});
@@ -158,9 +149,7 @@ TEST_F(JointStateBagTest, FileThatIsNoBag) {
   const std::string pipe = directory_.path("pipe");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   for (const std::string& file : {pipe, directory_.path(""), std::string("/dev/zero")}) {
-    const std::optional<std::string> error = errorOf(file);
-    ASSERT_TRUE(error) << file;
-    EXPECT_NE(error->find("bag '" + file + "' is not a regular file"), std::string::npos) << *error;
+    expectContains(errorOf(file), {"bag '" + file + "' is not a regular file"});
   }
 }
 
@@ -279,11 +268,10 @@ TEST_F(JointStateBagTest, NamesInMessagesArePrintable) {
     for (const std::string& topic : topics) bag.write(topic, ros::Time(1), std_msgs::String());
   };
   const auto error_of = [this](const std::string& bytes) {
-    const std::optional<std::string> error = errorOf(write("spoilt.bag", bytes));
-    if (!error) return std::string();
-    for (const char c : *error) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << *error;
-    EXPECT_LT(error->size(), 10000u);
-    return *error;
+    const std::string error = errorOf(write("spoilt.bag", bytes));
+    for (const char c : error) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << error;
+    EXPECT_LT(error.size(), 10000u);
+    return error;
   };
   write_strings({"/red\x1b[31m", "/" + std::string(1000, 'x')});
   EXPECT_NE(error_of(readBytes(directory_.path("names.bag"))).find("/red?[31m, /xxx"), std::string::npos);
@@ -357,10 +345,9 @@ TEST_P(CompressedBag, CutInTheIndex) {
   const std::string file = write("cut.bag", bytes);
   for (std::size_t size = bytes.size() - 1; size >= index; --size) {
     std::filesystem::resize_file(file, size);
-    const std::optional<std::string> error = errorOf(file);
-    ASSERT_TRUE(error) << size;
-    ASSERT_EQ(error->find("bag '" + file + "': its index is cut off or damaged"), 0u) << *error;
-    ASSERT_NE(error->find("rosbag reindex"), std::string::npos) << *error;
+    const std::string error = errorOf(file);
+    ASSERT_EQ(error.find("bag '" + file + "': its index is cut off or damaged"), 0u) << size << ": " << error;
+    ASSERT_NE(error.find("rosbag reindex"), std::string::npos) << error;
   }
 }
 

@@ -18,12 +18,8 @@ class PublishTest : public SceneTest {
   }
 
   std::string refusal(const std::string& publish) const {
-    try {
-      read(kSmallestScene + ("publish: " + publish));
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what()).substr(path("").size());
-    }
-    return "";
+    const std::string yaml = kSmallestScene + ("publish: " + publish);
+    return tissue_contact::refusal([&] { read(yaml); }).substr(path("").size());
   }
 };
 

@@ -103,14 +103,6 @@ TEST(SceneMarkers, ArrowsVanishWhenTheContactIsLost) {
             0U);
 }
 
-TEST(SceneMarkers, RefuseAStyleThatCannotBeDrawn) {
-  const Simulator simulator = makeScene();
-  for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THROW(SceneMarkers(simulator, MarkerStyle{bad, 0.1}), std::invalid_argument) << bad;
-    EXPECT_THROW(SceneMarkers(simulator, MarkerStyle{0.005, bad}), std::invalid_argument) << bad;
-  }
-}
-
 TEST(DisplacementColor, FallsInLightnessAndStaysInRange) {
   double last = 2.0;
   for (int i = 0; i <= 100; ++i) {

@@ -44,12 +44,7 @@ const BadScene kBadAdvisors[] = {
     {"path: general", "path: fast", "14: advisor.friction_path", "allowed here: auto, general"},
 };
 
-TEST_F(SceneTest, NamesBadAdvisorValues) {
-  for (const BadScene& bad : kBadAdvisors) {
-    SCOPED_TRACE(bad.to);
-    expectRefused(kScene, bad);
-  }
-}
+TEST_F(SceneTest, NamesBadAdvisorValues) { expectAllRefused(kScene, kBadAdvisors); }
 
 }  // namespace
 }  // namespace tissue_contact

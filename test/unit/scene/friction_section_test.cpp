@@ -153,12 +153,7 @@ const BadScene kBadPairs[] = {
      "24: friction[3]", "region \"scar\" is given twice"},
 };
 
-TEST_F(SceneTest, RefusesBadPairsWithTheirPlace) {
-  for (const BadScene& bad : kBadPairs) {
-    SCOPED_TRACE(bad.to);
-    expectRefused(kContacts, bad);
-  }
-}
+TEST_F(SceneTest, RefusesBadPairsWithTheirPlace) { expectAllRefused(kContacts, kBadPairs); }
 
 const BadScene kBadLaws[] = {
     {"law: asymmetric", "law: assymetric", "21: friction[1].law",
@@ -234,12 +229,7 @@ const BadScene kBadLaws[] = {
      "fibre direction, which is not given; add fibre_direction to the tissue"},
 };
 
-TEST_F(SceneTest, RefusesBadLawsWithTheirPlace) {
-  for (const BadScene& bad : kBadLaws) {
-    SCOPED_TRACE(bad.to);
-    expectRefused(kContacts, bad);
-  }
-}
+TEST_F(SceneTest, RefusesBadLawsWithTheirPlace) { expectAllRefused(kContacts, kBadLaws); }
 
 TEST_F(SceneTest, BoundsTheLengthOfATable) {
   const auto withTable = [](int count) {

@@ -66,12 +66,7 @@ const BadScene kBadHolds[] = {
     {"pressure_pa: 1600", "pressure: 1600", "12: tissues[0].pressure", "did you mean \"pressure_pa\"?"},
 };
 
-TEST_F(SceneTest, RefusesBadHoldsWithTheirPlace) {
-  for (const BadScene& bad : kBadHolds) {
-    SCOPED_TRACE(bad.to);
-    expectRefused(kHeld, bad);
-  }
-}
+TEST_F(SceneTest, RefusesBadHoldsWithTheirPlace) { expectAllRefused(kHeld, kBadHolds); }
 
 }  // namespace
 }  // namespace tissue_contact

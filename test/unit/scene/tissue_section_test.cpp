@@ -164,12 +164,7 @@ const BadScene kBadTissues[] = {
      "has 2 elements"},
 };
 
-TEST_F(SceneTest, RefusesBadTissuesWithTheirPlace) {
-  for (const BadScene& bad : kBadTissues) {
-    SCOPED_TRACE(bad.to);
-    expectRefused(kTissues, bad);
-  }
-}
+TEST_F(SceneTest, RefusesBadTissuesWithTheirPlace) { expectAllRefused(kTissues, kBadTissues); }
 
 TEST_F(SceneTest, BoundsTheNumberOfRegions) {
   const auto withRegions = [](int count) {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <string>
 
+#include "support/refusal.h"
 #include "support/replaced.h"
 #include "support/temporary_directory.h"
 #include "support/tissue_files.h"
@@ -121,15 +121,11 @@ TEST_P(BadSceneTest, IsRefusedWithItsPlace) {
   const BadCase& bad = GetParam();
   ASSERT_NO_THROW(build(kScene));
   if (bad.file != nullptr) write(bad.file, bad.content);
-  try {
-    build(*bad.from == '\0' ? std::string(kScene) : replaced(kScene, bad.from, bad.to));
-    FAIL() << "accepted";
-  } catch (const std::invalid_argument& error) {
-    const std::string message = error.what();
-    EXPECT_EQ(message.find(directory_.path("scene.yaml") + ":" + bad.where + ": "), 0U) << message;
-    EXPECT_NE(message.find(bad.problem), std::string::npos) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  }
+  const std::string message =
+      refusal([&] { build(*bad.from == '\0' ? std::string(kScene) : replaced(kScene, bad.from, bad.to)); });
+  EXPECT_EQ(message.find(directory_.path("scene.yaml") + ":" + bad.where + ": "), 0U) << message;
+  expectContains(message, {bad.problem});
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 
 const BadCase kTissues[] = {
@@ -199,12 +195,8 @@ TEST(BadSceneWithoutFile, NamesTheEntry) {
   scene.tissues[0].geometry = BlockDescription{{0.1, 0.1, 0.1}, {1, 1, 1}, {}};
   scene.tissues[0].material.youngs_modulus_pa = std::numeric_limits<double>::quiet_NaN();
   scene.tissues[0].material.density_kg_per_m3 = 1000.0;
-  try {
-    const Simulator simulator(scene, SceneEnvironment());
-    FAIL() << "accepted";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_EQ(std::string(error.what()).find("tissues[0].material: "), 0U) << error.what();
-  }
+  const std::string message = refusal([&] { Simulator(scene, SceneEnvironment()); });
+  EXPECT_EQ(message.find("tissues[0].material: "), 0U) << message;
 }
 
 /// Nothing would ever move: found by the player, after the scene is built.
@@ -214,13 +206,8 @@ TEST(BadSceneWithoutFile, HasNoTopic) {
       "    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.3, density_kg_per_m3: 1000}\ninstruments: []\n",
       "scene.yaml", nullptr);
   Simulator simulator(scene, SceneEnvironment());
-  try {
-    JointStatePlayer player(simulator);
-    FAIL() << "accepted";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_EQ(std::string(error.what()).find("scene.yaml:5: instruments: no instrument has a joint-state topic"), 0U)
-        << error.what();
-  }
+  const std::string message = refusal([&] { JointStatePlayer player(simulator); });
+  EXPECT_EQ(message.find("scene.yaml:5: instruments: no instrument has a joint-state topic"), 0U) << message;
 }
 
 }  // namespace

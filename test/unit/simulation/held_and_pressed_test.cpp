@@ -1,5 +1,5 @@
 /// Tissues on springs and under pressure through the whole simulator: they come to rest where closed forms say, and sleep
-/// there.
+/// there. How a stiff one swings on its springs: validation/held_and_pressed.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,50 +7,10 @@
 #include <string>
 #include <utility>
 
-#include "support/text_scene.h"
-#include "tissue_contact/mesh/triangle_mesh.h"
+#include "support/held_block.h"
 
 namespace tissue_contact {
 namespace {
-
-constexpr double kGravity = 9.81;
-
-/// A block of 40 x 30 x 20 mm with origin in the middle of its lowest face; rho g h = 196.2 Pa, m = 24 g.
-/// @param material, tissue, scene more lines of each.
-Simulator makeBlock(const std::string& material, const std::string& tissue, const std::string& scene) {
-  return makeSimulator(
-      "tissues:\n  - name: block\n    block: {size_m: [0.04, 0.03, 0.02], cells: [4, 3, 2]}\n    material: "
-      "{density_kg_per_m3: "
-      "1000, " +
-      material + "}\n" + tissue + scene);
-}
-
-const std::string kCholesky = "solver: {relaxation: cholesky, iterations: 100, tolerance: 1.0e-10}\n";
-const std::string kHeavy = "gravity_m_per_s2: [0, 0, -9.81]\n";
-const std::string kAwake = "advisor: {sleep: never}\n";
-
-NodalVectors displacement(const Simulator& simulator) {
-  return simulator.positions(0) - simulator.tissues()[0].restPositions();
-}
-
-/// Mean over the area of the lowest face, m.
-double meanSinking(const Simulator& simulator) {
-  const Tissue& tissue = simulator.tissues()[0];
-  const NodalVectors u = displacement(simulator);
-  double sum = 0.0;
-  double area = 0.0;
-  for (const Triangle& triangle : tissue.surface()) {
-    if (tissue.restPositions()(2, triangle[0]) + tissue.restPositions()(2, triangle[1]) +
-            tissue.restPositions()(2, triangle[2]) >
-        1e-9) {
-      continue;
-    }
-    const double own = triangleArea(tissue.restPositions(), triangle);
-    area += own;
-    for (const int node : triangle) sum -= own / 3.0 * u(2, node);
-  }
-  return sum / area;
-}
 
 const std::string kBed =
     "    attachments: [{where: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}], stiffness_pa_per_m: 1e5}]\n";
@@ -58,8 +18,8 @@ const std::string kBed =
 class Attached : public testing::TestWithParam<const char*> {};
 
 TEST_P(Attached, BlockOnABedOfSpringsSinksByItsWeightPerArea) {
-  Simulator simulator =
-      makeBlock(GetParam(), kBed + "    damping: {mass_per_s: 20, stiffness_s: 0.01}\n", kHeavy + kCholesky + kAwake);
+  Simulator simulator = makeHeldBlock(GetParam(), kBed + "    damping: {mass_per_s: 20, stiffness_s: 0.01}\n",
+                                      kHeavy + kCholesky + kAwake);
   for (int k = 0; k < 400; ++k) simulator.advance(0.01, {});
   // rho g h / k = 1.962 mm; in balance the springs' sum is the weight, however the block bends.
   EXPECT_NEAR(meanSinking(simulator), 1000.0 * kGravity * 0.02 / 1e5, 1e-9);
@@ -76,28 +36,6 @@ const std::string kStiff = "youngs_modulus_pa: 1e7, poissons_ratio: 0.3";
 const std::string kOnEachNode =
     "    attachments: [{where: [{box: {min_m: [-1, -1, -1], max_m: [1, 1, 1]}}], stiffness_n_per_m: 2}]\n";
 
-TEST(Attachment, AStiffBodySwingsAtTheFrequencyOfItsSprings) {
-  Simulator simulator = makeBlock(kStiff, kOnEachNode, kHeavy + kCholesky + kAwake);
-  ASSERT_EQ(simulator.tissues()[0].nodeCount(), 60);
-  ASSERT_NEAR(simulator.tissues()[0].attachmentStiffness(), 120.0, 1e-9);
-  const double mass = simulator.tissues()[0].nodeMasses().sum();
-  const double omega = std::sqrt(120.0 / mass);  // 70.7 rad/s
-  constexpr double kDt = 1e-4;
-  int lowest = 0;
-  double height = 0.0;
-  for (int k = 1; k <= 700; ++k) {
-    simulator.advance(kDt, {});
-    const double mean = displacement(simulator).row(2).dot(simulator.tissues()[0].nodeMasses().transpose()) / mass;
-    if (mean < height) {
-      height = mean;
-      lowest = k;
-    }
-  }
-  // Half a period after it was let go, known to a step; implicit Euler takes omega dt pi / 4 = 0.6 % off the depth.
-  EXPECT_NEAR(lowest * kDt, M_PI / omega, 2.0 * kDt);
-  EXPECT_NEAR(height, -2.0 * mass * kGravity / 120.0, 0.01 * 2.0 * mass * kGravity / 120.0);
-}
-
 TEST(Attachment, StiffnessDampingBrakesTheSpringsAsItDoesTheTissue) {
   // As a rigid body: m v' = -k u - beta k v, which with beta = 2 / omega is critically damped: no swing past the rest.
   const std::string scene = kHeavy + kCholesky + kAwake;
@@ -110,7 +48,7 @@ TEST(Attachment, StiffnessDampingBrakesTheSpringsAsItDoesTheTissue) {
           "{stiffness_s: "
           "0.001}}]\n";
     }
-    Simulator simulator = makeBlock(kStiff, tissue, scene);
+    Simulator simulator = makeHeldBlock(kStiff, tissue, scene);
     const double mass = simulator.tissues()[0].nodeMasses().sum();
     const double rest = mass * kGravity / 120.0;
     double lowest = 0.0;
@@ -126,20 +64,12 @@ TEST(Attachment, StiffnessDampingBrakesTheSpringsAsItDoesTheTissue) {
 TEST(Attachment, ATissueHeldBySpringsAloneSleepsWhereItRests) {
   const std::string tissue = kBed + "    damping: {mass_per_s: 20, stiffness_s: 0.01}\n";
   const std::string material = "youngs_modulus_pa: 5000, poissons_ratio: 0.4";
-  Simulator sleeping = makeBlock(material, tissue, kHeavy);
-  Simulator awake = makeBlock(material, tissue, kHeavy + kAwake);
+  Simulator sleeping = makeHeldBlock(material, tissue, kHeavy);
+  Simulator awake = makeHeldBlock(material, tissue, kHeavy + kAwake);
   for (int k = 0; k < 4000; ++k) sleeping.advance(0.002, {});
   for (int k = 0; k < 4000; ++k) awake.advance(0.002, {});
   EXPECT_EQ(sleeping.report().sleeping_nodes, 60);
   EXPECT_LE((sleeping.positions(0) - awake.positions(0)).colwise().norm().maxCoeff(), 1e-3 * 0.01);
-}
-
-/// Root of 3 K e = -p (1 + e)^2: the stress 3 K e of a uniform dilatation acts on undeformed areas, the pressure on
-/// deformed ones. To first order -p / (3 K).
-double uniformStrain(double pressure, double bulk_modulus) {
-  double e = 0.0;
-  for (int k = 0; k < 100; ++k) e = -pressure * (1.0 + e) * (1.0 + e) / (3.0 * bulk_modulus);
-  return e;
 }
 
 /// What a free body of one material, E = 20 kPa, comes to under a pressure all around it.
@@ -151,8 +81,8 @@ struct Shrinking {
 
 Shrinking shrink(const std::string& material, double pressure) {
   Simulator simulator =
-      makeBlock("youngs_modulus_pa: 2e4, " + material,
-                "    damping: {stiffness_s: 0.01}\n    pressure_pa: " + std::to_string(pressure) + "\n", kCholesky);
+      makeHeldBlock("youngs_modulus_pa: 2e4, " + material,
+                    "    damping: {stiffness_s: 0.01}\n    pressure_pa: " + std::to_string(pressure) + "\n", kCholesky);
   for (int k = 0; k < 400; ++k) simulator.advance(0.005, {});
   const double nu = simulator.scene().tissues[0].material.poissons_ratio;
   const NodalVectors& rest = simulator.tissues()[0].restPositions();
@@ -234,8 +164,8 @@ const std::string kTopPressed =
 // With nu = 0 no wall is needed to keep the slab from widening: its oedometer modulus is Young's.
 TEST(Pressure, OnASlabCompressesItByPressureTimesHeightOverItsOedometerModulus) {
   for (const char* model : {"linear", "corotational"}) {
-    Simulator simulator = makeBlock(std::string("youngs_modulus_pa: 2e4, poissons_ratio: 0, model: ") + model,
-                                    kTopPressed, kCholesky + kAwake);
+    Simulator simulator = makeHeldBlock(std::string("youngs_modulus_pa: 2e4, poissons_ratio: 0, model: ") + model,
+                                        kTopPressed, kCholesky + kAwake);
     for (int k = 0; k < 400; ++k) simulator.advance(0.005, {});
     NodalVectors expected = NodalVectors::Zero(3, 60);
     expected.row(2) = -1600.0 / 2e4 * simulator.tissues()[0].restPositions().row(2);
@@ -245,8 +175,8 @@ TEST(Pressure, OnASlabCompressesItByPressureTimesHeightOverItsOedometerModulus) 
 
 TEST(Pressure, ATissueUnderItSleepsWhereItRests) {
   const std::string material = "youngs_modulus_pa: 2e4, poissons_ratio: 0.4";
-  Simulator sleeping = makeBlock(material, kTopPressed, "");
-  Simulator awake = makeBlock(material, kTopPressed, kAwake);
+  Simulator sleeping = makeHeldBlock(material, kTopPressed, "");
+  Simulator awake = makeHeldBlock(material, kTopPressed, kAwake);
   for (int k = 0; k < 3000; ++k) sleeping.advance(0.002, {});
   for (int k = 0; k < 3000; ++k) awake.advance(0.002, {});
   EXPECT_EQ(sleeping.report().sleeping_nodes, 40);

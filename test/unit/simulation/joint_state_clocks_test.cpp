@@ -120,9 +120,7 @@ TEST(JointStateClocks, ASingleStampFarOffChangesNothingThatFollows) {
 }
 
 /// Each tenth stamp anywhere within an hour: one of them is believed, so no more than one gap is simulated.
-TEST(JointStateClocks, StampsFarOffAtRandomDoNotTakeUpTheTime) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, StampsFarOffAtRandomDoNotTakeUpTheTime) {
   std::mt19937 random(3);
   std::vector<std::int64_t> stamps;
   for (int i = 0; i < 1000; ++i) {
@@ -136,9 +134,7 @@ TEST(JointStateClocks, StampsFarOffAtRandomDoNotTakeUpTheTime) {
   EXPECT_LE(outcome.longest_silence, 2);
 }
 
-TEST(JointStateClocks, TissueStaysDeformedThroughAStampFarAhead) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, TissueStaysDeformedThroughAStampFarAhead) {
   std::vector<JointStateSample> samples = press(kSecond, 0.006);
   samples[20].stamp_ns += kHour;
   double before = 0.0;
@@ -167,9 +163,7 @@ TEST(JointStateClocks, AFirstStampFarOffIsLeftBehind) {
   }
 }
 
-TEST(JointStateClocks, PausesAndSlowTopicsAreBelievedAtOnce) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, PausesAndSlowTopicsAreBelievedAtOnce) {
   std::vector<std::int64_t> stamps;
   for (int i = 1; i <= 20; ++i) stamps.push_back(i * kSecond);  // twenty times max_gap_s apart
   const Outcome outcome = play(player, stamps);
@@ -179,9 +173,7 @@ TEST(JointStateClocks, PausesAndSlowTopicsAreBelievedAtOnce) {
   EXPECT_EQ(player.resets(), 1);
 }
 
-TEST(JointStateClocks, WhatNoOtherHasConfirmedIsRefusedAtTheEnd) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, WhatNoOtherHasConfirmedIsRefusedAtTheEnd) {
   play(player, {kHour, kHour + kMillisecond, kSecond, kSecond + kMillisecond});
   EXPECT_EQ(player.waiting(), 2);
   player.finish();
@@ -191,9 +183,7 @@ TEST(JointStateClocks, WhatNoOtherHasConfirmedIsRefusedAtTheEnd) {
   EXPECT_EQ(player.resets(), 0);
 }
 
-TEST(JointStateClocks, ARestartConfirmsWhatIsHeld) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, ARestartConfirmsWhatIsHeld) {
   for (const std::int64_t stamp : {kHour, kSecond}) {
     for (const int topic : {0, 1}) player.push(topic, sample(stamp, 0.0));
   }
@@ -227,9 +217,7 @@ TEST(JointStateClocks, AnyMixtureOfClocksIsCountedAndBounded) {
         drain(player);
       }
     }
-    std::int64_t sum = player.waiting();
-    for (int v = 0; v < kVerdictCount; ++v) sum += player.count(static_cast<Verdict>(v));
-    EXPECT_EQ(sum, pushed);
+    EXPECT_EQ(countedBy(player), pushed);
     EXPECT_GT(player.count(Verdict::kAccepted), 100);
     // In 4 s: what is not trusted changes clocks after 50 ms at the earliest, and that costs a gap or a reset.
     EXPECT_LE(player.gaps() + player.resets(), 4000 / 50 + 1);

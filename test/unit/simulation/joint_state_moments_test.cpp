@@ -9,50 +9,22 @@
 namespace tissue_contact {
 namespace {
 
-using Order = std::vector<std::pair<int, JointStateSample>>;
-
 /// x and y on the arm's topic, z on the jaw's.
 std::unique_ptr<Simulator> armAndJaw() { return blockTouchedBy(probe("a", "/a/measured_js, /a/jaw/measured_js", 0.0)); }
 
 JointStateSample arm(std::int64_t stamp_ns, double x) { return {stamp_ns, {"x", "y"}, {x, 0.0}}; }
 JointStateSample jaw(std::int64_t stamp_ns, double z) { return {stamp_ns, {"z"}, {z}}; }
 
-Trace run(Simulator& simulator, JointStatePlayer& player, const Order& order) {
-  Trace trace;
-  const auto take = [&] {
-    while (const auto played = player.playNext()) {
-      EXPECT_EQ(played->verdict, Verdict::kAccepted) << played->detail;
-      trace.add(*played, simulator);
-    }
-  };
-  for (const auto& [topic, s] : order) {
-    player.push(topic, s);
-    take();
+/// run(), where nothing is refused.
+Trace runAll(Simulator& simulator, JointStatePlayer& player, const Order& order) {
+  const Trace trace = run(simulator, player, order);
+  for (int v = 1; v < kVerdictCount; ++v) {
+    EXPECT_EQ(player.count(static_cast<Verdict>(v)), 0) << verdictText(static_cast<Verdict>(v));
   }
-  player.finish();
-  take();
   return trace;
 }
 
-/// The same samples with one topic's `lag` places later among the other's.
-Order delayed(const Order& order, int late_topic, std::size_t lag) {
-  Order result;
-  Order held;
-  for (const auto& entry : order) {
-    if (entry.first != late_topic) {
-      result.push_back(entry);
-      continue;
-    }
-    held.push_back(entry);
-    if (held.size() > lag) result.push_back(held[held.size() - lag - 1]);
-  }
-  result.insert(result.end(), held.end() - static_cast<std::ptrdiff_t>(lag), held.end());
-  return result;
-}
-
-TEST(JointStateMoments, AnInstrumentSampledBetweenAnothersStampsMovesEvenly) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, AnInstrumentSampledBetweenAnothersStampsMovesEvenly) {
   const double speed = 0.1;  // m/s, upwards
   const auto height = [&](std::int64_t stamp_ns) { return speed * 1e-9 * static_cast<double>(stamp_ns - kSecond); };
   int moments = 0;
@@ -74,9 +46,7 @@ TEST(JointStateMoments, AnInstrumentSampledBetweenAnothersStampsMovesEvenly) {
   EXPECT_EQ(moments, 19);  // the last of b waits
 }
 
-TEST(JointStateMoments, NothingIsInterpolatedOverMoreThanMaxGap) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, NothingIsInterpolatedOverMoreThanMaxGap) {
   player.push(1, sample(kSecond, 0.001));
   player.push(1, sample(kSecond + 51 * kMillisecond, 0.002));
   for (const int ms : {0, 20, 40, 60}) player.push(0, sample(kSecond + ms * kMillisecond, 0.0));
@@ -97,7 +67,7 @@ TEST(JointStateMoments, EqualStampsAreOneMomentWhateverArrivesFirst) {
       order.emplace_back(first, first == 0 ? a[i] : b[i]);
       order.emplace_back(1 - first, first == 0 ? b[i] : a[i]);
     }
-    traces.push_back(run(*simulator, player, order));
+    traces.push_back(runAll(*simulator, player, order));
     EXPECT_EQ(traces.back().stamps.size(), 30U);
     EXPECT_EQ(traces.back().forces.size(), 30U * 12U);  // two wrenches for each
     EXPECT_EQ(simulator->stepCount(), 290);
@@ -120,7 +90,7 @@ TEST(JointStateMoments, TheOrderOfTopicsInTheSceneDoesNotMatter) {
       order.emplace_back(arm_first ? 0 : 1, arm(stamp, 1e-4 * i));
       order.emplace_back(arm_first ? 1 : 0, jaw(stamp, -2e-4 * i));
     }
-    traces.push_back(run(*simulator, player, order));
+    traces.push_back(runAll(*simulator, player, order));
     EXPECT_EQ(traces.back().stamps.size(), 30U);
     EXPECT_EQ(traces.back().forces.size(), 30U * 6U);
   }
@@ -167,14 +137,15 @@ TEST(JointStateMoments, ArrivalOrderOfAJawDoesNotMatter) {
   }
   const auto reference_simulator = armAndJaw();
   JointStatePlayer reference_player(*reference_simulator);
-  const Trace reference = run(*reference_simulator, reference_player, in_order);
+  const Trace reference = runAll(*reference_simulator, reference_player, in_order);
   EXPECT_EQ(reference.stamps.size(), 30U);
   EXPECT_TRUE(reference.pressed());
   for (const int late_topic : {0, 1}) {
     for (const std::size_t lag : {1U, 2U, 3U}) {  // in samples: up to 44 ms, max_gap_s is 50
       const auto simulator = armAndJaw();
       JointStatePlayer player(*simulator);
-      EXPECT_TRUE(run(*simulator, player, delayed(in_order, late_topic, lag)) == reference) << late_topic << ' ' << lag;
+      EXPECT_TRUE(runAll(*simulator, player, delayed(in_order, late_topic, lag)) == reference)
+          << late_topic << ' ' << lag;
     }
   }
 }
@@ -187,7 +158,7 @@ TEST(JointStateMoments, AJawThatTriggersGivesWrenchesOfItsOwn) {
     order.emplace_back(0, arm(kSecond + i * 10 * kMillisecond, 0.0));
     order.emplace_back(1, jaw(kSecond + (i * 10 + 4) * kMillisecond, 0.0));
   }
-  EXPECT_EQ(run(*simulator, player, order).forces.size(), 10U * 6U);
+  EXPECT_EQ(runAll(*simulator, player, order).forces.size(), 10U * 6U);
 }
 
 TEST(JointStateMoments, AJawThatIsNeverHeardDelaysOnlyTheStart) {
@@ -255,7 +226,7 @@ TEST(JointStateMoments, AJawLoopsWithItsArm) {
       order.emplace_back(0, arm(kSecond + (i * 10 + 1) * kMillisecond, 1e-4 * i));
     }
   }
-  const Trace trace = run(*simulator, player, order);
+  const Trace trace = runAll(*simulator, player, order);
   EXPECT_EQ(player.resets(), 2);
   ASSERT_EQ(trace.forces.size(), 3U * 30U * 6U);
   EXPECT_TRUE(trace.pressed());
@@ -297,7 +268,7 @@ TEST(JointStateMoments, NoOrderOfArrivalMattersWithinMaxGap) {
     const auto simulator =
         blockTouchedBy(probe("a", "/a/measured_js, /a/jaw/measured_js", -0.015) + probe("b", "/b", 0.015));
     JointStatePlayer player(*simulator);
-    const Trace trace = run(*simulator, player, order);
+    const Trace trace = runAll(*simulator, player, order);
     resets = player.resets();
     return trace;
   };

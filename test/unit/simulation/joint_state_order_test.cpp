@@ -7,26 +7,7 @@
 namespace tissue_contact {
 namespace {
 
-/// Pushes (topic, sample) in the given order, draining after each.
-Trace run(Simulator& simulator, JointStatePlayer& player, const std::vector<std::pair<int, JointStateSample>>& order) {
-  Trace trace;
-  const auto drainInto = [&] {
-    while (auto played = player.playNext()) {
-      if (played->verdict == Verdict::kAccepted) trace.add(*played, simulator);
-    }
-  };
-  for (const auto& [topic, s] : order) {
-    player.push(topic, s);
-    drainInto();
-  }
-  player.finish();
-  drainInto();
-  return trace;
-}
-
-TEST(JointStatePlayer, WaitsForTheOtherTopic) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, WaitsForTheOtherTopic) {
   player.push(0, sample(kSecond, 0.0));
   EXPECT_TRUE(drain(player).empty());
   player.push(1, sample(kSecond + kMillisecond, 0.0));
@@ -41,9 +22,7 @@ TEST(JointStatePlayer, WaitsForTheOtherTopic) {
   EXPECT_EQ(second[0].instruments, std::vector<int>{1});
 }
 
-TEST(JointStatePlayer, SameStampOnTwoTopicsIsOneMoment) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, SameStampOnTwoTopicsIsOneMoment) {
   for (int i = 0; i < 3; ++i) {
     const std::int64_t stamp = kSecond + i * 10 * kMillisecond;
     player.push(1, sample(stamp, 0.001 * i));
@@ -61,9 +40,7 @@ TEST(JointStatePlayer, SameStampOnTwoTopicsIsOneMoment) {
   }
 }
 
-TEST(JointStatePlayer, ASampleOfAMomentAlreadyPlayedIsLate) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, ASampleOfAMomentAlreadyPlayedIsLate) {
   player.push(0, sample(kSecond, 0.0));
   player.push(0, sample(kSecond + 50 * kMillisecond, 0.0));
   EXPECT_EQ(drain(player).size(), 2U);  // not waited for any longer
@@ -73,9 +50,7 @@ TEST(JointStatePlayer, ASampleOfAMomentAlreadyPlayedIsLate) {
   EXPECT_EQ(late[0].verdict, Verdict::kLate);
 }
 
-TEST(JointStatePlayer, StopsWaitingAfterMaxGapAndRefusesWhatComesLate) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, StopsWaitingAfterMaxGapAndRefusesWhatComesLate) {
   player.push(0, sample(kSecond, 0.0));
   player.push(0, sample(kSecond + 49 * kMillisecond, 0.0));
   EXPECT_TRUE(drain(player).empty());
@@ -90,9 +65,7 @@ TEST(JointStatePlayer, StopsWaitingAfterMaxGapAndRefusesWhatComesLate) {
   EXPECT_EQ(simulator->jointPositions(1), Vector3::Zero());
 }
 
-TEST(JointStatePlayer, FinishReleasesWhatWaits) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, FinishReleasesWhatWaits) {
   player.push(0, sample(kSecond, 0.0));
   player.push(0, sample(kSecond + kMillisecond, 0.0));
   EXPECT_TRUE(drain(player).empty());
@@ -100,9 +73,7 @@ TEST(JointStatePlayer, FinishReleasesWhatWaits) {
   EXPECT_EQ(drain(player).size(), 2U);
 }
 
-TEST(JointStatePlayer, WaitingSamplesAreBoundedInNumber) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, WaitingSamplesAreBoundedInNumber) {
   std::int64_t stamp = kSecond;
   for (std::size_t i = 0; i < JointStatePlayer::kMaxWaiting; ++i) player.push(0, sample(stamp += 1000, 0.0));
   EXPECT_TRUE(drain(player).empty());
@@ -111,8 +82,8 @@ TEST(JointStatePlayer, WaitingSamplesAreBoundedInNumber) {
 }
 
 /// Samples of two topics in the order of their stamps, topic 1 shifted by 3 ms.
-std::vector<std::pair<int, JointStateSample>> twoPresses() {
-  std::vector<std::pair<int, JointStateSample>> order;
+Order twoPresses() {
+  Order order;
   const std::vector<JointStateSample> a = press(kSecond, 0.006);
   const std::vector<JointStateSample> b = press(kSecond + 3 * kMillisecond, 0.005);
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -132,28 +103,15 @@ TEST(JointStatePlayer, ArrivalOrderOfTopicsDoesNotMatter) {
   EXPECT_TRUE(reference.pressed());
   for (const int late_topic : {0, 1}) {
     for (const std::size_t lag : {1U, 2U, 3U}) {  // in samples of 10 ms: up to 43 ms behind; max_gap_s is 50
-      std::vector<std::pair<int, JointStateSample>> order;
-      std::vector<std::pair<int, JointStateSample>> held;
-      for (const auto& entry : in_order) {
-        if (entry.first == late_topic) {
-          held.push_back(entry);
-          if (held.size() <= lag) continue;
-          order.push_back(held[held.size() - lag - 1]);
-        } else {
-          order.push_back(entry);
-        }
-      }
-      order.insert(order.end(), held.end() - static_cast<std::ptrdiff_t>(lag), held.end());
       const auto simulator = twoProbes();
       JointStatePlayer player(*simulator);
-      EXPECT_TRUE(run(*simulator, player, order) == reference) << "topic " << late_topic << " late by " << lag;
+      EXPECT_TRUE(run(*simulator, player, delayed(in_order, late_topic, lag)) == reference)
+          << "topic " << late_topic << " late by " << lag;
     }
   }
 }
 
-TEST(JointStatePlayer, TwoTopicsLoopTogetherWithOneReset) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, TwoTopicsLoopTogetherWithOneReset) {
   auto order = twoPresses();
   const auto again = order;
   order.insert(order.end(), again.begin(), again.end());
@@ -165,9 +123,7 @@ TEST(JointStatePlayer, TwoTopicsLoopTogetherWithOneReset) {
                          trace.forces.begin() + static_cast<std::ptrdiff_t>(half)));
 }
 
-TEST(JointStatePlayer, LeftoversOfALoopArePlayedBeforeTheNextOne) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, LeftoversOfALoopArePlayedBeforeTheNextOne) {
   player.push(0, sample(5 * kSecond, 0.0));
   player.push(1, sample(5 * kSecond, 0.0));
   EXPECT_EQ(drain(player).size(), 1U);
@@ -186,9 +142,7 @@ TEST(JointStatePlayer, LeftoversOfALoopArePlayedBeforeTheNextOne) {
   EXPECT_EQ(player.resets(), 1);
 }
 
-TEST(JointStatePlayer, ATopicFirstHeardInALaterLoopJoinsIt) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, ATopicFirstHeardInALaterLoopJoinsIt) {
   player.push(0, sample(5 * kSecond, 0.0));
   for (int i = 0; i < 3; ++i) player.push(0, sample(kSecond + i * kMillisecond, 0.0));
   drain(player);
@@ -200,9 +154,7 @@ TEST(JointStatePlayer, ATopicFirstHeardInALaterLoopJoinsIt) {
   EXPECT_EQ(player.count(Verdict::kAccepted), 5);  // the newest of topic 0 waits
 }
 
-TEST(JointStatePlayer, AClockSetBackALittleOnOneTopicDisturbsNeither) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, AClockSetBackALittleOnOneTopicDisturbsNeither) {
   for (int i = 0; i < 5; ++i) {
     for (const int topic : {0, 1}) player.push(topic, sample(2 * kSecond + i * 10 * kMillisecond, 0.0));
   }
@@ -218,9 +170,7 @@ TEST(JointStatePlayer, AClockSetBackALittleOnOneTopicDisturbsNeither) {
   EXPECT_EQ(player.count(Verdict::kAccepted), 17);
 }
 
-TEST(JointStatePlayer, AClockSetBackFarOnOneTopicKeepsTheOtherOneOnceItFits) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, AClockSetBackFarOnOneTopicKeepsTheOtherOneOnceItFits) {
   for (int i = 0; i < 5; ++i) {
     for (const int topic : {0, 1}) player.push(topic, sample(2 * kSecond + i * 10 * kMillisecond, 0.0));
   }

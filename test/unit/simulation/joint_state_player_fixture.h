@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/text_scene.h"
@@ -33,6 +34,18 @@ inline std::unique_ptr<Simulator> oneProbe() { return blockTouchedBy(probe("a", 
 inline std::unique_ptr<Simulator> twoProbes() {
   return blockTouchedBy(probe("a", "/a", -0.015) + probe("b", "/b", 0.015));
 }
+
+/// A player of joint states for one probe, or for two with a topic each: "/a" and "/b".
+class OneProbe : public testing::Test {
+ protected:
+  const std::unique_ptr<Simulator> simulator = oneProbe();
+  JointStatePlayer player{*simulator};
+};
+class TwoProbes : public testing::Test {
+ protected:
+  const std::unique_ptr<Simulator> simulator = twoProbes();
+  JointStatePlayer player{*simulator};
+};
 
 inline JointStateSample sample(std::int64_t stamp_ns, double z) { return {stamp_ns, {"x", "y", "z"}, {0.0, 0.0, z}}; }
 
@@ -71,5 +84,47 @@ struct Trace {
   }
   friend bool operator==(const Trace& a, const Trace& b) { return a.stamps == b.stamps && a.forces == b.forces; }
 };
+
+using Order = std::vector<std::pair<int, JointStateSample>>;
+
+/// Pushes (topic, sample) in the given order, and plays what is ready after each.
+inline Trace run(Simulator& simulator, JointStatePlayer& player, const Order& order) {
+  Trace trace;
+  const auto take = [&] {
+    while (const auto played = player.playNext()) {
+      if (played->verdict == Verdict::kAccepted) trace.add(*played, simulator);
+    }
+  };
+  for (const auto& [topic, s] : order) {
+    player.push(topic, s);
+    take();
+  }
+  player.finish();
+  take();
+  return trace;
+}
+
+/// The same samples with one topic's `lag` places later among the other's.
+inline Order delayed(const Order& order, int late_topic, std::size_t lag) {
+  Order result;
+  Order held;
+  for (const auto& entry : order) {
+    if (entry.first != late_topic) {
+      result.push_back(entry);
+      continue;
+    }
+    held.push_back(entry);
+    if (held.size() > lag) result.push_back(held[held.size() - lag - 1]);
+  }
+  result.insert(result.end(), held.end() - static_cast<std::ptrdiff_t>(lag), held.end());
+  return result;
+}
+
+/// All joint states that were pushed, by what became of them.
+inline std::int64_t countedBy(const JointStatePlayer& player) {
+  std::int64_t sum = player.merged() + player.waiting();
+  for (int v = 0; v < kVerdictCount; ++v) sum += player.count(static_cast<Verdict>(v));
+  return sum;
+}
 
 }  // namespace tissue_contact

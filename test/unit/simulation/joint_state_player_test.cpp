@@ -32,9 +32,7 @@ TEST(JointStatePlayer, RefusesASceneWithoutTopics) {
   EXPECT_THROW(JointStatePlayer{*simulator}, std::invalid_argument);
 }
 
-TEST(JointStatePlayer, FirstSamplePlacesWithoutAStep) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, FirstSamplePlacesWithoutAStep) {
   const PlayedSample played = playOne(player, 0, sample(kSecond, -0.004));
   EXPECT_EQ(played.verdict, Verdict::kAccepted);
   EXPECT_EQ(played.stamp_ns, kSecond);
@@ -44,9 +42,7 @@ TEST(JointStatePlayer, FirstSamplePlacesWithoutAStep) {
   EXPECT_EQ(simulator->wrench(0).force, Vector3::Zero());
 }
 
-TEST(JointStatePlayer, AdvancesFromStampToStamp) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, AdvancesFromStampToStamp) {
   playOne(player, 0, sample(kSecond, 0.0));
   const PlayedSample played = playOne(player, 0, sample(kSecond + 10 * kMillisecond, -0.002));
   EXPECT_FALSE(played.was_gap);
@@ -56,9 +52,7 @@ TEST(JointStatePlayer, AdvancesFromStampToStamp) {
   EXPECT_GT(simulator->wrench(0).force.z(), 0.0);
 }
 
-TEST(JointStatePlayer, JointsHeardLaterArePlacedNotMoved) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, JointsHeardLaterArePlacedNotMoved) {
   playOne(player, 0, {kSecond, {"z"}, {0.01}});
   EXPECT_EQ(simulator->jointPositions(0), Vector3(0, 0, 0.01));
   // Half a metre in 10 ms would need far more steps than 10 if it were a motion.
@@ -70,9 +64,7 @@ TEST(JointStatePlayer, JointsHeardLaterArePlacedNotMoved) {
   EXPECT_EQ(simulator->jointPositions(0), Vector3(0.5, 0, 0.02));
 }
 
-TEST(JointStatePlayer, TakesReorderedAndMappedNamesAndIgnoresUnknownOnes) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, TakesReorderedAndMappedNamesAndIgnoresUnknownOnes) {
   const PlayedSample played =
       playOne(player, 0, {kSecond, {"jaw", "recorded_z", "y", "x"}, {kNaN, 0.003, 0.002, 0.001}});
   EXPECT_EQ(played.verdict, Verdict::kAccepted) << played.detail;
@@ -129,9 +121,7 @@ TEST(JointStatePlayer, RefusesBadSamplesAndGoesOnAsIfTheyHadNotCome) {
   }
 }
 
-TEST(JointStatePlayer, NamesFromOutsideReachALogCutAndWithoutControlCharacters) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, NamesFromOutsideReachALogCutAndWithoutControlCharacters) {
   const std::vector<std::string> names(1000, "\x1b[2J\n\r\x7f" + std::string(1000000, 'n'));
   const PlayedSample refused = playOne(player, 0, {kSecond, names, std::vector<double>(names.size(), 0.0)});
   EXPECT_EQ(refused.verdict, Verdict::kNoKnownJoint);
@@ -140,23 +130,17 @@ TEST(JointStatePlayer, NamesFromOutsideReachALogCutAndWithoutControlCharacters) 
   for (const char c : refused.detail) EXPECT_GE(c, ' ');
 }
 
-TEST(JointStatePlayer, TakesTheLastStampThatThereIs) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, TakesTheLastStampThatThereIs) {
   EXPECT_EQ(playOne(player, 0, sample(4294967295 * kSecond + 999999999, 0.0)).verdict, Verdict::kAccepted);
 }
 
-TEST(JointStatePlayer, RefusesABadFirstSample) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, RefusesABadFirstSample) {
   EXPECT_EQ(playOne(player, 0, sample(kSecond, kNaN)).verdict, Verdict::kNotFinite);
   EXPECT_EQ(playOne(player, 0, sample(kSecond, -0.001)).verdict, Verdict::kAccepted);
   EXPECT_EQ(simulator->jointPositions(0), Vector3(0, 0, -0.001));
 }
 
-TEST(JointStatePlayer, LongIntervalIsSimulatedAsMaxGap) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, LongIntervalIsSimulatedAsMaxGap) {
   playOne(player, 0, sample(kSecond, 0.0));
   EXPECT_FALSE(playOne(player, 0, sample(kSecond + 50 * kMillisecond, 0.0)).was_gap);
   EXPECT_EQ(simulator->stepCount(), 50);
@@ -167,9 +151,7 @@ TEST(JointStatePlayer, LongIntervalIsSimulatedAsMaxGap) {
   EXPECT_EQ(simulator->jointPositions(0), Vector3(0, 0, 0.001));
 }
 
-TEST(JointStatePlayer, TimeGoingBackResetsOnceAndRepeatsTheSameBits) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, TimeGoingBackResetsOnceAndRepeatsTheSameBits) {
   std::vector<Trace> loops;
   for (int loop = 0; loop < 3; ++loop) {
     Trace trace;
@@ -191,9 +173,7 @@ TEST(JointStatePlayer, TimeGoingBackResetsOnceAndRepeatsTheSameBits) {
   EXPECT_TRUE(loops[0] == loops[2]);
 }
 
-TEST(JointStatePlayer, ALoopForgetsWhichJointsWereHeard) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, ALoopForgetsWhichJointsWereHeard) {
   playOne(player, 0, {2 * kSecond, {"x", "z"}, {0.3, 0.01}});
   for (int i = 0; i < 3; ++i) player.push(0, {kSecond + i * kMillisecond, {"z"}, {0.02}});
   EXPECT_TRUE(drain(player).front().was_reset);

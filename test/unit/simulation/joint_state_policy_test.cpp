@@ -28,9 +28,7 @@ Trace pressInBatches(StatePolicy policy, std::size_t batch, std::int64_t& merged
   return trace;
 }
 
-TEST(JointStatePolicy, AutoHasToBeDecidedByTheCaller) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, AutoHasToBeDecidedByTheCaller) {
   EXPECT_EQ(player.policy(), StatePolicy::kEveryState);
   EXPECT_THROW(player.setPolicy(StatePolicy::kAuto), std::invalid_argument);
 }
@@ -57,9 +55,7 @@ TEST(JointStatePolicy, NewestStatePlaysStraightToTheNewestAndMergesTheRest) {
   EXPECT_NEAR(newest.forces[newest.forces.size() - 4], expected, 0.01 * std::abs(expected));
 }
 
-TEST(JointStatePolicy, AMomentSaysHowManyWereMerged) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, AMomentSaysHowManyWereMerged) {
   player.setPolicy(StatePolicy::kNewestState);
   for (int i = 0; i < 4; ++i) player.push(0, sample(kSecond + i * 10 * kMillisecond, -0.001 * i));
   std::vector<PlayedSample> played = drain(player);
@@ -78,9 +74,7 @@ TEST(JointStatePolicy, AMomentSaysHowManyWereMerged) {
   EXPECT_EQ(player.count(Verdict::kAccepted), 2);
 }
 
-TEST(JointStatePolicy, NewestStateWaitsForATopicNoLongerThanAQuarterOfMaxLag) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, NewestStateWaitsForATopicNoLongerThanAQuarterOfMaxLag) {
   player.setPolicy(StatePolicy::kNewestState);
   player.push(1, sample(kSecond, 0.0));
   player.push(0, sample(kSecond, 0.0));
@@ -99,9 +93,7 @@ TEST(JointStatePolicy, NewestStateWaitsForATopicNoLongerThanAQuarterOfMaxLag) {
   EXPECT_EQ(played[0].instruments, std::vector<int>{0});
 }
 
-TEST(JointStatePolicy, WhoeverHasAClockMayEndTheWait) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, WhoeverHasAClockMayEndTheWait) {
   player.setPolicy(StatePolicy::kNewestState);
   for (const int topic : {0, 1}) player.push(topic, sample(kSecond, 0.0));
   EXPECT_EQ(drain(player).size(), 1U);
@@ -115,9 +107,7 @@ TEST(JointStatePolicy, WhoeverHasAClockMayEndTheWait) {
   EXPECT_TRUE(drain(player).empty());  // that held for those that were here
 }
 
-TEST(JointStatePolicy, AnInstrumentThatIsAlwaysBehindStillMovesAndHasItsWrench) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, AnInstrumentThatIsAlwaysBehindStillMovesAndHasItsWrench) {
   player.setPolicy(StatePolicy::kNewestState);
   int owed = 0;
   for (int i = 0; i < 30; ++i) {
@@ -144,9 +134,7 @@ TEST(JointStatePolicy, NewestStateDoesNotWaitForAJaw) {
   EXPECT_EQ(simulator->jointPositions(0), Vector3(0.001, 0.0, 0.004));
 }
 
-TEST(JointStatePolicy, NewestStateLoops) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, NewestStateLoops) {
   player.setPolicy(StatePolicy::kNewestState);
   player.push(0, sample(2 * kSecond, 0.0));
   drain(player);
@@ -161,9 +149,7 @@ TEST(JointStatePolicy, NewestStateLoops) {
   EXPECT_EQ(simulator->jointPositions(0).z(), 0.002);
 }
 
-TEST(JointStatePolicy, AnInterruptedMomentOwesNothingAndTheNextGoesOnFromThere) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, AnInterruptedMomentOwesNothingAndTheNextGoesOnFromThere) {
   player.push(0, sample(kSecond, 0.0));
   drain(player);
   player.setLimits({0, [&] { return simulator->stepCount() == 4; }});
@@ -184,9 +170,7 @@ TEST(JointStatePolicy, AnInterruptedMomentOwesNothingAndTheNextGoesOnFromThere) 
   EXPECT_EQ(player.count(Verdict::kAccepted), 2);
 }
 
-TEST(JointStatePolicy, LimitsBoundTheStepsOfEachMoment) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, LimitsBoundTheStepsOfEachMoment) {
   player.setLimits({3, nullptr});
   for (int i = 0; i < 5; ++i) player.push(0, sample(kSecond + i * 10 * kMillisecond, 0.0));
   drain(player);
@@ -204,11 +188,6 @@ TEST(JointStatePolicy, CountsAddUpToWhatWasPushed) {
     std::int64_t pushed = 0;
     std::int64_t now = kSecond;
     std::int64_t moments = 0;
-    const auto sum = [&] {
-      std::int64_t all = player.merged() + player.waiting();
-      for (int v = 0; v < kVerdictCount; ++v) all += player.count(static_cast<Verdict>(v));
-      return all;
-    };
     for (int i = 0; i < 600; ++i) {
       const auto dice = random() % 40;
       now += dice == 0 ? -200 * kMillisecond : 3 * kMillisecond;
@@ -218,10 +197,10 @@ TEST(JointStatePolicy, CountsAddUpToWhatWasPushed) {
       if (dice == 3) s.names.clear();
       player.push(static_cast<int>(random() % 3), s);
       ++pushed;
-      EXPECT_EQ(sum(), pushed);
+      EXPECT_EQ(countedBy(player), pushed);
       if (random() % 4 != 0) continue;
       while (const auto played = player.playNext()) {
-        EXPECT_EQ(sum(), pushed);
+        EXPECT_EQ(countedBy(player), pushed);
         moments += static_cast<int>(played->verdict == Verdict::kAccepted);
       }
     }

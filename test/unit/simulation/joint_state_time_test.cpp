@@ -8,16 +8,12 @@
 namespace tissue_contact {
 namespace {
 
-Trace run(const std::vector<JointStateSample>& samples, std::int64_t late) {
+Trace traceOf(const std::vector<JointStateSample>& samples, std::int64_t late) {
   const auto simulator = oneProbe();
   JointStatePlayer player(*simulator);
-  Trace trace;
-  for (const JointStateSample& s : samples) {
-    player.push(0, s);
-    for (const PlayedSample& played : drain(player)) {
-      if (played.verdict == Verdict::kAccepted) trace.add(played, *simulator);
-    }
-  }
+  Order order;
+  for (const JointStateSample& s : samples) order.emplace_back(0, s);
+  const Trace trace = run(*simulator, player, order);
   EXPECT_EQ(player.count(Verdict::kLate), late);
   EXPECT_EQ(player.resets(), 0);
   return trace;
@@ -35,9 +31,9 @@ TEST(JointStateTime, AStampALittleBackIsLateAndChangesNoBit) {
   jittered[20].stamp_ns = jittered[19].stamp_ns - 280;
   std::vector<JointStateSample> without = press(kSecond, 0.006);
   without.erase(without.begin() + 20);
-  const Trace got = run(jittered, 1);
+  const Trace got = traceOf(jittered, 1);
   EXPECT_TRUE(got.pressed());
-  EXPECT_TRUE(got == run(without, 0));
+  EXPECT_TRUE(got == traceOf(without, 0));
 }
 
 /// Half a millimetre within 280 ns would be a tool at 1800 m/s.
@@ -46,8 +42,8 @@ TEST(JointStateTime, AStampALittleAheadIsPartOfTheNextInterval) {
   jittered[20].stamp_ns = jittered[19].stamp_ns + 280;
   std::vector<JointStateSample> without = press(kSecond, 0.006);
   without.erase(without.begin() + 20);
-  const Trace got = run(jittered, 0);
-  Trace expected = run(without, 0);
+  const Trace got = traceOf(jittered, 0);
+  Trace expected = traceOf(without, 0);
   // One row more, with the wrench of the step before; all others to the bit.
   ASSERT_EQ(got.stamps.size(), expected.stamps.size() + 1);
   expected.stamps.insert(expected.stamps.begin() + 20, jittered[20].stamp_ns);
@@ -104,16 +100,12 @@ TEST(JointStateTime, AnotherTopicMayBeBehindWhereTimeIsResumed) {
     EXPECT_EQ(player.resets(), 0);
     EXPECT_LE(resumed, 1);
     EXPECT_GT(last, start + 150 * kMillisecond);
-    std::int64_t counted = player.merged() + player.waiting();
-    for (int v = 0; v < kVerdictCount; ++v) counted += player.count(static_cast<Verdict>(v));
-    EXPECT_EQ(counted, pushed);
+    EXPECT_EQ(countedBy(player), pushed);
   }
 }
 
 /// What waits for another topic is no larger than the instrument's joints.
-TEST(JointStateTime, NamesThatNobodyKnowsAreNotKept) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, NamesThatNobodyKnowsAreNotKept) {
   JointStateSample large = sample(kSecond, -0.001);
   for (int k = 0; k < 1000; ++k) {
     large.names.push_back("unknown" + std::to_string(k));
@@ -126,9 +118,7 @@ TEST(JointStateTime, NamesThatNobodyKnowsAreNotKept) {
   EXPECT_EQ(simulator->jointPositions(0), VectorX(Vector3(1e-6 * 999, 0.0, -0.001)));  // of one name the last counts
 }
 
-TEST(JointStateTime, UpToMaxGapBackIsLateAndFartherBackALoop) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, UpToMaxGapBackIsLateAndFartherBackALoop) {
   const std::int64_t last = 2 * kSecond;
   EXPECT_EQ(verdictAt(player, 0, last), Verdict::kAccepted);
   EXPECT_EQ(verdictAt(player, 0, last - 50 * kMillisecond), Verdict::kLate);
@@ -147,9 +137,7 @@ TEST(JointStateTime, UpToMaxGapBackIsLateAndFartherBackALoop) {
   EXPECT_EQ(player.resets(), 1);
 }
 
-TEST(JointStateTime, ALateSampleSaysWhereTheTopicIs) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, ALateSampleSaysWhereTheTopicIs) {
   verdictAt(player, 0, kSecond);
   player.push(0, sample(kSecond - 280, 0.0));
   const std::vector<PlayedSample> all = drain(player);
@@ -172,9 +160,7 @@ TEST(JointStateTime, AfterARestartAnyStepBackIsALoop) {
   }
 }
 
-TEST(JointStateTime, ARestartIsForgottenOnceStampsHaveGoneOnByMaxGap) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, ARestartIsForgottenOnceStampsHaveGoneOnByMaxGap) {
   verdictAt(player, 0, kSecond);
   player.restart();
   for (const int ms : {20, 40, 51}) EXPECT_EQ(verdictAt(player, 0, kSecond + ms * kMillisecond), Verdict::kAccepted);
@@ -182,9 +168,7 @@ TEST(JointStateTime, ARestartIsForgottenOnceStampsHaveGoneOnByMaxGap) {
   EXPECT_EQ(player.resets(), 0);
 }
 
-TEST(JointStateTime, ARestartBeforeAnythingWasHeardMeansNothing) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, ARestartBeforeAnythingWasHeardMeansNothing) {
   player.restart();
   EXPECT_EQ(verdictAt(player, 0, kSecond), Verdict::kAccepted);
   EXPECT_EQ(verdictAt(player, 0, kSecond - 280), Verdict::kLate);
@@ -214,9 +198,7 @@ TEST(JointStateTime, AShortLoopOnTwoTopicsResetsOncePerRestart) {
   }
 }
 
-TEST(JointStateTime, AShortLoopWithoutARestartIsNotRefusedForEver) {
-  const auto simulator = oneProbe();
-  JointStatePlayer player(*simulator);
+TEST_F(OneProbe, AShortLoopWithoutARestartIsNotRefusedForEver) {
   std::vector<std::int64_t> accepted_by_pass;
   for (int pass = 0; pass < 5; ++pass) {
     const std::int64_t before = player.count(Verdict::kAccepted);
@@ -236,9 +218,7 @@ TEST(JointStateTime, AShortLoopWithoutARestartIsNotRefusedForEver) {
 }
 
 /// The second topic begins later in the recording, so that it goes back by less than max_gap_s.
-TEST(JointStateTime, ATopicJoinsTheLoopThatAnotherHasBegun) {
-  const auto simulator = twoProbes();
-  JointStatePlayer player(*simulator);
+TEST_F(TwoProbes, ATopicJoinsTheLoopThatAnotherHasBegun) {
   for (int pass = 0; pass < 2; ++pass) {
     for (int i = 0; i < 7; ++i) {
       player.push(0, sample(kSecond + i * 10 * kMillisecond, 0.0));

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "simulation/instrument_motion.h"
+#include "support/refusal.h"
 #include "support/text_scene.h"
 
 namespace tissue_contact {
@@ -133,18 +134,13 @@ TEST(Simulator, RefusesBadTargetsAndKeepsItsState) {
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_THROW(simulator.advance(nan, {Vector3::Zero()}), std::invalid_argument);
   EXPECT_THROW(simulator.advance(0.0, {Vector3::Zero()}), std::invalid_argument);
-  EXPECT_THROW(simulator.advance(0.01, {Vector3(0.0, nan, 0.0)}), std::invalid_argument);
   EXPECT_THROW(simulator.advance(0.01, {Vector3(infinity, 0.0, 0.0)}), std::invalid_argument);
   EXPECT_THROW(simulator.advance(0.01, {Vector2(0.0, 0.0)}), std::invalid_argument);
   EXPECT_THROW(simulator.advance(0.01, {}), std::invalid_argument);
   EXPECT_THROW(simulator.placeInstrument(0, Vector3(nan, 0.0, 0.0)), std::invalid_argument);
   EXPECT_EQ(simulator.positions(0), before);
   EXPECT_EQ(simulator.jointPositions(0), VectorX(Vector3(0.0, 0.0, -0.003)));
-  try {
-    simulator.advance(0.01, {Vector3(0.0, nan, 0.0)});
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("joint 'y'"), std::string::npos) << error.what();
-  }
+  expectRefusal([&] { simulator.advance(0.01, {Vector3(0.0, nan, 0.0)}); }, {"joint 'y'"});
 }
 
 TEST(Simulator, CutsIntervalsIntoEqualStepsNoLongerThanAsked) {

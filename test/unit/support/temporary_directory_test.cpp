@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "support/refusal.h"
+
 namespace tissue_contact {
 namespace {
 
@@ -35,12 +37,7 @@ TEST(TemporaryDirectory, TwoOfOneNameAreTwoFiles) {
 TEST(TemporaryDirectory, WhatCannotBeWrittenIsNamed) {
   const TemporaryDirectory directory;
   fs::create_directory(directory.path() / "cone.stl");
-  try {
-    directory.write("cone.stl", "");
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("cone.stl"), std::string::npos) << error.what();
-  }
+  expectRefusal<std::runtime_error>([&] { directory.write("cone.stl", ""); }, {"cone.stl"});
 }
 
 }  // namespace

@@ -18,10 +18,7 @@ constexpr double kPressure = 1600.0;
 TissueDescription blockDescription() {
   TissueDescription description;
   description.name = "block";
-  BlockDescription block;
-  block.size_m = Vector3(0.04, 0.03, 0.02);
-  block.cells = {4, 3, 2};
-  description.geometry = block;
+  description.geometry = BlockDescription{Vector3(0.04, 0.03, 0.02), {4, 3, 2}, {}};
   description.material = {ElasticModel::kCorotational, 5e3, 0.45, 1050.0};
   return description;
 }

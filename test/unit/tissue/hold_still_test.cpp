@@ -21,20 +21,12 @@ using Model = std::pair<ElasticModel, Dilatation>;
 
 /// Two regions of different stiffness and damping along x; the lower half along z is still.
 Body makeBody(const Model& model) {
-  BlockDescription block;
-  block.size_m = Vector3(0.06, 0.03, 0.04);
-  block.cells = {6, 3, 4};
-  Body body{makeBlockMesh(block), {}, {}, {}};
+  Body body{makeBlockMesh({Vector3(0.06, 0.03, 0.04), {6, 3, 4}, {}}), {}, {}, {}};
   for (Eigen::Index i = 0; i < body.mesh.positions.cols(); ++i) {
     body.fixed.push_back(body.mesh.positions(2, i) == 0.0);
     body.still.push_back(body.mesh.positions(2, i) < 0.025);
   }
-  MaterialDescription soft;
-  soft.model = model.first;
-  soft.dilatation = model.second;
-  soft.youngs_modulus_pa = 5e3;
-  soft.poissons_ratio = 0.4;
-  soft.density_kg_per_m3 = 1000.0;
+  const MaterialDescription soft{model.first, 5e3, 0.4, 1000.0, -1.0, model.second};
   MaterialDescription stiff = soft;
   stiff.youngs_modulus_pa = 2e4;
   stiff.poissons_ratio = 0.3;

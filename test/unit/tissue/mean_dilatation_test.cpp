@@ -15,21 +15,10 @@
 namespace tissue_contact {
 namespace {
 
-TetMesh block(const Vector3& size_m, const std::array<int, 3>& cells) {
-  BlockDescription description;
-  description.size_m = size_m;
-  description.cells = cells;
-  return makeBlockMesh(description);
-}
+TetMesh block(const Vector3& size_m, const std::array<int, 3>& cells) { return makeBlockMesh({size_m, cells, {}}); }
 
 MaterialDescription material(double poissons_ratio, Dilatation dilatation) {
-  MaterialDescription description;
-  description.model = ElasticModel::kLinear;
-  description.youngs_modulus_pa = 1e4;
-  description.poissons_ratio = poissons_ratio;
-  description.density_kg_per_m3 = 1000.0;
-  description.dilatation = dilatation;
-  return description;
+  return {ElasticModel::kLinear, 1e4, poissons_ratio, 1000.0, -1.0, dilatation};
 }
 
 bool shareAFace(const Tetrahedron& a, const Tetrahedron& b) {

@@ -14,12 +14,7 @@
 namespace tissue_contact {
 namespace {
 
-TetMesh smallBlock() {
-  BlockDescription block;
-  block.size_m = Vector3(0.02, 0.02, 0.02);
-  block.cells = {2, 2, 2};
-  return makeBlockMesh(block);
-}
+TetMesh smallBlock() { return makeBlockMesh({Vector3(0.02, 0.02, 0.02), {2, 2, 2}, {}}); }
 
 /// Free motion from rest, damped at 20/s, by implicit Euler steps of 1 ms. 0.3 g is what a node of such a block weighs.
 void move(const Elasticity& elasticity, int steps, NodalVectors& x) {

@@ -14,10 +14,7 @@ namespace tissue_contact {
 namespace {
 
 TEST(Corotational, TangentFollowsRotationAndLagsByItsThreshold) {
-  BlockDescription block;
-  block.size_m = Vector3(0.03, 0.02, 0.02);
-  block.cells = {2, 2, 2};
-  const TetMesh mesh = makeBlockMesh(block);
+  const TetMesh mesh = makeBlockMesh({Vector3(0.03, 0.02, 0.02), {2, 2, 2}, {}});
   const TetElasticity elasticity(mesh.positions, mesh.tetrahedra, std::vector<bool>(mesh.positions.cols(), false),
                                  MaterialDescription{ElasticModel::kCorotational, 5e3, 0.4, 1000.0});
   const auto state = elasticity.makeState();
@@ -40,10 +37,7 @@ TEST(Corotational, TangentFollowsRotationAndLagsByItsThreshold) {
 class AdaptedRotations : public testing::Test {
  protected:
   AdaptedRotations() {
-    BlockDescription block;
-    block.size_m = Vector3(0.02, 0.02, 0.06);
-    block.cells = {2, 2, 6};
-    mesh_ = makeBlockMesh(block);
+    mesh_ = makeBlockMesh({Vector3(0.02, 0.02, 0.06), {2, 2, 6}, {}});
     fixed_.assign(mesh_.positions.cols(), false);
     elasticity_ = std::make_unique<TetElasticity>(mesh_.positions, mesh_.tetrahedra, fixed_,
                                                   MaterialDescription{ElasticModel::kCorotational, 5e3, 0.4, 1000.0});

@@ -28,10 +28,7 @@ double relaxationModulus(double t) {
 class Cube {
  public:
   explicit Cube(ElasticModel model) {
-    BlockDescription block;
-    block.size_m = Vector3(0.02, 0.02, 0.02);
-    block.cells = {2, 2, 2};
-    mesh_ = makeBlockMesh(block);
+    mesh_ = makeBlockMesh({Vector3(0.02, 0.02, 0.02), {2, 2, 2}, {}});
     MaterialDescription material{model, kYoung, kPoisson, 1000.0, -1.0, Dilatation::kElement};
     material.prony_series = kTerms;
     elasticity_ = makeVolumeElasticity(mesh_.positions, mesh_.tetrahedra,
@@ -158,10 +155,7 @@ TEST(Viscoelastic, HeldStressTurnsWithTheBody) {
 TEST(Viscoelastic, OtherModelsAreRefused) {
   TissueDescription description;
   description.name = "pad";
-  BlockDescription block;
-  block.size_m = Vector3(0.02, 0.02, 0.02);
-  block.cells = {1, 1, 1};
-  description.geometry = block;
+  description.geometry = BlockDescription{Vector3(0.02, 0.02, 0.02), {1, 1, 1}, {}};
   description.material = {ElasticModel::kMassSpring, kYoung, 0.25, 1000.0, -1.0, Dilatation::kAuto};
   description.material.prony_series = kTerms;
   EXPECT_THROW(checkTissue(description), std::invalid_argument);

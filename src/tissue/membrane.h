@@ -1,5 +1,5 @@
 /// @file
-/// Room `tissue`: membranes, cloth and strips: constant-strain triangles in plane stress, with bending. Positions in;
+/// Room `tissue`, private: membranes, cloth and strips: constant-strain triangles in plane stress, with bending. Positions in;
 /// elastic forces and a positive semidefinite stiffness out.
 ///
 /// In-plane, per triangle of area A and thickness h, with F = [x1-x0, x2-x0] D_rest^-1 (3 x 2) = R U, R'R = I, U

@@ -1,5 +1,5 @@
 /// @file
-/// Room `ros`: the joint states of a bag. A bag file and a scene's topics in; samples in the order of the recording out.
+/// Room `ros`, private: the joint states of a bag. A bag file and a scene's topics in; samples in the order of the recording out.
 #pragma once
 
 #include <ros/time.h>
