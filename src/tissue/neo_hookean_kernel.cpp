@@ -28,7 +28,8 @@ template <typename Material>
 TISSUE_CONTACT_INLINE void neoHookean(const std::vector<ElementBatch>& batches, BatchRange range,
                                       const Material& material, double tangent_change, const double* x,
                                       const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
-                                      std::vector<unsigned char>& changed, double* forces) {
+                                      std::vector<unsigned char>& changed, ElementValues* volume_ratios,
+                                      double* forces) {
   for (std::size_t b = range.begin; b < range.end; ++b) {
     LaneMatrix F, C, P;
     typename Material::Value lambda, mu;
@@ -43,6 +44,7 @@ TISSUE_CONTACT_INLINE void neoHookean(const std::vector<ElementBatch>& batches, 
     for (std::size_t i = 0; i < 9; ++i) P.m[i] = along_F * F.m[i] + along_C * C.m[i];
     addStressForces(batches[b], P, forces);
     for (std::size_t i = 0; i < 9; ++i) store(F.m[i], deformations[b][i]);
+    if (volume_ratios != nullptr) store(J, volume_ratios[b]);
     changed[b] = changedLanes(F, tangents[b], tangent_change);
   }
 }
@@ -52,16 +54,35 @@ TISSUE_CONTACT_INLINE void neoHookean(const std::vector<ElementBatch>& batches, 
 TISSUE_CONTACT_CLONES
 void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
                          double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
-                         std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed, double* forces) {
-  neoHookean(batches, range, UniformMaterial{material}, tangent_change, x, tangents, deformations, changed, forces);
+                         std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed,
+                         ElementValues* volume_ratios, double* forces) {
+  neoHookean(batches, range, UniformMaterial{material}, tangent_change, x, tangents, deformations, changed,
+             volume_ratios, forces);
 }
 
 TISSUE_CONTACT_CLONES
 void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range,
                          const std::vector<BatchMaterial>& materials, double tangent_change, const double* x,
                          const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
-                         std::vector<unsigned char>& changed, double* forces) {
-  neoHookean(batches, range, VaryingMaterial{materials}, tangent_change, x, tangents, deformations, changed, forces);
+                         std::vector<unsigned char>& changed, ElementValues* volume_ratios, double* forces) {
+  neoHookean(batches, range, VaryingMaterial{materials}, tangent_change, x, tangents, deformations, changed,
+             volume_ratios, forces);
+}
+
+TISSUE_CONTACT_CLONES
+void addCofactorForces(const std::vector<ElementBatch>& batches, BatchRange range,
+                       const std::vector<MatrixBatch>& deformations,
+                       const std::vector<std::array<int, kLanes>>& group_of, const std::vector<double>& pressures,
+                       double* forces) {
+  for (std::size_t b = range.begin; b < range.end; ++b) {
+    LaneMatrix F, P;
+    Lanes pressure;
+    for (int lane = 0; lane < kLanes; ++lane) pressure[lane] = pressures[group_of[b][lane]];
+    for (std::size_t i = 0; i < 9; ++i) load(deformations[b][i], F.m[i]);
+    cofactors(F, P);
+    for (Lanes& entry : P.m) entry *= pressure;
+    addStressForces(batches[b], P, forces);
+  }
 }
 
 }  // namespace tissue_contact
