@@ -44,8 +44,15 @@ Matrix3 withoutNegativeEigenvalues(const Matrix3& symmetric) {
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-/// @param pressure added to the factor of dJ/dF, Pa.
-SpectralTangent spectralTangent(const Matrix3& F, const LameParameters& material, double pressure) {
+/// What a patch adds to its elements.
+struct InPatch {
+  double pressure = 0.0;      ///< to the factor of dJ/dF, Pa
+  double flat_modulus = 0.0;  ///< where J is below kFlat, Pa; 0: no patch
+};
+
+InPatch inPatch(const TetElement& element, double pressure) { return {pressure, kFlatModulus * element.lame.mu}; }
+
+SpectralTangent spectralTangent(const Matrix3& F, const LameParameters& material, const InPatch& patch) {
   // F = R S = (R V) diag(sigma) V', R a proper rotation: J = product of sigma carries the sign of det F.
   const Matrix3 R = nearestRotation(F, Quaternion::Identity()).toRotationMatrix();
   const Matrix3 S = R.transpose() * F;
@@ -56,10 +63,12 @@ SpectralTangent spectralTangent(const Matrix3& F, const LameParameters& material
   tangent.U = R * tangent.V;
   const double I = sigma.squaredNorm();
   const double along_F = material.mu - material.mu / (I + 1.0);
-  const double along_C = material.lambda * (sigma.prod() - 1.0) - 0.75 * material.mu + pressure;
+  const double J = sigma.prod();
+  const double flat = J < kFlat ? patch.flat_modulus : 0.0;
+  const double along_C = material.lambda * (J - 1.0) - 0.75 * material.mu + flat * (J - kFlat) + patch.pressure;
   const Vector3 cofactors(sigma[1] * sigma[2], sigma[2] * sigma[0], sigma[0] * sigma[1]);
   tangent.stretch = 2.0 * material.mu / ((I + 1.0) * (I + 1.0)) * sigma * sigma.transpose() +
-                    material.lambda * cofactors * cofactors.transpose();
+                    (material.lambda + flat) * cofactors * cofactors.transpose();
   tangent.stretch.diagonal().array() += along_F;
   for (int k = 0; k < 3; ++k) {
     const int i = (k + 1) % 3;
@@ -75,8 +84,9 @@ SpectralTangent spectralTangent(const Matrix3& F, const LameParameters& material
   return tangent;
 }
 
-void addStiffness(const TetElement& element, const Matrix3& F, double pressure, double sign, Elasticity::State& state) {
-  const SpectralTangent tangent = spectralTangent(F, element.lame, pressure);
+void addStiffness(const TetElement& element, const Matrix3& F, const InPatch& patch, double sign,
+                  Elasticity::State& state) {
+  const SpectralTangent tangent = spectralTangent(F, element.lame, patch);
   const Eigen::Matrix<double, 3, 4> b = tangent.V.transpose() * shapeGradients(element.rest_inverse);
   const double volume = sign * element.volume;
   for (int n = 0; n < 4; ++n) {
@@ -176,16 +186,14 @@ void NeoHookean::forEachChanged(const std::vector<BatchRange>& ranges, const Def
   }
 }
 
-double NeoHookean::tangentPressure(std::size_t element, const DeformationState& state) const {
-  return patches_ ? state.tangent_pressures[patches_->of_batch[element / kLanes][element % kLanes]] : 0.0;
-}
-
 void NeoHookean::rebuildStiffness(DeformationState& state) const {
   state.stiffness.setZero();
   state.damping.setZero();
   for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
-    addStiffness(tets_->elements[e], matrixInLane(state.tangent_deformations[e / kLanes], e % kLanes),
-                 tangentPressure(e, state), 1.0, state);
+    const TetElement& element = tets_->elements[e];
+    InPatch patch;
+    if (patches_) patch = inPatch(element, state.tangent_pressures[patches_->of_batch[e / kLanes][e % kLanes]]);
+    addStiffness(element, matrixInLane(state.tangent_deformations[e / kLanes], e % kLanes), patch, 1.0, state);
   }
   for (std::size_t p = 0; patches_ && p < patches_->patches.size(); ++p) addPatchStiffness(p, 1.0, state);
 }
@@ -217,9 +225,9 @@ void NeoHookean::refreshStiffness(const std::vector<BatchRange>& ranges, Deforma
   const bool rebuild = cancels || 2 * changes > tets_->elements.size();
   forEachChanged(ranges, state, [&](std::size_t batch, std::size_t lane) {
     const TetElement& element = tets_->elements[batch * kLanes + lane];
-    if (!rebuild) addStiffness(element, matrixInLane(state.tangent_deformations[batch], lane), 0.0, -1.0, state);
+    if (!rebuild) addStiffness(element, matrixInLane(state.tangent_deformations[batch], lane), {}, -1.0, state);
     for (std::size_t i = 0; i < 9; ++i) state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];
-    if (!rebuild) addStiffness(element, matrixInLane(state.deformations[batch], lane), 0.0, 1.0, state);
+    if (!rebuild) addStiffness(element, matrixInLane(state.deformations[batch], lane), {}, 1.0, state);
   });
   if (rebuild) rebuildStiffness(state);
 }
@@ -259,7 +267,7 @@ void NeoHookean::refreshPatches(DeformationState& state) const {
       const std::size_t lane = member.element % kLanes;
       const TetElement& element = tets_->elements[member.element];
       const auto add = [&](const MatrixBatch& F, double pressure, double sign) {
-        addStiffness(element, matrixInLane(F, lane), pressure, sign, state);
+        addStiffness(element, matrixInLane(F, lane), inPatch(element, pressure), sign, state);
       };
       if (!rebuild) add(state.tangent_deformations[batch], state.tangent_pressures[p], -1.0);
       for (std::size_t i = 0; i < 9; ++i)
@@ -333,7 +341,11 @@ double NeoHookean::energy(const NodalVectors& x) const {
     // lambda/2 ((J - alpha)^2 - (1 - alpha)^2) = (J - 1) (lambda/2 (J - 1) - 3/4 mu)
     energy += element.volume * (0.5 * material.mu * (I - 3.0 - std::log((I + 1.0) / 4.0)) +
                                 (J - 1.0) * (0.5 * material.lambda * (J - 1.0) - 0.75 * material.mu));
-    if (patches_) changes[patches_->of_batch[e / kLanes][e % kLanes]] += element.volume * (J - 1.0);
+    if (patches_) {
+      const double flat = std::min(0.0, J - kFlat);
+      energy += element.volume * 0.5 * kFlatModulus * material.mu * flat * flat;
+      changes[patches_->of_batch[e / kLanes][e % kLanes]] += element.volume * (J - 1.0);
+    }
     ++e;
   }
   for (std::size_t p = 0; p < changes.size(); ++p) {

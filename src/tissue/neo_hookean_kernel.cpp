@@ -40,11 +40,15 @@ TISSUE_CONTACT_INLINE void neoHookean(const std::vector<ElementBatch>& batches, 
     Lanes I = F.m[0] * F.m[0];
     for (std::size_t i = 1; i < 9; ++i) I += F.m[i] * F.m[i];
     const Lanes along_F = mu - mu / (I + 1.0);
-    const Lanes along_C = lambda * (J - 1.0) - 0.75 * mu;
+    Lanes along_C = lambda * (J - 1.0) - 0.75 * mu;
+    if (volume_ratios != nullptr) {
+      const Lanes flat = J - kFlat;
+      along_C += kFlatModulus * mu * (flat < 0.0 ? flat : Lanes{});
+      store(J, volume_ratios[b]);
+    }
     for (std::size_t i = 0; i < 9; ++i) P.m[i] = along_F * F.m[i] + along_C * C.m[i];
     addStressForces(batches[b], P, forces);
     for (std::size_t i = 0; i < 9; ++i) store(F.m[i], deformations[b][i]);
-    if (volume_ratios != nullptr) store(J, volume_ratios[b]);
     changed[b] = changedLanes(F, tangents[b], tangent_change);
   }
 }
