@@ -169,7 +169,8 @@ TEST_F(RobotMeshes, TheSurrolRobotPressesLikePrimitives) {
 std::string deeperScene(double deeper_m, const std::string& model, const std::string& iterations) {
   std::ostringstream position;
   position << "position_m: [0.2, " << -0.041683 + 0.38942 * deeper_m << ", " << 0.187632 - 0.92106 * deeper_m << "]";
-  const std::string scene = replaced(primitiveScene(), kSlab, position.str());
+  std::string scene = replaced(primitiveScene(), kSlab, position.str());
+  if (model != "neo_hookean") scene = replaced(scene, "dilatation: element", "dilatation: auto");
   return replaced(replaced(scene, "model: neo_hookean", "model: " + model), "iterations: 500",
                   "iterations: " + iterations);
 }
@@ -179,8 +180,8 @@ std::string deeperScene(double deeper_m, const std::string& model, const std::st
 TEST_F(RobotMeshes, ClosedJawsSweepingDeepCatchNoTissue) {
   const Outcome outcome = outcomeOf(deeperScene(0.006, "neo_hookean", "100"), directory_);
   EXPECT_LT(outcome.implausible,
-            700);                             // of 3419, while elements fold over the tool: 222
-  EXPECT_LT(outcome.peak_n, 5.0);             // 3.1
+            700);                  // of 3419, while elements fold over the tool; 379 of any depth, fewer of a tenth
+  EXPECT_LT(outcome.peak_n, 5.0);  // 4.0
   EXPECT_LT(outcome.highest_contact, 1.2e4);  // 2.4 times the modulus; opposed forces of 1100 N were 400 times it
 }
 
