@@ -87,11 +87,7 @@ void LoadWatch::check(const std::vector<SolvedContact>& contacts, const std::vec
         area += body.node_area[node];
         checkElements(body, node, x, key.instrument, key.tissue, load);
       }
-      for (int i = 0; i < 3 && !body.strains.empty(); ++i) {
-        if (contact.contact.weights[i] == 0.0) continue;
-        strain += std::abs(contact.contact.weights[i]) * contact.force_on_tissue_n.norm() *
-                  strainAround(body, contact.contact.nodes[i]);
-      }
+      if (!body.strains.empty()) strain += contact.force_on_tissue_n.norm() * strainUnder(body, contact.contact);
     }
     if (force > 0.0) add(key, body, strain / force, law_error);
     if (!(area > 0.0)) continue;
@@ -137,15 +133,21 @@ void LoadWatch::checkElements(Body& body, int node, const NodalVectors& x, int i
 }
 
 /// Of elements that checkElements() has seen.
-double LoadWatch::strainAround(const Body& body, int node) {
-  double strain = 0.0;
-  double volume = 0.0;
-  for (int i = body.first_of_node[node]; i < body.first_of_node[node + 1]; ++i) {
-    const Body::Strain& of_element = body.strains[body.elements_of_node[i]];
-    strain += of_element.times_volume;
-    volume += of_element.volume;
+double LoadWatch::strainUnder(const Body& body, const Contact& contact) {
+  double mean = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    if (contact.weights[k] == 0.0) continue;
+    const int node = contact.nodes[k];
+    double strain = 0.0;
+    double volume = 0.0;
+    for (int i = body.first_of_node[node]; i < body.first_of_node[node + 1]; ++i) {
+      const Body::Strain& of_element = body.strains[body.elements_of_node[i]];
+      strain += of_element.times_volume;
+      volume += of_element.volume;
+    }
+    mean += std::abs(contact.weights[k]) * strain / volume;
   }
-  return strain / volume;
+  return mean;
 }
 
 void LoadWatch::add(const ContactKey& key, const Body& body, double strain, LawError& law_error) {

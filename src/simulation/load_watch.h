@@ -47,7 +47,7 @@ class LoadWatch {
     };
     std::vector<Strain> strains;  ///< of the elements seen in this check; empty: the law has no range
   };
-  static double strainAround(const Body& body, int node);
+  static double strainUnder(const Body& body, const Contact& contact);
   static void add(const ContactKey& key, const Body& body, double strain, LawError& law_error);
   void checkElements(Body& body, int node, const NodalVectors& x, int instrument, int tissue, ImplausibleLoad& load);
 

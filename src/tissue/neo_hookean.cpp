@@ -245,7 +245,8 @@ void NeoHookean::markStalePatches(const std::vector<BatchRange>& ranges, bool st
   });
 }
 
-void NeoHookean::refreshPatches(DeformationState& state) const {
+/// Whether the stale patches are many, or leave round-off behind.
+bool NeoHookean::rebuildsFor(const DeformationState& state) const {
   const std::vector<DilatationPatches::Patch>& patches = patches_->patches;
   std::size_t changes = 0;
   bool cancels = false;
@@ -258,7 +259,12 @@ void NeoHookean::refreshPatches(DeformationState& state) const {
           cancels || matrixInLane(state.tangent_deformations[e / kLanes], e % kLanes).squaredNorm() > kLargeDeformation;
     }
   }
-  const bool rebuild = cancels || 2 * changes > tets_->elements.size();
+  return cancels || 2 * changes > tets_->elements.size();
+}
+
+void NeoHookean::refreshPatches(DeformationState& state) const {
+  const std::vector<DilatationPatches::Patch>& patches = patches_->patches;
+  const bool rebuild = rebuildsFor(state);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     if (state.stale[p] == 0) continue;
     if (!rebuild) addPatchStiffness(p, -1.0, state);

@@ -77,6 +77,7 @@ class NeoHookean : public Elasticity {
   void forEachChanged(const std::vector<BatchRange>& ranges, const DeformationState& state, const Call& call) const;
   void refreshStiffness(const std::vector<BatchRange>& ranges, DeformationState& state) const;
   void markStalePatches(const std::vector<BatchRange>& ranges, bool still, DeformationState& state) const;
+  bool rebuildsFor(const DeformationState& state) const;
   void refreshPatches(DeformationState& state) const;
 
   std::unique_ptr<const TetElements> tets_;
