@@ -164,6 +164,8 @@ void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std:
   message.implausible_at = toPoint(load.p_W);
   message.inverted_elements = static_cast<std::uint32_t>(load.inverted_elements);
   message.contact_pressure = load.pressure_pa;
+  message.strain = report.law_error.strain;
+  message.law_error = report.law_error.relative;
   message.pinched_contacts = static_cast<std::uint32_t>(report.pinched_contacts);
   message.open_contacts = static_cast<std::uint32_t>(report.open_contacts);
   message.static_contacts = static_cast<std::uint32_t>(report.static_contacts);

@@ -1,6 +1,8 @@
 #include "simulation/load_watch.h"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "tissue_contact/mesh/tet_mesh.h"
@@ -42,6 +44,9 @@ LoadWatch::LoadWatch(const Scene& scene, const std::vector<Tissue>& tissues) {
     body.node_area = nodeAreas(tissues[t]);
     body.node_seen.assign(nodes, 0);
     body.element_seen.assign(elements.size(), 0);
+    body.law = scene.tissues[t].material.model;
+    body.poissons_ratio = scene.tissues[t].material.poissons_ratio;
+    if (hasRange(body.law)) body.strains.resize(elements.size());
     body.first_of_node.assign(nodes + 1, 0);
     for (const Tetrahedron& element : elements) {
       for (const int node : element) ++body.first_of_node[node + 1];
@@ -56,8 +61,9 @@ LoadWatch::LoadWatch(const Scene& scene, const std::vector<Tissue>& tissues) {
 }
 
 void LoadWatch::check(const std::vector<SolvedContact>& contacts, const std::vector<NodalVectors>& positions,
-                      ImplausibleLoad& load) {
+                      ImplausibleLoad& load, LawError& law_error) {
   load = ImplausibleLoad();
+  law_error = LawError();
   worst_volume_ = 0.0;
   for (std::size_t first = 0, end = 0; first < contacts.size(); first = end) {
     const ContactKey& key = contacts[first].contact.key;
@@ -66,6 +72,7 @@ void LoadWatch::check(const std::vector<SolvedContact>& contacts, const std::vec
     ++checks_;
     double force = 0.0;
     double area = 0.0;
+    double strain = 0.0;  // times force
     std::size_t strongest = first;
     for (end = first; end < contacts.size(); ++end) {
       const SolvedContact& contact = contacts[end];
@@ -80,7 +87,9 @@ void LoadWatch::check(const std::vector<SolvedContact>& contacts, const std::vec
         area += body.node_area[node];
         checkElements(body, node, x, key.instrument, key.tissue, load);
       }
+      if (!body.strains.empty()) strain += contact.force_on_tissue_n.norm() * strainUnder(body, contact.contact);
     }
+    if (force > 0.0) add(key, body, strain / force, law_error);
     if (!(area > 0.0)) continue;
     const double pressure = force / area;
     const bool is_of_finding =
@@ -104,7 +113,13 @@ void LoadWatch::checkElements(Body& body, int node, const NodalVectors& x, int i
     const int e = body.elements_of_node[i];
     if (body.element_seen[e] == checks_) continue;
     body.element_seen[e] = checks_;
-    const double volume = signedVolume(x, elements[e]) / signedVolume(body.tissue->restPositions(), elements[e]);
+    const NodalVectors& rest = body.tissue->restPositions();
+    const double rest_volume = signedVolume(rest, elements[e]);
+    const double volume = signedVolume(x, elements[e]) / rest_volume;
+    if (!body.strains.empty()) {
+      const Matrix3 F = edgeMatrix(x, elements[e]) * edgeMatrix(rest, elements[e]).inverse();
+      body.strains[e] = {rest_volume * equivalentStrain(F), rest_volume};
+    }
     if (!(volume < kInsideOut)) continue;
     ++load.inverted_elements;
     if (!(volume < worst_volume_)) continue;
@@ -115,6 +130,31 @@ void LoadWatch::checkElements(Body& body, int node, const NodalVectors& x, int i
     load.p_W = Vector3::Zero();
     for (const int corner : elements[e]) load.p_W += 0.25 * x.col(corner);
   }
+}
+
+/// Of elements that checkElements() has seen.
+double LoadWatch::strainUnder(const Body& body, const Contact& contact) {
+  double mean = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    if (contact.weights[k] == 0.0) continue;
+    const int node = contact.nodes[k];
+    double strain = 0.0;
+    double volume = 0.0;
+    for (int i = body.first_of_node[node]; i < body.first_of_node[node + 1]; ++i) {
+      const Body::Strain& of_element = body.strains[body.elements_of_node[i]];
+      strain += of_element.times_volume;
+      volume += of_element.volume;
+    }
+    mean += std::abs(contact.weights[k]) * strain / volume;
+  }
+  return mean;
+}
+
+void LoadWatch::add(const ContactKey& key, const Body& body, double strain, LawError& law_error) {
+  const double relative = likelyLawError(body.law, body.poissons_ratio, strain);
+  if (!hasRange(body.law)) return;
+  if (law_error.tissue >= 0 && !(std::abs(relative) > std::abs(law_error.relative))) return;
+  law_error = {key.tissue, key.instrument, strain, relative};
 }
 
 std::string implausibleLoadText(const Simulator& simulator) {

@@ -1,10 +1,12 @@
 /// @file
-/// Room `simulation`, private: whether the contact forces of a step are such as the tissue could bear. Contacts with
-/// their forces and node positions in; a finding with its place out.
+/// Room `simulation`, private: whether the contact forces of a step are such as the tissue could bear, and whether its elastic law
+/// still describes it there. Contacts with their forces and node positions in; a finding with its place, and the likely error
+/// of the law, out.
 #pragma once
 
 #include <vector>
 
+#include "tissue_contact/simulation/law_error.h"
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
@@ -16,6 +18,8 @@ namespace tissue_contact {
 ///    modulus. Soft tissue fails at strains of about .3 to 1 (capsule of the liver .35: Brunon et al. 2010), so at
 ///    stresses below its modulus. Opposed forces that a tool catches tissue with count here, although they cancel in
 ///    its wrench.
+/// Takes the strain under each tool, where the law is one that leaves its range (law_error.h): of each contact the mean over
+/// the elements around its nodes, by volume; of those the mean by force.
 class LoadWatch {
  public:
   static constexpr double kMostPressure = 2.0;  ///< times Young's modulus
@@ -26,7 +30,7 @@ class LoadWatch {
 
   /// @param contacts sorted by key. No allocation once it has grown.
   void check(const std::vector<SolvedContact>& contacts, const std::vector<NodalVectors>& positions,
-             ImplausibleLoad& load);
+             ImplausibleLoad& load, LawError& law_error);
 
  private:
   struct Body {
@@ -36,7 +40,15 @@ class LoadWatch {
     std::vector<int> first_of_node;  ///< into elements_of_node, one more than nodes
     std::vector<int> elements_of_node;
     std::vector<long> node_seen, element_seen;  ///< the check in which it last was
+    ElasticModel law;
+    double poissons_ratio;
+    struct Strain {
+      double times_volume, volume;
+    };
+    std::vector<Strain> strains;  ///< of the elements seen in this check; empty: the law has no range
   };
+  static double strainUnder(const Body& body, const Contact& contact);
+  static void add(const ContactKey& key, const Body& body, double strain, LawError& law_error);
   void checkElements(Body& body, int node, const NodalVectors& x, int instrument, int tissue, ImplausibleLoad& load);
 
   std::vector<Body> bodies_;

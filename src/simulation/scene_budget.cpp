@@ -18,7 +18,7 @@ namespace {
 /// damping matrix where regions differ in damping, regions, fibres, tissue pairs.
 std::size_t bytesOf(const TissueDescription& tissue, std::size_t elements) {
   constexpr std::size_t kPerTriangle = 5200;     // bending couples twelve nodes; both sides are surface
-  constexpr std::size_t kPerTetrahedron = 2000;  // corotational with patches; other models take less
+  constexpr std::size_t kPerTetrahedron = 2000;  // corotational with patches; neo-Hookean 80 more, others less
   constexpr std::size_t kPronySeries = 2200;     // a second set of elements, two matrices more
   constexpr std::size_t kPerTerm = 100;
   const std::size_t terms = tissue.material.prony_series.size();

@@ -319,7 +319,7 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
   }
   report.advanced_s = report.interrupted ? report.substeps * dt : duration_s;
   all.sumWrenches();
-  all.load_watch.check(all.contacts.solved(), all.x, report.implausible_load);
+  all.load_watch.check(all.contacts.solved(), all.x, report.implausible_load, report.law_error);
 }
 
 void Simulator::setSolverDeadline(double clock_s, double prompt_s) {

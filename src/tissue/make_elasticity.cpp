@@ -11,20 +11,14 @@
 
 namespace tissue_contact {
 
-namespace {
-
-bool hasPatches(ElasticModel model) { return model == ElasticModel::kLinear || model == ElasticModel::kCorotational; }
-
-}  // namespace
-
-bool takesPronySeries(ElasticModel model) {
+bool isContinuum(ElasticModel model) {
   return model == ElasticModel::kLinear || model == ElasticModel::kCorotational || model == ElasticModel::kNeoHookean;
 }
 
 bool averagesDilatation(const ElementMaterials& materials) {
   const MaterialDescription& first = materials.materials.at(0);
   if (first.dilatation != Dilatation::kAuto) return first.dilatation == Dilatation::kPatch;
-  return hasPatches(first.model) &&
+  return isContinuum(first.model) &&
          std::any_of(materials.materials.begin(), materials.materials.end(),
                      [](const MaterialDescription& one) { return one.poissons_ratio >= kAveragedPoissonsRatio; });
 }
@@ -35,8 +29,8 @@ std::unique_ptr<const Elasticity> makeElasticBody(const NodalVectors& rest, cons
                                                   const std::vector<bool>& fixed, const ElementMaterials& materials,
                                                   const std::vector<int>& patch_of) {
   const MaterialDescription& first = materials.materials.at(0);
-  if (first.dilatation == Dilatation::kPatch && !hasPatches(first.model)) {
-    throw std::invalid_argument("dilatation over patches is for the linear and corotational models only");
+  if (first.dilatation == Dilatation::kPatch && !isContinuum(first.model)) {
+    throw std::invalid_argument("dilatation over patches is for the models linear, corotational and neo_hookean only");
   }
   switch (first.model) {
     case ElasticModel::kLinear:
@@ -46,7 +40,8 @@ std::unique_ptr<const Elasticity> makeElasticBody(const NodalVectors& rest, cons
       }
       return std::make_unique<TetElasticity>(rest, tetrahedra, fixed, materials);
     case ElasticModel::kNeoHookean:
-      return std::make_unique<NeoHookean>(rest, tetrahedra, fixed, materials);
+      return std::make_unique<NeoHookean>(rest, tetrahedra, fixed, materials,
+                                          averagesDilatation(materials) ? patch_of : std::vector<int>());
     case ElasticModel::kMassSpring:
       return std::make_unique<MassSpring>(rest, tetrahedra, fixed, materials);
     case ElasticModel::kMembrane:
@@ -66,7 +61,7 @@ std::unique_ptr<const Elasticity> makeVolumeElasticity(const NodalVectors& rest,
   auto body = makeElasticBody(rest, tetrahedra, fixed, materials, patch_of);
   const MaterialDescription& first = materials.materials.at(0);
   if (first.prony_series.empty()) return body;
-  if (!takesPronySeries(first.model)) {
+  if (!isContinuum(first.model)) {
     throw std::invalid_argument("a Prony series is for the models linear, corotational and neo_hookean only");
   }
   return std::make_unique<Viscoelastic>(std::move(body), rest, tetrahedra, fixed, materials);

@@ -11,10 +11,10 @@
 /// Pires & Owen, IJNME 62 (2005) 353-383 (there for finite strains).
 #pragma once
 
-#include <array>
 #include <memory>
 #include <vector>
 
+#include "tissue/dilatation_patches.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 namespace tissue_contact {
@@ -34,20 +34,17 @@ class MeanDilatation : public TetElasticity {
   double energy(const NodalVectors& x) const override;
 
  private:
-  struct Patch;
+  using Patch = DilatationPatches::Patch;
   struct PatchState;
 
   void addGradients(const Patch& patch, const RotationState& state, Vector3* gradients) const;
   static double dilatation(const Patch& patch, const Vector3* gradients, const NodalVectors& x);
-  void addStiffness(const Patch& patch, const Vector3* gradients, double sign, State& state) const;
   void refreshStiffness(const std::vector<BatchRange>& ranges, PatchState& state) const;
   void addForces(const NodalVectors& x, const std::vector<BatchRange>& ranges, bool still, PatchState& state,
                  NodalVectors& forces) const;
 
   bool corotational_;
-  std::vector<Patch> patches_;
-  std::vector<std::array<int, 4>> patch_of_;  ///< by batch
-  std::size_t most_nodes_ = 0;                ///< of a patch
+  DilatationPatches averaged_;
 };
 
 }  // namespace tissue_contact

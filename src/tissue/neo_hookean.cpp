@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tissue/dilatation_patches.h"
 #include "tissue/neo_hookean_kernel.h"
 #include "tissue/tet_elements.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
@@ -16,6 +17,12 @@ namespace {
 LameParameters modelParameters(const MaterialDescription& material) {
   const LameParameters lame = lameParameters(material);
   return {lame.lambda + 5.0 / 6.0 * lame.mu, 4.0 / 3.0 * lame.mu};
+}
+
+/// What elements keep for themselves where patches resist changes of volume.
+LameParameters shapeParameters(const MaterialDescription& material) {
+  const double mu = modelParameters(material).mu;
+  return {mu / 8.0, mu};
 }
 
 // Squared Frobenius norm of F (3 at rest) beyond which an element is so stiff, as |F|^4, that taking its share out of
@@ -37,7 +44,15 @@ Matrix3 withoutNegativeEigenvalues(const Matrix3& symmetric) {
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-SpectralTangent spectralTangent(const Matrix3& F, const LameParameters& material) {
+/// What a patch adds to its elements.
+struct InPatch {
+  double pressure = 0.0;      ///< to the factor of dJ/dF, Pa
+  double flat_modulus = 0.0;  ///< where J is below kFlat, Pa; 0: no patch
+};
+
+InPatch inPatch(const TetElement& element, double pressure) { return {pressure, kFlatModulus * element.lame.mu}; }
+
+SpectralTangent spectralTangent(const Matrix3& F, const LameParameters& material, const InPatch& patch) {
   // F = R S = (R V) diag(sigma) V', R a proper rotation: J = product of sigma carries the sign of det F.
   const Matrix3 R = nearestRotation(F, Quaternion::Identity()).toRotationMatrix();
   const Matrix3 S = R.transpose() * F;
@@ -48,10 +63,12 @@ SpectralTangent spectralTangent(const Matrix3& F, const LameParameters& material
   tangent.U = R * tangent.V;
   const double I = sigma.squaredNorm();
   const double along_F = material.mu - material.mu / (I + 1.0);
-  const double along_C = material.lambda * (sigma.prod() - 1.0) - 0.75 * material.mu;
+  const double J = sigma.prod();
+  const double flat = J < kFlat ? patch.flat_modulus : 0.0;
+  const double along_C = material.lambda * (J - 1.0) - 0.75 * material.mu + flat * (J - kFlat) + patch.pressure;
   const Vector3 cofactors(sigma[1] * sigma[2], sigma[2] * sigma[0], sigma[0] * sigma[1]);
   tangent.stretch = 2.0 * material.mu / ((I + 1.0) * (I + 1.0)) * sigma * sigma.transpose() +
-                    material.lambda * cofactors * cofactors.transpose();
+                    (material.lambda + flat) * cofactors * cofactors.transpose();
   tangent.stretch.diagonal().array() += along_F;
   for (int k = 0; k < 3; ++k) {
     const int i = (k + 1) % 3;
@@ -67,8 +84,9 @@ SpectralTangent spectralTangent(const Matrix3& F, const LameParameters& material
   return tangent;
 }
 
-void addStiffness(const TetElement& element, const Matrix3& F, double sign, Elasticity::State& state) {
-  const SpectralTangent tangent = spectralTangent(F, element.lame);
+void addStiffness(const TetElement& element, const Matrix3& F, const InPatch& patch, double sign,
+                  Elasticity::State& state) {
+  const SpectralTangent tangent = spectralTangent(F, element.lame, patch);
   const Eigen::Matrix<double, 3, 4> b = tangent.V.transpose() * shapeGradients(element.rest_inverse);
   const double volume = sign * element.volume;
   for (int n = 0; n < 4; ++n) {
@@ -89,6 +107,13 @@ void addStiffness(const TetElement& element, const Matrix3& F, double sign, Elas
   }
 }
 
+/// dJ/dF.
+Matrix3 cofactors(const Matrix3& F) {
+  Matrix3 C;
+  for (int c = 0; c < 3; ++c) C.col(c) = F.col((c + 1) % 3).cross(F.col((c + 2) % 3));
+  return C;
+}
+
 Matrix3 matrixInLane(const MatrixBatch& batch, std::size_t lane) {
   Matrix3 matrix;
   for (std::size_t i = 0; i < 9; ++i) matrix.data()[i] = batch[i][lane];
@@ -103,11 +128,26 @@ struct NeoHookean::DeformationState : State {
   std::vector<MatrixBatch> tangent_deformations;  ///< those `stiffness` was computed with
   std::vector<unsigned char> changed;             ///< scratch: elements to refresh, a bit each
   TetElements::Held held;
+  // Of patches; empty without:
+  std::vector<ElementValues> volume_ratios;  ///< J at the last update
+  std::vector<double> pressures;             ///< scratch, per patch: kappa (Jbar - 1), Pa
+  std::vector<double> tangent_pressures;     ///< those `stiffness` was computed with
+  std::vector<Vector3> tangent_gradients;    ///< likewise: b of every patch's nodes, patch after patch, m^2
+  std::vector<unsigned char> stale;          ///< scratch, per patch: to be refreshed
+  DilatationPatches::Held held_patches;
 };
 
 NeoHookean::NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
-                       const std::vector<bool>& fixed, const ElementMaterials& materials)
-    : tets_(std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, modelParameters)) {}
+                       const std::vector<bool>& fixed, const ElementMaterials& materials,
+                       const std::vector<int>& patch_of) {
+  if (patch_of.empty()) {
+    tets_ = std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, modelParameters);
+    return;
+  }
+  BlockMatrix couplings = BlockMatrix::forElements(DilatationPatches::nodesOf(tetrahedra, patch_of), fixed);
+  tets_ = std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, shapeParameters, std::move(couplings));
+  patches_ = std::make_unique<DilatationPatches>(tetrahedra, fixed, materials, patch_of, *tets_);
+}
 
 NeoHookean::~NeoHookean() = default;
 
@@ -119,6 +159,14 @@ std::unique_ptr<Elasticity::State> NeoHookean::makeState() const {
   state->tangent_deformations = state->deformations;
   state->changed.assign(tets_->batches.size(), 0);
   state->held = tets_->nothingHeld();
+  if (patches_) {
+    state->volume_ratios.resize(tets_->batches.size());
+    state->pressures.assign(patches_->patches.size(), 0.0);
+    state->tangent_pressures = state->pressures;
+    state->tangent_gradients.resize(patches_->nodeCount());
+    state->stale.assign(patches_->patches.size(), 1);
+    state->held_patches = patches_->nothingHeld();
+  }
   tets_->prepare(*state);
   rebuildStiffness(*state);
   return state;
@@ -142,8 +190,29 @@ void NeoHookean::rebuildStiffness(DeformationState& state) const {
   state.stiffness.setZero();
   state.damping.setZero();
   for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
-    addStiffness(tets_->elements[e], matrixInLane(state.tangent_deformations[e / kLanes], e % kLanes), 1.0, state);
+    const TetElement& element = tets_->elements[e];
+    InPatch patch;
+    if (patches_) patch = inPatch(element, state.tangent_pressures[patches_->of_batch[e / kLanes][e % kLanes]]);
+    addStiffness(element, matrixInLane(state.tangent_deformations[e / kLanes], e % kLanes), patch, 1.0, state);
   }
+  for (std::size_t p = 0; patches_ && p < patches_->patches.size(); ++p) addPatchStiffness(p, 1.0, state);
+}
+
+/// The patch's kappa/V b b', b being computed anew when it is added.
+void NeoHookean::addPatchStiffness(std::size_t p, double sign, DeformationState& state) const {
+  const DilatationPatches::Patch& patch = patches_->patches[p];
+  Vector3* const b = &state.tangent_gradients[patch.first];
+  if (sign > 0.0) {
+    std::fill_n(b, patch.nodes.size(), Vector3(0.0, 0.0, 0.0));
+    for (const DilatationPatches::Member& member : patch.members) {
+      const std::size_t e = member.element;
+      const Matrix3 C = cofactors(matrixInLane(state.tangent_deformations[e / kLanes], e % kLanes));
+      const Eigen::Matrix<double, 3, 4> c =
+          tets_->elements[e].volume * C * shapeGradients(tets_->elements[e].rest_inverse);
+      for (int i = 0; i < 4; ++i) b[member.local[i]] += c.col(i);
+    }
+  }
+  DilatationPatches::addStiffness(patch, b, sign, state);
 }
 
 void NeoHookean::refreshStiffness(const std::vector<BatchRange>& ranges, DeformationState& state) const {
@@ -156,10 +225,65 @@ void NeoHookean::refreshStiffness(const std::vector<BatchRange>& ranges, Deforma
   const bool rebuild = cancels || 2 * changes > tets_->elements.size();
   forEachChanged(ranges, state, [&](std::size_t batch, std::size_t lane) {
     const TetElement& element = tets_->elements[batch * kLanes + lane];
-    if (!rebuild) addStiffness(element, matrixInLane(state.tangent_deformations[batch], lane), -1.0, state);
+    if (!rebuild) addStiffness(element, matrixInLane(state.tangent_deformations[batch], lane), {}, -1.0, state);
     for (std::size_t i = 0; i < 9; ++i) state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];
-    if (!rebuild) addStiffness(element, matrixInLane(state.deformations[batch], lane), 1.0, state);
+    if (!rebuild) addStiffness(element, matrixInLane(state.deformations[batch], lane), {}, 1.0, state);
   });
+  if (rebuild) rebuildStiffness(state);
+}
+
+/// Those of which an element, or the mean, has changed, among the patches that are still, or those that are not.
+void NeoHookean::markStalePatches(const std::vector<BatchRange>& ranges, bool still, DeformationState& state) const {
+  for (std::size_t p = 0; p < patches_->patches.size(); ++p) {
+    const double change = std::abs(state.pressures[p] - state.tangent_pressures[p]);
+    const bool wanted = state.held_patches.isStill(p) == still;
+    state.stale[p] = wanted && change > kTangentChange * patches_->patches[p].bulk ? 1 : 0;
+  }
+  forEachChanged(ranges, state, [&](std::size_t batch, std::size_t lane) {
+    const int p = patches_->of_batch[batch][lane];
+    if (state.held_patches.isStill(p) == still) state.stale[p] = 1;
+  });
+}
+
+/// Whether the stale patches are many, or leave round-off behind.
+bool NeoHookean::rebuildsFor(const DeformationState& state) const {
+  const std::vector<DilatationPatches::Patch>& patches = patches_->patches;
+  std::size_t changes = 0;
+  bool cancels = false;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    if (state.stale[p] == 0) continue;
+    changes += patches[p].members.size();
+    for (const DilatationPatches::Member& member : patches[p].members) {
+      const std::size_t e = member.element;
+      cancels =
+          cancels || matrixInLane(state.tangent_deformations[e / kLanes], e % kLanes).squaredNorm() > kLargeDeformation;
+    }
+  }
+  return cancels || 2 * changes > tets_->elements.size();
+}
+
+void NeoHookean::refreshPatches(DeformationState& state) const {
+  const std::vector<DilatationPatches::Patch>& patches = patches_->patches;
+  const bool rebuild = rebuildsFor(state);
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    if (state.stale[p] == 0) continue;
+    if (!rebuild) addPatchStiffness(p, -1.0, state);
+    for (const DilatationPatches::Member& member : patches[p].members) {
+      const std::size_t batch = member.element / kLanes;
+      const std::size_t lane = member.element % kLanes;
+      const TetElement& element = tets_->elements[member.element];
+      const auto add = [&](const MatrixBatch& F, double pressure, double sign) {
+        addStiffness(element, matrixInLane(F, lane), inPatch(element, pressure), sign, state);
+      };
+      if (!rebuild) add(state.tangent_deformations[batch], state.tangent_pressures[p], -1.0);
+      for (std::size_t i = 0; i < 9; ++i)
+        state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];
+      state.changed[batch] &= static_cast<unsigned char>(~(1u << lane));
+      if (!rebuild) add(state.deformations[batch], state.pressures[p], 1.0);
+    }
+    state.tangent_pressures[p] = state.pressures[p];
+    if (!rebuild) addPatchStiffness(p, 1.0, state);
+  }
   if (rebuild) rebuildStiffness(state);
 }
 
@@ -167,29 +291,54 @@ void NeoHookean::update(const NodalVectors& x, State& any_state, NodalVectors& f
   auto& state = static_cast<DeformationState&>(any_state);  // made by makeState()
   state.held.startForces(forces);
   evaluate(x, state.held.moving, state, forces);
+  if (patches_) {
+    addPatches(state.held_patches.pressed, false, state, forces);
+  } else {
+    refreshStiffness(state.held.moving, state);
+  }
 }
 
 void NeoHookean::holdStill(const std::vector<bool>& still, const NodalVectors& x, State& any_state) const {
   auto& state = static_cast<DeformationState&>(any_state);
   tets_->split(still, state.held);
   evaluate(x, state.held.still, state, state.held.forces);
+  if (patches_) {
+    patches_->split(state.held, state.held_patches);
+    addPatches(state.held.still, true, state, state.held.forces);
+  } else {
+    refreshStiffness(state.held.still, state);
+  }
 }
 
-/// Adds the forces of these batches, and brings their share of the stiffness up to date.
+/// Adds what the elements of these batches do by themselves.
 void NeoHookean::evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, DeformationState& state,
                           NodalVectors& forces) const {
   const auto add = [&](BatchRange range, const auto& material) {
     addNeoHookeanForces(tets_->batches, range, material, kTangentChange, x.data(), state.tangent_deformations,
-                        state.deformations, state.changed, forces.data());
+                        state.deformations, state.changed, patches_ ? state.volume_ratios.data() : nullptr,
+                        forces.data());
   };
   for (const BatchRange range : ranges) {
     tets_->batch_materials.empty() ? add(range, tets_->material) : add(range, tets_->batch_materials);
   }
-  refreshStiffness(ranges, state);
+}
+
+/// Adds the forces of the patches that are still, or of those that are not, and brings their stiffness up to date.
+/// @param ranges batches that hold all their elements; what has changed in those of others stays marked.
+void NeoHookean::addPatches(const std::vector<BatchRange>& ranges, bool still, DeformationState& state,
+                            NodalVectors& forces) const {
+  patches_->meanPressures(tets_->batches, ranges, state.volume_ratios, 1.0, still, state.held_patches, state.pressures);
+  for (const BatchRange range : ranges) {
+    addCofactorForces(tets_->batches, range, state.deformations, patches_->of_batch, state.pressures, forces.data());
+  }
+  markStalePatches(ranges, still, state);
+  refreshPatches(state);
 }
 
 double NeoHookean::energy(const NodalVectors& x) const {
   double energy = 0.0;
+  std::vector<double> changes(patches_ ? patches_->patches.size() : 0, 0.0);  // of volume, m^3
+  std::size_t e = 0;
   for (const TetElement& element : tets_->elements) {
     const Matrix3 F = deformationGradient(element, x);
     const double I = F.squaredNorm();
@@ -198,6 +347,15 @@ double NeoHookean::energy(const NodalVectors& x) const {
     // lambda/2 ((J - alpha)^2 - (1 - alpha)^2) = (J - 1) (lambda/2 (J - 1) - 3/4 mu)
     energy += element.volume * (0.5 * material.mu * (I - 3.0 - std::log((I + 1.0) / 4.0)) +
                                 (J - 1.0) * (0.5 * material.lambda * (J - 1.0) - 0.75 * material.mu));
+    if (patches_) {
+      const double flat = std::min(0.0, J - kFlat);
+      energy += element.volume * 0.5 * kFlatModulus * material.mu * flat * flat;
+      changes[patches_->of_batch[e / kLanes][e % kLanes]] += element.volume * (J - 1.0);
+    }
+    ++e;
+  }
+  for (std::size_t p = 0; p < changes.size(); ++p) {
+    energy += 0.5 * patches_->patches[p].bulk * changes[p] * changes[p] / patches_->patches[p].volume;
   }
   return energy;
 }

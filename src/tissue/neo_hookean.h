@@ -13,6 +13,15 @@
 ///
 /// Stiffness: the exact second derivative with its negative eigenvalues set to zero, element by element, in closed form
 /// from the singular values of F (one 3 x 3 eigenproblem is left).
+/// Averaged over patches of elements (they lock where Poisson's ratio is near 1/2): the energy of the change of volume beyond
+/// what elements need to keep their shape is that of each patch,
+///   sum_e V (psi with mu/8 for lambda + 4 mu min(0, J - 1/2)^2)  +  sum_p V_p kappa/2 (Jbar - 1)^2,   Jbar = sum_e V J / V_p,
+/// kappa = lambda - mu/8 = lambda_Lame + 2/3 mu_Lame: at small strain the elements' part is mu_Lame |dev e|^2, and the whole that
+/// of mean_dilatation.h. The second term, as stiff as a whole element at nu = .45, holds up what the patch would let go flat: without
+/// it single elements turn inside out where a narrow tool sweeps (4 in the recorded motion of config/psm_dvrk.yaml). The patch's pressure kappa (Jbar - 1) joins the factor of dJ/dF in each of its elements; with
+/// b = sum_e V dJ/dF grad N its own stiffness is kappa/V_p b b'. Forces are the gradient of this energy, which F-bar (one J for all
+/// of a patch put into psi: de Souza Neto, Andrade Pires & Owen, IJNME 62 (2005) 353-383) does not have without an unsymmetric
+/// stiffness; it is the mean dilatation of Simo, Taylor & Pister, CMAME 51 (1985) 177-208, on patches.
 /// Source: Smith, de Goes, Kim, "Stable Neo-Hookean Flesh Simulation", ACM TOG 37(2), 2018, eq. 14 and what follows.
 #pragma once
 
@@ -26,6 +35,7 @@
 namespace tissue_contact {
 
 struct BatchRange;
+struct DilatationPatches;
 struct TetElement;
 struct TetElements;
 
@@ -33,14 +43,16 @@ struct TetElements;
 class NeoHookean : public Elasticity {
  public:
   /// @param rest 3 x n, m.
-  /// @throws std::invalid_argument for a material out of range.
+  /// @param patch_of per tetrahedron, from 0 without gaps; empty: every element by itself.
+  /// @throws std::invalid_argument for a material out of range or a patch_of of the wrong size.
   NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
-             const ElementMaterials& materials);
+             const ElementMaterials& materials, const std::vector<int>& patch_of = {});
   ~NeoHookean() override;
 
   std::unique_ptr<State> makeState() const override;
 
-  /// An element's share of the stiffness is recomputed only when its F has changed by more than kTangentChange since;
+  /// An element's share of the stiffness is recomputed only when its F has changed by more than kTangentChange since, that of
+  /// a patch when the F of one of its elements or Jbar has;
   /// forces are always exact.
   void update(const NodalVectors& x, State& state, NodalVectors& forces) const override;
 
@@ -57,12 +69,19 @@ class NeoHookean : public Elasticity {
 
   void evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, DeformationState& state,
                 NodalVectors& forces) const;
+  void addPatches(const std::vector<BatchRange>& ranges, bool still, DeformationState& state,
+                  NodalVectors& forces) const;
+  void addPatchStiffness(std::size_t patch, double sign, DeformationState& state) const;
+  void rebuildStiffness(DeformationState& state) const;
   template <typename Call>
   void forEachChanged(const std::vector<BatchRange>& ranges, const DeformationState& state, const Call& call) const;
-  void rebuildStiffness(DeformationState& state) const;
   void refreshStiffness(const std::vector<BatchRange>& ranges, DeformationState& state) const;
+  void markStalePatches(const std::vector<BatchRange>& ranges, bool still, DeformationState& state) const;
+  bool rebuildsFor(const DeformationState& state) const;
+  void refreshPatches(DeformationState& state) const;
 
   std::unique_ptr<const TetElements> tets_;
+  std::unique_ptr<const DilatationPatches> patches_;  ///< null: every element by itself
 };
 
 }  // namespace tissue_contact

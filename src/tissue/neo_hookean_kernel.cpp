@@ -28,7 +28,8 @@ template <typename Material>
 TISSUE_CONTACT_INLINE void neoHookean(const std::vector<ElementBatch>& batches, BatchRange range,
                                       const Material& material, double tangent_change, const double* x,
                                       const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
-                                      std::vector<unsigned char>& changed, double* forces) {
+                                      std::vector<unsigned char>& changed, ElementValues* volume_ratios,
+                                      double* forces) {
   for (std::size_t b = range.begin; b < range.end; ++b) {
     LaneMatrix F, C, P;
     typename Material::Value lambda, mu;
@@ -39,7 +40,12 @@ TISSUE_CONTACT_INLINE void neoHookean(const std::vector<ElementBatch>& batches, 
     Lanes I = F.m[0] * F.m[0];
     for (std::size_t i = 1; i < 9; ++i) I += F.m[i] * F.m[i];
     const Lanes along_F = mu - mu / (I + 1.0);
-    const Lanes along_C = lambda * (J - 1.0) - 0.75 * mu;
+    Lanes along_C = lambda * (J - 1.0) - 0.75 * mu;
+    if (volume_ratios != nullptr) {
+      const Lanes flat = J - kFlat;
+      along_C += kFlatModulus * mu * (flat < 0.0 ? flat : Lanes{});
+      store(J, volume_ratios[b]);
+    }
     for (std::size_t i = 0; i < 9; ++i) P.m[i] = along_F * F.m[i] + along_C * C.m[i];
     addStressForces(batches[b], P, forces);
     for (std::size_t i = 0; i < 9; ++i) store(F.m[i], deformations[b][i]);
@@ -52,16 +58,35 @@ TISSUE_CONTACT_INLINE void neoHookean(const std::vector<ElementBatch>& batches, 
 TISSUE_CONTACT_CLONES
 void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
                          double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
-                         std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed, double* forces) {
-  neoHookean(batches, range, UniformMaterial{material}, tangent_change, x, tangents, deformations, changed, forces);
+                         std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed,
+                         ElementValues* volume_ratios, double* forces) {
+  neoHookean(batches, range, UniformMaterial{material}, tangent_change, x, tangents, deformations, changed,
+             volume_ratios, forces);
 }
 
 TISSUE_CONTACT_CLONES
 void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range,
                          const std::vector<BatchMaterial>& materials, double tangent_change, const double* x,
                          const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
-                         std::vector<unsigned char>& changed, double* forces) {
-  neoHookean(batches, range, VaryingMaterial{materials}, tangent_change, x, tangents, deformations, changed, forces);
+                         std::vector<unsigned char>& changed, ElementValues* volume_ratios, double* forces) {
+  neoHookean(batches, range, VaryingMaterial{materials}, tangent_change, x, tangents, deformations, changed,
+             volume_ratios, forces);
+}
+
+TISSUE_CONTACT_CLONES
+void addCofactorForces(const std::vector<ElementBatch>& batches, BatchRange range,
+                       const std::vector<MatrixBatch>& deformations,
+                       const std::vector<std::array<int, kLanes>>& group_of, const std::vector<double>& pressures,
+                       double* forces) {
+  for (std::size_t b = range.begin; b < range.end; ++b) {
+    LaneMatrix F, P;
+    Lanes pressure;
+    for (int lane = 0; lane < kLanes; ++lane) pressure[lane] = pressures[group_of[b][lane]];
+    for (std::size_t i = 0; i < 9; ++i) load(deformations[b][i], F.m[i]);
+    cofactors(F, P);
+    for (Lanes& entry : P.m) entry *= pressure;
+    addStressForces(batches[b], P, forces);
+  }
 }
 
 }  // namespace tissue_contact

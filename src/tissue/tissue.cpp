@@ -32,14 +32,13 @@ void checkModel(const TissueDescription& description) {
     throw EntryError("material.model",
                      tissueLabel(description) + ": model is '" + elasticModelName(material.model) + fits);
   }
-  if (material.dilatation == Dilatation::kPatch && material.model != ElasticModel::kLinear &&
-      material.model != ElasticModel::kCorotational) {
+  if (material.dilatation == Dilatation::kPatch && !isContinuum(material.model)) {
     throw EntryError("material.dilatation",
                      tissueLabel(description) +
-                         ": dilatation is 'patch', which only the models linear and corotational "
-                         "know; remove the key");
+                         ": dilatation is 'patch', which only the models linear, corotational and "
+                         "neo_hookean know; remove the key");
   }
-  if (!material.prony_series.empty() && !takesPronySeries(material.model)) {
+  if (!material.prony_series.empty() && !isContinuum(material.model)) {
     throw EntryError("material.prony_series", tissueLabel(description) + ": model is '" +
                                                   elasticModelName(material.model) +
                                                   "', whose stress does not relax; give linear, corotational or "

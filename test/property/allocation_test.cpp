@@ -111,6 +111,7 @@ INSTANTIATE_TEST_SUITE_P(, Allocation,
                          testing::Values(Case{"Corotational", "", ""},                                                //
                                          Case{"AveragedDilatation", ", model: corotational, dilatation: patch", ""},  //
                                          Case{"NeoHookean", ", model: neo_hookean", ""},                              //
+                                         Case{"AveragedNeoHookean", ", model: neo_hookean, dilatation: patch", ""},   //
                                          Case{"Linear", ", model: linear", ""},                                       //
                                          Case{"MassSpring", ", model: mass_spring", ""},                              //
                                          Case{"NeverAsleep", "", "advisor: {sleep: never}\n"},

@@ -110,6 +110,17 @@ class Topics(unittest.TestCase):
         self.assertGreater(last.step_time, 0.0)
         self.assertLess(last.step_time, 1.0)
 
+    def test_status_tells_the_strain_under_the_tool(self):
+        """A 5 mm ball, 5 mm deep in corotational tissue, is out of that law's range, and over it before it touches."""
+        messages = self.listeners["status"].messages
+        self.assertEqual((messages[0].strain, messages[0].law_error), (0.0, 0.0))
+        worst = min(messages, key=lambda m: m.law_error)
+        self.assertGreater(worst.strain, 0.1)
+        self.assertLess(worst.law_error, -0.05)
+        self.assertGreater(worst.law_error, -0.5)
+        figures = faults.figures(self.diagnostics)
+        self.assertLessEqual(float(figures["largest law error, likely"]), worst.law_error + 1e-3)
+
     def test_markers(self):
         for message in self.listeners["markers"].messages:
             self.assertEqual({m.header.frame_id for m in message.markers}, {"world"})

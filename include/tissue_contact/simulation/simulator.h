@@ -33,6 +33,15 @@ struct ImplausibleLoad {
   double modulus_pa = 0.0;        ///< Young's modulus it is compared with: the largest of that tissue
 };
 
+/// What the choice of the elastic law does to the contact forces (law_error.h), at the end of an interval: of the instrument and
+/// tissue for which it is largest. Zeros where no linear or corotational tissue is touched.
+struct LawError {
+  int tissue = -1;
+  int instrument = -1;    ///< -1: another tissue
+  double strain = 0.0;    ///< equivalent strain under the tool, see equivalentStrain()
+  double relative = 0.0;  ///< likely error of the contact force against the neo-Hookean law; negative: too small
+};
+
 /// How the last step went.
 struct StepReport {
   int substeps = 0;          ///< implicit steps taken for the last advance
@@ -50,6 +59,7 @@ struct StepReport {
   int kinetic_contacts = 0;
   int pinched_contacts = 0;          ///< left out of the last step: shapes that touch each other leave them no room
   ImplausibleLoad implausible_load;  ///< of its last step
+  LawError law_error;                ///< likewise
 };
 
 /// Bounds on the work of one advance, for a caller that has to keep up with time.
@@ -137,5 +147,8 @@ class Simulator {
 
 /// A sentence for a log about the implausible load of the last advance: what, where and what to do.
 std::string implausibleLoadText(const Simulator& simulator);
+
+/// The same about the law error of the last advance, where there is one.
+std::string lawErrorText(const Simulator& simulator);
 
 }  // namespace tissue_contact

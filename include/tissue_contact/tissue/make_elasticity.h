@@ -15,8 +15,9 @@ namespace tissue_contact {
 /// coarse cells is locking (validation case coarse-press), for 1.7 times the instructions of a step.
 constexpr double kAveragedPoissonsRatio = 0.3;
 
-/// Whether stress of this model may relax: MaterialDescription::prony_series.
-bool takesPronySeries(ElasticModel model);
+/// Whether the model is of tetrahedra that obey a law of stress and strain: those may average their change of volume and relax
+/// (MaterialDescription::dilatation, prony_series).
+bool isContinuum(ElasticModel model);
 
 /// Whether volume changes of these materials are averaged over patches: what they ask for, or what kAuto chooses.
 bool averagesDilatation(const ElementMaterials& materials);

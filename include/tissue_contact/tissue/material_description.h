@@ -19,7 +19,7 @@ constexpr std::pair<const char*, ElasticModel> kElasticModelNames[] = {{"linear"
                                                                        {"mass_spring", ElasticModel::kMassSpring},
                                                                        {"membrane", ElasticModel::kMembrane}};
 
-/// Over what a linear or corotational volume averages its change of volume.
+/// Over what a linear, corotational or neo-Hookean volume averages its change of volume.
 enum class Dilatation {
   kAuto,     ///< kPatch from Poisson's ratio 0.3 on, where it pays; else kElement
   kElement,  ///< each tetrahedron: locks as Poisson's ratio nears 1/2

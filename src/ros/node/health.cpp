@@ -3,6 +3,7 @@
 #include <ros/console.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <utility>
 
@@ -45,6 +46,9 @@ void addFigures(const LiveFigures& figures, double worst_lag_s, diagnostic_updat
   status.add("last not converged", figures.last_not_converged);
   status.add("intervals with forces that no tissue bears", figures.implausible);
   status.add("last of them", figures.last_implausible);
+  status.add("law error, likely", figures.law_error);
+  status.add("largest law error, likely", figures.largest_law_error);
+  status.add("strain under the tool at that", figures.largest_law_strain);
   status.add("intervals with pinched contacts", figures.pinched);
   status.add("snapshots dropped", figures.snapshots_dropped);
 }
@@ -124,6 +128,9 @@ void Health::warn(const PlayedSample& played, int steps) {
   if (simulator_.report().implausible_load.found && implausible_loads_.pass()) {
     ROS_WARN_STREAM(toTime(played.stamp_ns) << " s: " << implausibleLoadText(simulator_));
   }
+  if (law_alarm_.leaves(simulator_.report().law_error.relative) && law_errors_.pass()) {
+    ROS_WARN_STREAM(toTime(played.stamp_ns) << " s: " << lawErrorText(simulator_));
+  }
 }
 
 /// What an interval with steps in it did to the figures. The lock is held.
@@ -139,6 +146,11 @@ bool Health::noteSteps(const PlayedSample& played, int steps, bool finite) {
     ++figures_.lengthened;
   if (report.jumped) ++figures_.jumps;
   if (report.pinched_contacts > 0) ++figures_.pinched;
+  figures_.law_error = report.law_error.relative;
+  if (std::abs(report.law_error.relative) > std::abs(figures_.largest_law_error)) {
+    figures_.largest_law_error = report.law_error.relative;
+    figures_.largest_law_strain = report.law_error.strain;
+  }
   if (report.implausible_load.found) {
     ++figures_.implausible;
     std::ostringstream text;

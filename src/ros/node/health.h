@@ -18,6 +18,7 @@
 #include "ros/node/real_time_factor.h"
 #include "tissue_contact/Status.h"
 #include "tissue_contact/simulation/joint_state_player.h"
+#include "tissue_contact/simulation/law_error.h"
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
@@ -98,6 +99,8 @@ class Health {
   Throttle resumptions_;
   Throttle jumps_;
   Throttle implausible_loads_;
+  LawAlarm law_alarm_;
+  Throttle law_errors_;
 
   mutable std::mutex mutex_;  ///< guards the six below
   LiveFigures figures_;

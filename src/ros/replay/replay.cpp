@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <exception>
 #include <iostream>
@@ -25,7 +26,9 @@
 #include "tissue_contact/core/whole_file.h"
 #include "tissue_contact/ros/environment.h"
 #include "tissue_contact/simulation/joint_state_player.h"
+#include "tissue_contact/simulation/law_error.h"
 #include "tissue_contact/simulation/simulator.h"
+#include "tissue_contact/tissue/element_materials.h"
 
 namespace tissue_contact {
 namespace {
@@ -192,10 +195,28 @@ class Replay {
     discarded_ += static_cast<long>(report.discarded);
     not_converged_ += static_cast<long>(report.stop != StopReason::kTolerance);
     pinched_ += static_cast<long>(report.pinched_contacts > 0);
+    noteLaw(played);
     if (!report.implausible_load.found) return;
     if (++implausible_ > 1) return;
     std::cerr << kPrefix << "warning: " << stampText(played.stamp_ns) << " s: " << implausibleLoadText(simulator_)
               << "\n";
+  }
+
+  void noteLaw(const PlayedSample& played) {
+    const LawError& error = simulator_.report().law_error;
+    if (law_alarm_.leaves(error.relative) && ++law_alarms_ == 1) {
+      std::cerr << kPrefix << "warning: " << stampText(played.stamp_ns) << " s: " << lawErrorText(simulator_) << "\n";
+    }
+    if (std::abs(error.relative) > std::abs(law_error_.relative)) law_error_ = error;
+  }
+
+  /// Of a law that leaves its range in this recording.
+  void summarizeLaw() const {
+    if (law_alarms_ == 0) return;
+    const TissueDescription& tissue = scene_.tissues[static_cast<std::size_t>(law_error_.tissue)];
+    std::cerr << kPrefix << "beyond the range of the " << elasticModelName(tissue.material.model) << " law of tissue '"
+              << tissue.name << "' " << law_alarms_ << " times: forces likely wrong by up to "
+              << 100.0 * law_error_.relative << " %, at a strain of " << law_error_.strain << "\n";
   }
 
   void summarize() const {
@@ -211,6 +232,7 @@ class Replay {
               << kPrefix << length_s_ << " s of recording in " << wallTime() << " s\n";
     if (!first_refusal_.empty())
       std::cerr << kPrefix << "first refusal in bag '" << options_.bag_file << "': " << first_refusal_ << "\n";
+    summarizeLaw();
     if (!touched_) summarizeApproach();
   }
 
@@ -249,6 +271,9 @@ class Replay {
   long not_converged_ = 0;
   long implausible_ = 0;
   long pinched_ = 0;
+  LawAlarm law_alarm_;
+  long law_alarms_ = 0;  ///< how often the law left its range
+  LawError law_error_;   ///< largest
 };
 
 }  // namespace

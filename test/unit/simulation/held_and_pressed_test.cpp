@@ -150,10 +150,13 @@ double neoHookeanStrain(double pressure, double young, double nu) {
 }
 
 TEST(Pressure, AFreeNeoHookeanBodyShrinksToWhereItsStressIsThePressure) {
-  for (const double pressure : {1600.0, -1600.0}) {
-    const Shrinking body = shrink("poissons_ratio: 0.2, model: neo_hookean", pressure);
-    EXPECT_NEAR(body.strain, neoHookeanStrain(pressure, 2e4, 0.2), 1e-6 * std::abs(body.strain));
-    EXPECT_LE(body.departure, 1e-6 * std::abs(body.strain));
+  for (const char* dilatation : {"element", "patch"}) {
+    for (const double pressure : {1600.0, -1600.0}) {
+      const Shrinking body =
+          shrink(std::string("poissons_ratio: 0.2, model: neo_hookean, dilatation: ") + dilatation, pressure);
+      EXPECT_NEAR(body.strain, neoHookeanStrain(pressure, 2e4, 0.2), 1e-6 * std::abs(body.strain)) << dilatation;
+      EXPECT_LE(body.departure, 1e-6 * std::abs(body.strain)) << dilatation;
+    }
   }
 }
 

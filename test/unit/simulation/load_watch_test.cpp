@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <string>
+
 #include "support/text_scene.h"
+#include "tissue_contact/simulation/law_error.h"
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
@@ -12,15 +16,17 @@ namespace {
 constexpr double kModulus = 5000.0;
 
 /// A 5 mm sphere 1 mm above the middle of a block of 60 x 60 x 20 mm with cells of 10 mm, fixed below.
-Simulator makeScene() {
+Simulator makeScene(const std::string& model = "neo_hookean") {
   return makeSimulator(
       "tissues:\n  - name: block\n    block: {size_m: [0.06, 0.06, 0.02], cells: [6, 6, 2]}\n"
-      "    material: {model: neo_hookean, youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}\n"
-      "    damping: {stiffness_s: 0.003}\n"
-      "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
-      "instruments:\n  - name: probe\n    robot_description: probe\n    tip_link: tip\n"
-      "    joint_state_topics: [/joint_states]\n    base_pose: {position_m: [0, 0, 0.026]}\n"
-      "    contact_links: [tip]\n",
+      "    material: {model: " +
+          model +
+          ", youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}\n"
+          "    damping: {stiffness_s: 0.003}\n"
+          "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
+          "instruments:\n  - name: probe\n    robot_description: probe\n    tip_link: tip\n"
+          "    joint_state_topics: [/joint_states]\n    base_pose: {position_m: [0, 0, 0.026]}\n"
+          "    contact_links: [tip]\n",
       {{"probe", probeUrdf(0.005)}});
 }
 
@@ -49,16 +55,19 @@ SolvedContact pushOn(int node, const Vector3& force) {
 }
 
 struct Watched {
-  Simulator simulator = makeScene();
+  explicit Watched(const std::string& model = "neo_hookean") : simulator(makeScene(model)) {}
+
+  Simulator simulator;
   LoadWatch watch{simulator.scene(), simulator.tissues()};
   std::vector<NodalVectors> x = {simulator.tissues()[0].restPositions()};
   int node = middleNode(simulator.tissues()[0]);
 
   ImplausibleLoad check(const std::vector<SolvedContact>& contacts) {
     ImplausibleLoad load;
-    watch.check(contacts, x, load);
+    watch.check(contacts, x, load, law_error);
     return load;
   }
+  LawError law_error;  ///< of the last check
 };
 
 constexpr double kNodeArea =
@@ -105,6 +114,94 @@ TEST(LoadWatch, FindsElementsTurnedInsideOutUnderTheTool) {
   scene.x[0](2, scene.node) += 0.015;
   scene.x[0](2, 0) += 0.05;  // somewhere else, where nothing presses
   EXPECT_FALSE(scene.check(contacts).found);
+}
+
+// The whole block strained alike: so is what is under the tool, by F = diag(a, a, b): Green's strain (a^2 - 1)/2, (b^2 - 1)/2, its
+// deviator in the ratio 1 : 1 : -2, so the equivalent is |b^2 - a^2| / 3.
+TEST(LawWatch, TakesTheStrainUnderTheTool) {
+  Watched scene("corotational");
+  const SolvedContact push = pushOn(scene.node, {0.0, 0.0, -0.01});
+  scene.check({push});
+  EXPECT_NEAR(scene.law_error.strain, 0.0, 1e-15);
+  const double a = 1.2;
+  const double b = 0.7;
+  scene.x[0] = Vector3(a, a, b).asDiagonal() * scene.x[0];
+  scene.check({push});
+  EXPECT_NEAR(scene.law_error.strain, (a * a - b * b) / 3.0, 1e-12);
+  EXPECT_EQ(scene.law_error.relative, likelyLawError(ElasticModel::kCorotational, 0.4, scene.law_error.strain));
+  EXPECT_EQ(scene.law_error.tissue, 0);
+  EXPECT_EQ(scene.law_error.instrument, 0);
+  scene.x[0] = Eigen::AngleAxisd(2.0, Vector3(1.0, 2.0, -1.0).normalized()).toRotationMatrix() * scene.x[0];
+  scene.check({push});
+  EXPECT_NEAR(scene.law_error.strain, (a * a - b * b) / 3.0, 1e-12);
+  scene.check({});
+  EXPECT_EQ(scene.law_error.strain, 0.0);
+  EXPECT_EQ(scene.law_error.relative, 0.0);
+}
+
+TEST(LawWatch, ContactsCountByForceAndOpenOnesNot) {
+  Watched scene("linear");
+  const int other = 0;  // a corner, far from the middle
+  scene.x[0](2, scene.node) -= 0.003;
+  scene.check({pushOn(scene.node, {0.0, 0.0, -0.01})});
+  const double alone = scene.law_error.strain;
+  EXPECT_GT(alone, 0.1);
+  scene.check({pushOn(other, {0.0, 0.0, -0.03}), pushOn(scene.node, {0.0, 0.0, -0.01})});
+  EXPECT_NEAR(scene.law_error.strain, 0.25 * alone, 1e-12);
+  SolvedContact open = pushOn(other, {0.0, 0.0, -0.03});
+  open.state = ContactState::kOpen;
+  scene.check({open, pushOn(scene.node, {0.0, 0.0, -0.01})});
+  EXPECT_NEAR(scene.law_error.strain, alone, 1e-15);
+}
+
+TEST(LawWatch, NeoHookeanTissueIsNotWatched) {
+  Watched scene;
+  scene.x[0] = Vector3(1.2, 1.2, 0.7).asDiagonal() * scene.x[0];
+  scene.check({pushOn(scene.node, {0.0, 0.0, -0.01})});
+  EXPECT_EQ(scene.law_error.strain, 0.0);
+  EXPECT_EQ(scene.law_error.tissue, -1);
+}
+
+// Against figures of press-laws (its fit is checked there); at the ends of what it was fitted to it stays what it is.
+TEST(LawError, IsThatOfPressesAndBounded) {
+  const ElasticModel linear = ElasticModel::kLinear;
+  const ElasticModel corotational = ElasticModel::kCorotational;
+  EXPECT_NEAR(likelyLawError(corotational, 0.45, 0.26), -0.15, 0.03);
+  EXPECT_NEAR(likelyLawError(corotational, 0.3, 0.26), -0.10, 0.03);
+  EXPECT_NEAR(likelyLawError(linear, 0.45, 0.47), -0.13, 0.03);
+  for (const ElasticModel model : {linear, corotational}) {
+    EXPECT_EQ(likelyLawError(model, 0.45, 0.0), 0.0);
+    EXPECT_EQ(likelyLawError(model, 0.45, 1e300), likelyLawError(model, 0.45, 0.6));
+    EXPECT_EQ(likelyLawError(model, -0.9, 0.3), likelyLawError(model, 0.3, 0.3));
+    EXPECT_EQ(likelyLawError(model, 0.4999, 0.3), likelyLawError(model, 0.49, 0.3));
+  }
+  EXPECT_EQ(likelyLawError(ElasticModel::kNeoHookean, 0.45, 0.5), 0.0);
+  EXPECT_EQ(likelyLawError(ElasticModel::kMassSpring, 0.25, 0.5), 0.0);
+}
+
+TEST(LawAlarm, TellsOnceUntilTheLawHasBeenBackInItsRange) {
+  LawAlarm alarm;
+  const auto leaves = [&](double relative) { return alarm.leaves(relative); };
+  const double between = 0.5 * (LawAlarm::kLeft + LawAlarm::kBack);
+  EXPECT_FALSE(leaves(-between));
+  EXPECT_TRUE(leaves(-1.1 * LawAlarm::kLeft));
+  EXPECT_FALSE(leaves(-2.0 * LawAlarm::kLeft));
+  EXPECT_FALSE(leaves(-between));
+  EXPECT_FALSE(leaves(-1.1 * LawAlarm::kLeft));
+  EXPECT_FALSE(leaves(-0.9 * LawAlarm::kBack));
+  EXPECT_TRUE(leaves(1.1 * LawAlarm::kLeft));
+}
+
+TEST(LawWatch, ADeepPressOnACorotationalTissueIsToldWithTheFix) {
+  Simulator simulator = makeScene("corotational");
+  simulator.advance(0.2, {Vector3(0.0, 0.0, -0.0013)});
+  LawAlarm alarm;
+  EXPECT_FALSE(alarm.leaves(simulator.report().law_error.relative)) << simulator.report().law_error.relative;
+  simulator.advance(0.5, {Vector3(0.0, 0.0, -0.009)});
+  EXPECT_TRUE(alarm.leaves(simulator.report().law_error.relative)) << simulator.report().law_error.relative;
+  const std::string text = lawErrorText(simulator);
+  for (const char* part : {"'block'", "'probe'", "corotational", "too small", "model: neo_hookean"})
+    EXPECT_NE(text.find(part), std::string::npos) << text;
 }
 
 TEST(LoadWatch, APressIsPlausibleAndAToolThroughTheBaseIsNot) {

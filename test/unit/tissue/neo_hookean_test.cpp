@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
+#include <tuple>
 
+#include "tissue/element_patches.h"
 #include "tissue/mass_spring.h"
+#include "tissue/mean_dilatation.h"
 #include "tissue_contact/mesh/tet_mesh.h"
 #include "validation/elasticity_helpers.h"
 
@@ -41,12 +45,20 @@ double leastVolume(const TetMesh& mesh, const NodalVectors& x) {
   return least;
 }
 
-class Recovery : public ::testing::TestWithParam<double> {};
+constexpr double kYoung = 5e3;
+
+/// @param averaged over the cells.
+NeoHookean makeModel(const TetMesh& mesh, double poissons_ratio, bool averaged) {
+  return {mesh.positions, mesh.tetrahedra, std::vector<bool>(mesh.positions.cols(), false),
+          MaterialDescription{ElasticModel::kNeoHookean, kYoung, poissons_ratio, 1000.0},
+          averaged ? patchesByCells(mesh.tetrahedra.size(), kTetrahedraPerCell) : std::vector<int>()};
+}
+
+class Recovery : public ::testing::TestWithParam<std::tuple<double, bool>> {};
 
 TEST_P(Recovery, ComesBackFromInsideOutFlatAndAHeap) {
   const TetMesh mesh = smallBlock();
-  const NeoHookean elasticity(mesh.positions, mesh.tetrahedra, std::vector<bool>(mesh.positions.cols(), false),
-                              MaterialDescription{ElasticModel::kNeoHookean, 5e3, GetParam(), 1000.0});
+  const NeoHookean elasticity = makeModel(mesh, std::get<0>(GetParam()), std::get<1>(GetParam()));
   NodalVectors shaken = mesh.positions;  // by 7 mm, cells being 10 mm
   NodalVectors heap = mesh.positions;
   std::mt19937 random(11);
@@ -71,13 +83,16 @@ TEST_P(Recovery, ComesBackFromInsideOutFlatAndAHeap) {
   EXPECT_GT(leastVolume(mesh, heap), 0.5 * leastVolume(mesh, mesh.positions));
 }
 
-INSTANTIATE_TEST_SUITE_P(PoissonsRatios, Recovery, ::testing::Values(0.0, 0.3, 0.45));
+INSTANTIATE_TEST_SUITE_P(PoissonsRatios, Recovery,
+                         ::testing::Combine(::testing::Values(0.0, 0.3, 0.45), ::testing::Bool()));
+
+class ByElementAndByPatch : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(NeoHookean, ByElementAndByPatch, ::testing::Bool());
 
 // The stiffness lags behind small changes only, and what it had before a wild excursion leaves no trace in it.
-TEST(NeoHookean, StiffnessIsThatOfTheShapeWhateverCameBefore) {
+TEST_P(ByElementAndByPatch, StiffnessIsThatOfTheShapeWhateverCameBefore) {
   const TetMesh mesh = smallBlock();
-  const NeoHookean elasticity(mesh.positions, mesh.tetrahedra, std::vector<bool>(mesh.positions.cols(), false),
-                              MaterialDescription{ElasticModel::kNeoHookean, 5e3, 0.45, 1000.0});
+  const NeoHookean elasticity = makeModel(mesh, 0.45, GetParam());
   const auto state = elasticity.makeState();
   const Eigen::MatrixXd K_rest = dense(state->stiffness);
   NodalVectors f(3, mesh.positions.cols());
@@ -89,6 +104,62 @@ TEST(NeoHookean, StiffnessIsThatOfTheShapeWhateverCameBefore) {
   EXPECT_LE((dense(state->stiffness) - K_rest).cwiseAbs().maxCoeff(), 1e-12 * K_rest.maxCoeff());
   elasticity.update(1.01 * mesh.positions, *state, f);
   EXPECT_GT((dense(state->stiffness) - K_rest).cwiseAbs().maxCoeff(), 1e-3 * K_rest.maxCoeff());
+}
+
+// P = (mu' (1 - 1/(3 s^2 + 1)) s + (lambda' (s^3 - 1) - 3/4 mu') s^2) I where the block is s times as large; the energy is that
+// of psi (neo_hookean.h), with what holds flat elements of patches up: 4 mu' (s^3 - 1/2)^2 and 8 mu' (s^3 - 1/2) s^2.
+TEST_P(ByElementAndByPatch, ChangesOfVolumeMeetTheClosedForm) {
+  const TetMesh mesh = smallBlock();
+  const double nu = 0.45;
+  const NeoHookean elasticity = makeModel(mesh, nu, GetParam());
+  const double mu = 4.0 / 3.0 * kYoung / (2.0 * (1.0 + nu));
+  const double lambda = kYoung * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)) + 5.0 / 8.0 * mu;
+  for (const double s : {0.2, 0.8, 1.1, 2.0}) {
+    const double J = s * s * s;
+    const double flat = GetParam() ? std::min(0.0, J - 0.5) : 0.0;
+    const double P =
+        mu * (1.0 - 1.0 / (3.0 * s * s + 1.0)) * s + (lambda * (J - 1.0) - 0.75 * mu + 8.0 * mu * flat) * s * s;
+    const double psi = 0.5 * mu * (3.0 * s * s - 3.0 - std::log((3.0 * s * s + 1.0) / 4.0)) +
+                       0.5 * lambda * (J - 1.0) * (J - 1.0) - 0.75 * mu * (J - 1.0) + 4.0 * mu * flat * flat;
+    constexpr double kVolume = 8e-6;
+    EXPECT_NEAR(elasticity.energy(s * mesh.positions), kVolume * psi, 1e-12 * kVolume * kYoung * (1.0 + J * J)) << s;
+    // Virial: sum of f . X = -V P : I.
+    const NodalVectors f = elasticForces(elasticity, s * mesh.positions);
+    EXPECT_NEAR(f.cwiseProduct(mesh.positions).sum(), -3.0 * kVolume * P, 1e-11 * kVolume * kYoung * (1.0 + J * J))
+        << s;
+  }
+}
+
+// Patch test: where all elements are strained alike, averaging changes nothing, however large the strain, while none is flat.
+TEST(NeoHookeanPatches, UniformStrainGivesTheForcesOfElements) {
+  const TetMesh mesh = smallBlock();
+  Matrix3 F;
+  F << 1.6, 0.1, -0.4, 0.3, 0.5, 0.1, 0.0, 0.3, 1.2;
+  const NodalVectors plain = elasticForces(makeModel(mesh, 0.45, false), F * mesh.positions);
+  const NodalVectors averaged = elasticForces(makeModel(mesh, 0.45, true), F * mesh.positions);
+  EXPECT_LE((averaged - plain).norm(), 1e-12 * plain.norm());
+}
+
+// At small strain the laws are one, and so is what patches do to them: no locking in bending (mean_dilatation_test.cpp).
+TEST(NeoHookeanPatches, StiffnessAtRestIsThatOfLinearPatches) {
+  const TetMesh mesh = smallBlock();
+  MaterialDescription material{ElasticModel::kLinear, kYoung, 0.49, 1000.0};
+  const MeanDilatation linear(mesh.positions, mesh.tetrahedra, std::vector<bool>(mesh.positions.cols(), false),
+                              material, patchesByCells(mesh.tetrahedra.size(), kTetrahedraPerCell));
+  const Eigen::MatrixXd expected = dense(linear.makeState()->stiffness);
+  const Eigen::MatrixXd got = dense(makeModel(mesh, 0.49, true).makeState()->stiffness);
+  EXPECT_LE((got - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.maxCoeff());
+}
+
+// Volume may move between the elements of a patch, and not out of it: nu = 0.4999, so that any change of the patch's volume would
+// cost ten thousand times as much.
+TEST(NeoHookeanPatches, ElementsMayChangeWhatTheirPatchKeeps) {
+  const TetMesh mesh = smallBlock();
+  NodalVectors x = mesh.positions;
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    if (x.col(i).norm() < 1e-9 + 0.01 && x(2, i) == 0.01) x(2, i) += 0.002;  // the node inside the block
+  }
+  EXPECT_LT(makeModel(mesh, 0.4999, true).energy(x), 0.5 * makeModel(mesh, 0.4999, false).energy(x));
 }
 
 TEST(MassSpring, NodesInOnePlaceGiveNoNan) {
