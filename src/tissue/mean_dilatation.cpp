@@ -26,11 +26,12 @@ struct MeanDilatation::Patch {
 };
 
 struct MeanDilatation::PatchState : RotationState {
-  std::vector<Vector3> gradients;   ///< b of every patch's nodes, patch after patch, as in `stiffness`, m^2
-  std::vector<bool> still;          ///< per patch: its forces are among the held ones; empty: none is
-  std::vector<BatchRange> pressed;  ///< batches with elements of the other patches
-  std::vector<double> pressures;    ///< scratch, per patch: kappa tbar, Pa
-  std::vector<int> turned_patches;  ///< scratch
+  std::vector<Vector3> gradients;      ///< b of every patch's nodes, patch after patch, as in `stiffness`, m^2
+  std::vector<Vector3> old_gradients;  ///< scratch, of one patch; zero before the first update
+  std::vector<bool> still;             ///< per patch: its forces are among the held ones; empty: none is
+  std::vector<BatchRange> pressed;     ///< batches with elements of the other patches
+  std::vector<double> pressures;       ///< scratch, per patch: kappa tbar, Pa
+  std::vector<int> turned_patches;     ///< scratch
 };
 
 namespace {
@@ -109,9 +110,10 @@ std::unique_ptr<Elasticity::State> MeanDilatation::makeState() const {
   auto state = std::make_unique<PatchState>();
   prepare(*state);
   state->gradients.assign(patches_.back().first + patches_.back().nodes.size(), Vector3::Zero());
+  state->old_gradients.assign(most_nodes_, Vector3::Zero());
   for (const Patch& patch : patches_) {
     addGradients(patch, *state, &state->gradients[patch.first]);
-    addStiffness(patch, &state->gradients[patch.first], 1.0, *state);
+    addStiffness(patch, &state->gradients[patch.first], state->old_gradients.data(), *state);
   }
   state->pressed = {{0, tets().batches.size()}};
   state->pressures.resize(patches_.size());
@@ -145,15 +147,20 @@ double MeanDilatation::dilatation(const Patch& patch, const Vector3* gradients, 
   return sum / patch.volume - 3.0;
 }
 
-void MeanDilatation::addStiffness(const Patch& patch, const Vector3* gradients, double sign, State& state) const {
-  const double scale = sign * patch.bulk / patch.volume;
+/// Puts kappa/V b b' of these gradients in the place of that of `old`, in one pass over the blocks.
+void MeanDilatation::addStiffness(const Patch& patch, const Vector3* gradients, const Vector3* old, State& state) {
+  const double scale = patch.bulk / patch.volume;
   const std::size_t count = patch.nodes.size();
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = 0; j < count; ++j) {
+    const Vector3 scaled = scale * gradients[i];
+    const Vector3 old_scaled = scale * old[i];
+    for (std::size_t j = i; j < count; ++j) {
       const int slot = patch.slots[i * count + j];
       if (slot < 0) continue;
-      const Matrix3 block = (scale * gradients[i]) * gradients[j].transpose();
+      const Matrix3 block = scaled * gradients[j].transpose() - old_scaled * old[j].transpose();
       addBlock(i == j, slot, block, patch.damping_s, state.stiffness, state.damping);
+      if (i == j) continue;
+      addBlock(false, patch.slots[j * count + i], block.transpose(), patch.damping_s, state.stiffness, state.damping);
     }
   }
 }
@@ -176,10 +183,10 @@ void MeanDilatation::refreshStiffness(const std::vector<BatchRange>& ranges, Pat
   for (const int p : turned) {
     const Patch& patch = patches_[p];
     Vector3* const gradients = &state.gradients[patch.first];
-    addStiffness(patch, gradients, -1.0, state);
-    std::fill(gradients, gradients + patch.nodes.size(), Vector3::Zero());
+    std::copy_n(gradients, patch.nodes.size(), state.old_gradients.data());
+    std::fill_n(gradients, patch.nodes.size(), Vector3::Zero());
     addGradients(patch, state, gradients);
-    addStiffness(patch, gradients, 1.0, state);
+    addStiffness(patch, gradients, state.old_gradients.data(), state);
   }
 }
 

@@ -39,7 +39,7 @@ class MeanDilatation : public TetElasticity {
 
   void addGradients(const Patch& patch, const RotationState& state, Vector3* gradients) const;
   static double dilatation(const Patch& patch, const Vector3* gradients, const NodalVectors& x);
-  void addStiffness(const Patch& patch, const Vector3* gradients, double sign, State& state) const;
+  static void addStiffness(const Patch& patch, const Vector3* gradients, const Vector3* old, State& state);
   void refreshStiffness(const std::vector<BatchRange>& ranges, PatchState& state) const;
   void addForces(const NodalVectors& x, const std::vector<BatchRange>& ranges, bool still, PatchState& state,
                  NodalVectors& forces) const;
