@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 
-#include "core/lanes.h"
+#include "core/row_product.h"
 
 namespace tissue_contact {
 
@@ -45,40 +44,19 @@ void BlockMatrix::copyBlocks(const BlockMatrix& from) {
   std::copy(from.values.begin(), from.values.end(), values.begin());
 }
 
-namespace {
-
-/// Sum of values * v_j over offsets [begin, end).
-TISSUE_CONTACT_INLINE Vector3 product(const BlockMatrix& matrix, int begin, int end, const NodalVectors& v) {
-  const double* const velocity = v.data();
-  Lanes sum = {0.0, 0.0, 0.0, 0.0};  // the last lane is of no use to anyone
-  for (int k = begin; k < end; ++k) {
-    const double* const m = matrix.values[k].data();
-    const double* const w = velocity + 3 * static_cast<std::ptrdiff_t>(matrix.columns[k]);
-    Lanes x, y, z;
-    std::memcpy(&x, m, sizeof(Lanes));
-    std::memcpy(&y, m + 3, sizeof(Lanes));
-    std::memcpy(&z, m + 5, sizeof(Lanes));  // not beyond the block
-    z = Lanes{z[1], z[2], z[3], z[3]};
-    sum += x * w[0] + y * w[1] + z * w[2];
-  }
-  return {sum[0], sum[1], sum[2]};
-}
-
-}  // namespace
-
 TISSUE_CONTACT_CLONES
 Vector3 BlockMatrix::offDiagonalProduct(int i, const NodalVectors& v) const {
-  return product(*this, row_start[i], row_start[i + 1], v);
+  return rowProduct(*this, row_start[i], row_start[i + 1], v);
 }
 
 TISSUE_CONTACT_CLONES
 Vector3 BlockMatrix::lowerProduct(int i, const NodalVectors& v) const {
-  return product(*this, row_start[i], row_middle[i], v);
+  return rowProduct(*this, row_start[i], row_middle[i], v);
 }
 
 TISSUE_CONTACT_CLONES
 Vector3 BlockMatrix::upperProduct(int i, const NodalVectors& v) const {
-  return product(*this, row_middle[i], row_start[i + 1], v);
+  return rowProduct(*this, row_middle[i], row_start[i + 1], v);
 }
 
 }  // namespace tissue_contact

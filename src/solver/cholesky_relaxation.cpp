@@ -93,15 +93,17 @@ void CholeskyRelaxation::prepare(const ContactProblem& problem, ContactSolution&
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) prepareContact(problem, c, solution);
 }
 
-/// Relaxes; where an old factor makes things worse or hardly better, or leaves more than the relaxation before the last
-/// contact passes, it is renewed at once and the relaxation done again with A itself. A part of the answer that the factor
-/// drives apart may be small at first, so every relaxation is watched.
+/// Relaxes; where an old factor makes things worse or hardly better, or leaves a stale share that is more than the relaxation
+/// before the last contact passes left, it is renewed at once and the relaxation done again with A itself. A part of the answer
+/// that the factor drives apart may be small at first, so every relaxation is watched. More left with a good share is what the
+/// passes brought, where contacts change their states, and no fault of the factor.
 /// @return the defect left, N s.
 double CholeskyRelaxation::relaxSafely(const ContactProblem& problem, ContactSolution& solution) {
   const double before = normOf(defect_);
   saved_ = solution.v;
   const double after = relaxOnce(problem, solution, before);
-  const bool serves = after <= kUselessContraction * before && after <= left_;
+  const bool grows = after > left_ && after > kStaleContraction * before;
+  const bool serves = after <= kUselessContraction * before && !grows;
   left_ = after;
   if (serves || fresh_ || after <= kRoundOff * loads_) return after;
   solution.v = saved_;

@@ -1,9 +1,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 #include <utility>
 
+#include "core/row_product.h"
 #include "solver/anderson.h"
 #include "solver/relaxation.h"
 
@@ -40,8 +40,7 @@ class GaussSeidelRelaxation : public Relaxation {
   void findNodeContacts(const ContactProblem& problem);
   void findTouched(const ContactProblem& problem);
   void followTouched(const ContactProblem& problem, const std::vector<NodalVectors>& v);
-  template <class Hold>
-  double sweep(const BodySystem& body, std::size_t k, bool forward, NodalVectors& v, const Hold& hold);
+  void findHeld(int body, bool forward);
   bool project(const ContactProblem& problem, int contact, ContactCorrector& corrector, ContactSolution& solution);
   double correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution);
   void apply(const ContactRow& row, const Vector3& impulse_W, std::vector<NodalVectors>& v);
@@ -60,6 +59,7 @@ class GaussSeidelRelaxation : public Relaxation {
   std::vector<Matrix3> W_;                      ///< W_P per contact, contact frame, 1/kg; W(0, 0) = 0: it cannot move
   std::vector<std::vector<int>> node_contact_;  ///< per body and node: the contact that alone holds it, else -1
   bool holding_ = false;                        ///< some node_contact_ is a contact
+  std::vector<int> held_;  ///< scratch: nodes of a body with such a contact, in the order of a sweep
   AndersonMixing mixing_{kMixedPairs};
   VectorX begun_;    ///< velocities where a pair of sweeps began, of the bodies awake, m/s
   VectorX reached_;  ///< and where it led
@@ -174,45 +174,76 @@ void GaussSeidelRelaxation::followTouched(const ContactProblem& problem, const s
   }
 }
 
-/// Gauss-Seidel step of every free node of a body, with the impulses held. A sweep forth leaves sum_{j<i} A_ij v_j of every
-/// node in `lower`, which the sweep back then need not compute (Conrad & Wallach, "Alternating Methods for Sets of
-/// Linear Equations", Numer. Math. 32 (1979) 105-108).
-/// @param hold called with each node after its step; true: its contact holds it, so that its defect does not count.
-/// @return |defects met|^2, (N s)^2.
-template <bool kDamped, bool kForward, class Hold>
-double sweepBody(const BodySystem& body, const std::vector<Matrix3>& block_inverse, const NodalVectors& impulses,
-                 NodalVectors& lower, NodalVectors& v, const Hold& hold) {
-  double change = 0.0;
-  const int nodes = body.K->rows();
-  for (int step = 0; step < nodes; ++step) {
-    const int i = kForward ? step : nodes - 1 - step;
+/// Of one body.
+struct Sweep {
+  const BodySystem& body;
+  const std::vector<Matrix3>& block_inverse;
+  const NodalVectors& impulses;
+  NodalVectors& lower;
+  NodalVectors& v;
+};
+
+/// Gauss-Seidel step of the free nodes from `first` to before `end`, with the impulses held. A sweep forth leaves sum_{j<i}
+/// A_ij v_j of every node in `lower`, which the sweep back then need not compute (Conrad & Wallach, "Alternating Methods for
+/// Sets of Linear Equations", Numer. Math. 32 (1979) 105-108).
+/// @return change + |defects met|^2, (N s)^2.
+template <bool kDamped, bool kForward>
+TISSUE_CONTACT_INLINE double sweepNodes(const Sweep& all, int first, int end, double change) {
+  const BodySystem& body = all.body;
+  const BlockMatrix& K = *body.K;
+  const BlockMatrix& D = kDamped ? *body.D : K;
+  for (int i = first; i != end; i += kForward ? 1 : -1) {
     if ((*body.fixed)[i]) continue;
-    const Vector3 v_i = v.col(i);
+    const Vector3 v_i = all.v.col(i);
     if (kForward) {
-      Vector3 sum = body.stiffness_scale * body.K->lowerProduct(i, v);
-      if (kDamped) sum += body.damping_scale * body.D->lowerProduct(i, v);
-      lower.col(i) = sum;
+      Vector3 sum = body.stiffness_scale * rowProduct(K, K.row_start[i], K.row_middle[i], all.v);
+      if (kDamped) sum += body.damping_scale * rowProduct(D, D.row_start[i], D.row_middle[i], all.v);
+      all.lower.col(i) = sum;
     }
-    const Vector3 elastic = body.K->upperProduct(i, v) + body.K->diagonal[i] * v_i;
+    const Vector3 elastic =
+        rowProduct(K, K.row_middle[i], K.row_start[i + 1], all.v) + blockProduct(K.diagonal[i], v_i);
     Vector3 defect =
-        body.b.col(i) + impulses.col(i) - lower.col(i) - body.mass[i] * v_i - body.stiffness_scale * elastic;
-    if (kDamped) defect -= body.damping_scale * (body.D->upperProduct(i, v) + body.D->diagonal[i] * v_i);
-    v.col(i) = v_i + block_inverse[i] * defect;
-    if (!hold(i)) change += defect.squaredNorm();
+        body.b.col(i) + all.impulses.col(i) - all.lower.col(i) - body.mass[i] * v_i - body.stiffness_scale * elastic;
+    if (kDamped) {
+      defect -= body.damping_scale *
+                (rowProduct(D, D.row_middle[i], D.row_start[i + 1], all.v) + blockProduct(D.diagonal[i], v_i));
+    }
+    all.v.col(i) = v_i + blockProduct(all.block_inverse[i], defect);
+    change += defect.squaredNorm();
   }
   return change;
 }
 
+TISSUE_CONTACT_CLONES
+double sweepForth(const Sweep& all, int first, int end, double change) {
+  return all.body.D != nullptr ? sweepNodes<true, true>(all, first, end, change)
+                               : sweepNodes<false, true>(all, first, end, change);
+}
+
+TISSUE_CONTACT_CLONES
+double sweepBack(const Sweep& all, int first, int end, double change) {
+  return all.body.D != nullptr ? sweepNodes<true, false>(all, first, end, change)
+                               : sweepNodes<false, false>(all, first, end, change);
+}
+
+/// All nodes of a body.
+/// @param held nodes that a contact may hold, in the order of the sweep.
+/// @param hold called with each of them after its step; true: its contact holds it, so that its defect does not count.
+/// @return |defects met|^2, (N s)^2.
 template <class Hold>
-double GaussSeidelRelaxation::sweep(const BodySystem& body, std::size_t k, bool forward, NodalVectors& v,
-                                    const Hold& hold) {
-  const auto run = [&](auto damped, auto forth) {
-    return sweepBody<damped.value, forth.value>(body, block_inverse_[k], contact_impulses_[k], lower_[k], v, hold);
-  };
-  using Yes = std::true_type;
-  using No = std::false_type;
-  if (body.D == nullptr) return forward ? run(No{}, Yes{}) : run(No{}, No{});
-  return forward ? run(Yes{}, Yes{}) : run(Yes{}, No{});
+double sweepBody(const Sweep& all, bool forward, const std::vector<int>& held, const Hold& hold) {
+  const auto run = forward ? sweepForth : sweepBack;
+  const int way = forward ? 1 : -1;
+  const int nodes = all.body.K->rows();
+  int at = forward ? 0 : nodes - 1;
+  double change = 0.0;
+  for (const int node : held) {
+    change = run(all, at, node, change);
+    at = node + way;
+    const double with = run(all, node, at, change);
+    if (!hold(node)) change = with;
+  }
+  return run(all, at, forward ? nodes : -1, change);
 }
 
 /// A node whose own contact is static is projected at once: its tangential velocity becomes the tool's, its impulse the
@@ -227,6 +258,15 @@ bool GaussSeidelRelaxation::project(const ContactProblem& problem, int contact, 
   return true;
 }
 
+void GaussSeidelRelaxation::findHeld(int body, bool forward) {
+  held_.clear();
+  if (!holding_) return;
+  for (const Touched& at : touched_) {  // ascending
+    if (at.body == body && node_contact_[body][at.node] >= 0) held_.push_back(at.node);
+  }
+  if (!forward) std::reverse(held_.begin(), held_.end());
+}
+
 double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                                     ContactSolution& solution) {
   const bool forward = iteration % 2 == 0;
@@ -237,9 +277,10 @@ double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     const BodySystem& body = problem.bodies[k];
     if (body.asleep) continue;
-    const auto never = [](int) { return false; };
+    findHeld(static_cast<int>(k), forward);
     const auto hold = [&](int i) { return project(problem, node_contact_[k][i], corrector, solution); };
-    change += holding_ ? sweep(body, k, forward, solution.v[k], hold) : sweep(body, k, forward, solution.v[k], never);
+    const Sweep all{body, block_inverse_[k], contact_impulses_[k], lower_[k], solution.v[k]};
+    change += sweepBody(all, forward, held_, hold);
   }
   if (forward) {
     for (Touched& at : touched_) at.v = solution.v[at.body].col(at.node);

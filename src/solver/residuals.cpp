@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/row_product.h"
 #include "solver/momentum_defect.h"
 #include "solver/residual_measures.h"
 
@@ -55,21 +56,36 @@ double kineticAngle(const CoulombLaw& law, const Vector2& friction, const Vector
                       law.anisotropic == nullptr ? Vector2(-sliding) : kineticFriction(law, sliding.normalized()));
 }
 
-}  // namespace
-
-double bodyDefect(const BodySystem& body, const NodalVectors& v, const NodalVectors& impulses, NodalVectors& defect) {
+/// @tparam kDamped the body has a damping matrix: known when compiled, so that the others do not ask node by node.
+template <bool kDamped>
+TISSUE_CONTACT_INLINE double defectOf(const BodySystem& body, const NodalVectors& v, const NodalVectors& impulses,
+                                      NodalVectors& defect) {
+  const BlockMatrix& K = *body.K;
+  const BlockMatrix& D = kDamped ? *body.D : K;
   double sum = 0.0;
-  for (int i = 0; i < body.K->rows(); ++i) {
+  for (int i = 0; i < K.rows(); ++i) {
     if ((*body.fixed)[i]) {
       defect.col(i).setZero();
       continue;
     }
-    const Vector3 d =
-        body.D == nullptr ? nodeDefect<false>(body, impulses, i, v) : nodeDefect<true>(body, impulses, i, v);
+    const Vector3 v_i = v.col(i);
+    const Vector3 elastic = rowProduct(K, K.row_start[i], K.row_start[i + 1], v) + blockProduct(K.diagonal[i], v_i);
+    Vector3 d = body.b.col(i) + impulses.col(i) - body.mass[i] * v_i - body.stiffness_scale * elastic;
+    if (kDamped) {
+      d -= body.damping_scale *
+           (rowProduct(D, D.row_start[i], D.row_start[i + 1], v) + blockProduct(D.diagonal[i], v_i));
+    }
     defect.col(i) = d;
     sum += d.squaredNorm();
   }
   return sum;
+}
+
+}  // namespace
+
+TISSUE_CONTACT_CLONES
+double bodyDefect(const BodySystem& body, const NodalVectors& v, const NodalVectors& impulses, NodalVectors& defect) {
+  return body.D != nullptr ? defectOf<true>(body, v, impulses, defect) : defectOf<false>(body, v, impulses, defect);
 }
 
 double loadScale(const ContactProblem& problem) {

@@ -105,15 +105,20 @@ void DilatationPatches::meanPressures(const std::vector<ElementBatch>& batches, 
   }
 }
 
-void DilatationPatches::addStiffness(const Patch& patch, const Vector3* b, double sign, Elasticity::State& state) {
-  const double scale = sign * patch.bulk / patch.volume;
+void DilatationPatches::addStiffness(const Patch& patch, const Vector3* b, const Vector3* old,
+                                     Elasticity::State& state) {
+  const double scale = patch.bulk / patch.volume;
   const std::size_t count = patch.nodes.size();
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = 0; j < count; ++j) {
+    for (std::size_t j = i; j < count; ++j) {
       const int slot = patch.slots[i * count + j];
       if (slot < 0) continue;
-      const Matrix3 block = (scale * b[i]) * b[j].transpose();
+      Matrix3 block = Matrix3::Zero();
+      if (b != nullptr) block = (scale * b[i]) * b[j].transpose();
+      if (old != nullptr) block -= (scale * old[i]) * old[j].transpose();
       addBlock(i == j, slot, block, patch.damping_s, state.stiffness, state.damping);
+      if (i == j) continue;
+      addBlock(false, patch.slots[j * count + i], block.transpose(), patch.damping_s, state.stiffness, state.damping);
     }
   }
 }

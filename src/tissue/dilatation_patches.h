@@ -57,8 +57,9 @@ struct DilatationPatches {
                      const std::vector<ElementValues>& values, double at_rest, bool still, const Held& held,
                      std::vector<double>& pressures) const;
 
-  /// Adds sign kappa / V b b' to K, and its share to D, with b (m^2) per node of the patch.
-  static void addStiffness(const Patch& patch, const Vector3* b, double sign, Elasticity::State& state);
+  /// Adds kappa / V b b' to K, and its share to D, with b (m^2) per node of the patch, and takes out that of `old`, in one
+  /// pass over the blocks. Either may be null.
+  static void addStiffness(const Patch& patch, const Vector3* b, const Vector3* old, Elasticity::State& state);
 
   std::vector<Patch> patches;
   std::vector<std::array<int, kLanes>> of_batch;  ///< patch of each element; lanes not used repeat the last

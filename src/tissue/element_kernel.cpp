@@ -52,6 +52,11 @@ TISSUE_CONTACT_INLINE void rotateBack(const LaneMatrix& R, const LaneMatrix& F, 
   }
 }
 
+/// Half the angle of the last Newton step, rad, squared. The step is quadratic: after one of 1e-4 rad the rotation is off by
+/// about 1e-8, the forces by as large a share of the stress; the next update starts from there, so that nothing adds up and
+/// tissue at rest has its exact rotation.
+constexpr double kLastStepSquared = 0.25e-8;
+
 /// One Newton step of nearestRotation() in the active lanes; leaves active those that need another.
 /// `failed` collects those that Newton must not be trusted with.
 TISSUE_CONTACT_INLINE void newtonStep(const LaneMatrix& S, LaneQuaternion& q, Mask& active, Mask& failed) {
@@ -81,7 +86,7 @@ TISSUE_CONTACT_INLINE void newtonStep(const LaneMatrix& S, LaneQuaternion& q, Ma
   q.x = move ? x * shrink : q.x;
   q.y = move ? y * shrink : q.y;
   q.z = move ? z * shrink : q.z;
-  active = move & (squared >= 0.25e-14);
+  active = move & (squared >= kLastStepSquared);
 }
 
 /// The slow, always right way for the lanes in `failed`.

@@ -53,19 +53,25 @@ TISSUE_CONTACT_INLINE unsigned char bits(const Mask& mask) {
   return set;
 }
 
+/// Place r of node `corner` of each of the four elements. From memory straight into lanes: a vector put together in memory
+/// would have to wait for its four stores.
+TISSUE_CONTACT_INLINE void gather(const ElementBatch& batch, const double* x, std::size_t corner, std::ptrdiff_t r,
+                                  Lanes& to) {
+  const auto at = [&](std::size_t lane) { return x[3 * static_cast<std::ptrdiff_t>(batch.nodes[lane][corner]) + r]; };
+  to = Lanes{at(0), at(1), at(2), at(3)};
+}
+
 /// F = D D_rest^-1.
 TISSUE_CONTACT_INLINE void deformationGradients(const ElementBatch& batch, const double* x, LaneMatrix& F) {
-  std::array<std::array<double, kLanes>, 9> gathered;
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const Tetrahedron& nodes = batch.nodes[lane];
-    const double* const x0 = x + 3 * static_cast<std::ptrdiff_t>(nodes[0]);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double* const xc = x + 3 * static_cast<std::ptrdiff_t>(nodes[c + 1]);
-      for (std::size_t r = 0; r < 3; ++r) gathered[r + 3 * c][lane] = xc[r] - x0[r];
+  Lanes D[9];
+  for (int r = 0; r < 3; ++r) {
+    Lanes origin;
+    gather(batch, x, 0, r, origin);
+    for (int c = 0; c < 3; ++c) {
+      gather(batch, x, static_cast<std::size_t>(c + 1), r, D[r + 3 * c]);
+      D[r + 3 * c] -= origin;
     }
   }
-  Lanes D[9];
-  for (int i = 0; i < 9; ++i) load(gathered[i], D[i]);
   for (std::size_t c = 0; c < 3; ++c) {
     Lanes a, b, d;
     load(batch.rest_inverse[3 * c], a);
@@ -93,6 +99,23 @@ struct VaryingMaterial {
   using Value = Lanes;
 };
 
+/// Adds a vector per element to node `corner` of each: x and y as a pair, since half as many additions wait for each other
+/// where elements share a node.
+TISSUE_CONTACT_INLINE void scatter(const ElementBatch& batch, std::size_t corner, const Lanes* vector, double* all) {
+  using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+  const Lanes even = __builtin_shuffle(vector[0], vector[1], Mask{0, 4, 2, 6});  // x, y of lanes 0 and 2
+  const Lanes odd = __builtin_shuffle(vector[0], vector[1], Mask{1, 5, 3, 7});
+  const Pair pairs[kLanes] = {{even[0], even[1]}, {odd[0], odd[1]}, {even[2], even[3]}, {odd[2], odd[3]}};
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    double* const at = all + 3 * static_cast<std::ptrdiff_t>(batch.nodes[lane][corner]);
+    Pair sum;
+    std::memcpy(&sum, at, sizeof(Pair));
+    sum += pairs[lane];
+    std::memcpy(at, &sum, sizeof(Pair));
+    at[2] += vector[2][lane];
+  }
+}
+
 /// Forces -V P grad N of first Piola-Kirchhoff stress P, added to the nodes.
 TISSUE_CONTACT_INLINE void addStressForces(const ElementBatch& batch, const LaneMatrix& P, double* forces) {
   Lanes volume;
@@ -107,17 +130,9 @@ TISSUE_CONTACT_INLINE void addStressForces(const ElementBatch& batch, const Lane
       H[r + 3 * node] = -volume * (P.m[r] * g0 + P.m[r + 3] * g1 + P.m[r + 6] * g2);
     }
   }
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const Tetrahedron& nodes = batch.nodes[lane];
-    double* const f0 = forces + 3 * static_cast<std::ptrdiff_t>(nodes[0]);
-    for (std::size_t node = 0; node < 3; ++node) {
-      double* const f = forces + 3 * static_cast<std::ptrdiff_t>(nodes[node + 1]);
-      for (int r = 0; r < 3; ++r) {
-        f[r] += H[r + 3 * node][lane];
-        f0[r] -= H[r + 3 * node][lane];
-      }
-    }
-  }
+  for (std::size_t node = 0; node < 3; ++node) scatter(batch, node + 1, &H[3 * node], forces);
+  const Lanes rest[3] = {-(H[0] + H[3] + H[6]), -(H[1] + H[4] + H[7]), -(H[2] + H[5] + H[8])};
+  scatter(batch, 0, rest, forces);
 }
 
 }  // namespace tissue_contact

@@ -9,7 +9,8 @@
 namespace tissue_contact {
 
 struct MeanDilatation::PatchState : RotationState {
-  std::vector<Vector3> gradients;  ///< b of every patch's nodes, patch after patch, as in `stiffness`, m^2
+  std::vector<Vector3> gradients;      ///< b of every patch's nodes, patch after patch, as in `stiffness`, m^2
+  std::vector<Vector3> old_gradients;  ///< scratch, of one patch
   DilatationPatches::Held held_patches;
   std::vector<double> pressures;    ///< scratch, per patch: kappa tbar, Pa
   std::vector<int> turned_patches;  ///< scratch
@@ -33,8 +34,9 @@ std::unique_ptr<Elasticity::State> MeanDilatation::makeState() const {
   state->gradients.assign(averaged_.nodeCount(), Vector3::Zero());
   for (const Patch& patch : averaged_.patches) {
     addGradients(patch, *state, &state->gradients[patch.first]);
-    DilatationPatches::addStiffness(patch, &state->gradients[patch.first], 1.0, *state);
+    DilatationPatches::addStiffness(patch, &state->gradients[patch.first], nullptr, *state);
   }
+  state->old_gradients.resize(averaged_.most_nodes);
   state->held_patches = averaged_.nothingHeld();
   state->pressures.resize(averaged_.patches.size());
   if (corotational_) {
@@ -85,10 +87,10 @@ void MeanDilatation::refreshStiffness(const std::vector<BatchRange>& ranges, Pat
   for (const int p : turned) {
     const Patch& patch = averaged_.patches[p];
     Vector3* const gradients = &state.gradients[patch.first];
-    DilatationPatches::addStiffness(patch, gradients, -1.0, state);
-    std::fill(gradients, gradients + patch.nodes.size(), Vector3::Zero());
+    std::copy_n(gradients, patch.nodes.size(), state.old_gradients.data());
+    std::fill_n(gradients, patch.nodes.size(), Vector3::Zero());
     addGradients(patch, state, gradients);
-    DilatationPatches::addStiffness(patch, gradients, 1.0, state);
+    DilatationPatches::addStiffness(patch, gradients, state.old_gradients.data(), state);
   }
 }
 

@@ -212,7 +212,7 @@ void NeoHookean::addPatchStiffness(std::size_t p, double sign, DeformationState&
       for (int i = 0; i < 4; ++i) b[member.local[i]] += c.col(i);
     }
   }
-  DilatationPatches::addStiffness(patch, b, sign, state);
+  DilatationPatches::addStiffness(patch, sign > 0.0 ? b : nullptr, sign > 0.0 ? nullptr : b, state);
 }
 
 void NeoHookean::refreshStiffness(const std::vector<BatchRange>& ranges, DeformationState& state) const {

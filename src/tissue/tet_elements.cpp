@@ -52,6 +52,7 @@ TetElements::TetElements(const NodalVectors& rest, const std::vector<Tetrahedron
   material =
       elements.empty() ? LameParameters{} : LameParameters{elements.front().lame.lambda, elements.front().lame.mu};
   if (!same) batch_materials = makeBatchMaterials(elements);
+  pattern.values = std::vector<Matrix3>();  // where blocks lie is all that is asked of it
 }
 
 void TetElements::split(const std::vector<bool>& still, Held& held) const {
@@ -73,8 +74,12 @@ void TetElements::split(const std::vector<bool>& still, Held& held) const {
 }
 
 void TetElements::prepare(Elasticity::State& state) const {
-  state.stiffness = pattern;
-  if (damps) state.damping = pattern;
+  const auto zero = [&](BlockMatrix& matrix) {
+    matrix = pattern;
+    matrix.values.assign(matrix.columns.size(), Matrix3::Zero());
+  };
+  zero(state.stiffness);
+  if (damps) zero(state.damping);
 }
 
 Eigen::Matrix<double, 3, 4> shapeGradients(const Matrix3& rest_inverse) {

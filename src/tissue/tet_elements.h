@@ -62,7 +62,7 @@ struct TetElements {
   LameParameters material;                     ///< of all elements, if batch_materials is empty
   std::vector<BatchMaterial> batch_materials;  ///< where materials differ
   bool damps = false;                          ///< there is a State::damping
-  BlockMatrix pattern;
+  BlockMatrix pattern;                         ///< without values
 };
 
 /// Gradients of the four shape functions, columns, 1/m.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/text_scene.h"
+#include "validation/joint_path.h"
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define TISSUE_CONTACT_COUNTS_MALLOC
@@ -153,6 +154,55 @@ INSTANTIATE_TEST_SUITE_P(, AllocationAtRest,
                                          Case{"FrictionOverPressure", "", "", "",
                                               ", pressures_pa: [0, 5000], pressure_factors: [1, 0.8]"}),
                          [](const auto& one) { return std::string(one.param.name); });
+
+/// @return steps of a second run that allocated.
+template <typename Step>
+int allocatingSteps(Simulator& simulator, int steps, const Step& step) {
+  int with = 0;
+  for (int run = 0; run < 2; ++run) {
+    simulator.reset();
+    with = 0;
+    for (int k = 0; k < steps; ++k) {
+      const std::vector<VectorX> joints = step(k);
+      allocations = 0;
+      counting = true;
+      simulator.advance(0.001, joints);
+      counting = false;
+      with += allocations > 0 ? 1 : 0;
+    }
+  }
+  return with;
+}
+
+TEST(AllocationOfScenes, NoneWhereTissuesTouch) {
+#ifndef TISSUE_CONTACT_COUNTS_MALLOC
+  GTEST_SKIP() << "this build has a malloc of its own";
+#endif
+  Simulator simulator =
+      makeSimulator("gravity_m_per_s2: [0.5, 0, -9.81]\n" + blockScene() +
+                    "  - name: top\n    block: {size_m: [0.02, 0.02, 0.01], cells: [2, 2, 1]}\n"
+                    "    pose: {position_m: [0.003, 0.002, 0.02]}\n"
+                    "    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}\n"
+                    "instruments: []\ntissue_pairs: [{tissue: block, other: top}]\n"
+                    "friction: [{tissue: block, other_tissue: top, static: 0.4}]\n");
+  EXPECT_EQ(allocatingSteps(simulator, 200, [](int) { return std::vector<VectorX>(); }), 0);
+  EXPECT_FALSE(simulator.contacts().empty());
+}
+
+TEST(AllocationOfScenes, NoneInAGrasp) {
+#ifndef TISSUE_CONTACT_COUNTS_MALLOC
+  GTEST_SKIP() << "this build has a malloc of its own";
+#endif
+  SceneEnvironment environment;
+  environment.package_path = [](const std::string&) { return packageDirectory(); };
+  Simulator simulator(loadScene(packageDirectory() + "/config/grasp.yaml", environment.package_path), environment);
+  const std::vector<Vector3> path = graspPath(packageDirectory());
+  const auto joints = [&](int k) {
+    return std::vector<VectorX>{graspJoints(simulator.instruments()[0], path, path.at(3).x() + 0.001 * k)};
+  };
+  EXPECT_EQ(allocatingSteps(simulator, 1000, joints), 0);  // the jaws close on the flap
+  EXPECT_FALSE(simulator.contacts().empty());
+}
 
 }  // namespace
 }  // namespace tissue_contact

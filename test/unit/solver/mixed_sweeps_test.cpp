@@ -59,13 +59,25 @@ TEST(MixedSweeps, LeaveFarLessThanPlainOnes) {
   }
 }
 
+/// b - A v of a node, block by block.
+Vector3 plainDefect(const BodySystem& body, int i, const NodalVectors& v) {
+  Vector3 defect = body.b.col(i) - body.mass[i] * v.col(i);
+  const auto subtract = [&](const BlockMatrix& matrix, double scale) {
+    defect -= scale * (matrix.diagonal[i] * v.col(i));
+    for (int k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k)
+      defect -= scale * (matrix.values[k] * v.col(matrix.columns[k]));
+  };
+  subtract(*body.K, body.stiffness_scale);
+  if (body.D != nullptr) subtract(*body.D, body.damping_scale);
+  return defect;
+}
+
 /// A sweep forth and one back as in the text-book, each node's defect computed in full; between the two contacts move
 /// `moved` by `by`.
 NodalVectors plainPair(const ContactProblem& problem, const std::vector<int>& moved, const Vector3& by) {
   const BodySystem& body = problem.bodies[0];
   const int nodes = body.K->rows();
   NodalVectors v = NodalVectors::Zero(3, nodes);
-  const NodalVectors no_impulses = NodalVectors::Zero(3, nodes);
   for (int step = 0; step < 2 * nodes; ++step) {
     if (step == nodes) {
       for (const int node : moved) v.col(node) += by;
@@ -74,9 +86,7 @@ NodalVectors plainPair(const ContactProblem& problem, const std::vector<int>& mo
     if ((*body.fixed)[i]) continue;
     Matrix3 block = body.stiffness_scale * body.K->diagonal[i] + body.mass[i] * Matrix3::Identity();
     if (body.D != nullptr) block += body.damping_scale * body.D->diagonal[i];
-    const Vector3 defect =
-        body.D == nullptr ? nodeDefect<false>(body, no_impulses, i, v) : nodeDefect<true>(body, no_impulses, i, v);
-    v.col(i) += block.inverse() * defect;
+    v.col(i) += block.inverse() * plainDefect(body, i, v);
   }
   return v;
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <memory>
 #include <random>
@@ -122,6 +123,41 @@ TEST_F(AdaptedRotations, SuddenTurnsAreFollowed) {
   becomeLinear();
   for (int k = 0; k <= TetElasticity::kBlendUpdates + 1; ++k) forces(1.0, *adapted_);
   EXPECT_LE(difference(1.0), 1e-12);  // rotations were found from another guess
+}
+
+/// The forces of the head of tet_elasticity.h, element by element.
+NodalVectors plainForces(const TetMesh& mesh, const LameParameters& lame, const NodalVectors& x) {
+  NodalVectors forces = NodalVectors::Zero(3, x.cols());
+  for (const Tetrahedron& nodes : mesh.tetrahedra) {
+    const Matrix3 rest = edgeMatrix(mesh.positions, nodes);
+    const Matrix3 F = edgeMatrix(x, nodes) * rest.inverse();
+    const Matrix3 R = nearestRotation(F, Quaternion::Identity()).toRotationMatrix();
+    const Matrix3 S = R.transpose() * F;
+    const Matrix3 strain = 0.5 * (S + S.transpose()) - Matrix3::Identity();
+    const Matrix3 P = R * (2.0 * lame.mu * strain + lame.lambda * strain.trace() * Matrix3::Identity());
+    const Matrix3 H = -rest.determinant() / 6.0 * P * rest.inverse().transpose();
+    for (int i = 0; i < 3; ++i) {
+      forces.col(nodes[i + 1]) += H.col(i);
+      forces.col(nodes[0]) -= H.col(i);
+    }
+  }
+  return forces;
+}
+
+// Newton's last step is of up to 1e-4 rad, so the rotation is off by some 1e-8 rad times the strain; none is while at rest.
+TEST_F(AdaptedRotations, ForcesFourElementsAtATimeAreThoseOfEach) {
+  const LameParameters lame = lameParameters(MaterialDescription{ElasticModel::kCorotational, 5e3, 0.4, 1000.0});
+  for (const double by : {1e-5, 1e-4, 1e-3, 1e-2, 0.3}) {
+    const auto state = elasticity_->makeState();
+    double turn = 0.0;
+    for (int k = 0; k < 8; ++k) {
+      turn += by;
+      const NodalVectors expected = plainForces(mesh_, lame, bent(turn));
+      const double size = expected.cwiseAbs().maxCoeff();
+      EXPECT_LE((forces(turn, *state) - expected).cwiseAbs().maxCoeff(), 2e-8 * size) << by;
+      EXPECT_LE((forces(turn, *state) - expected).cwiseAbs().maxCoeff(), 1e-12 * size) << by;
+    }
+  }
 }
 
 TEST(NearestRotation, IsThePolarFactorForAnyGuess) {

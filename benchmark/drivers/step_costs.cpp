@@ -1,0 +1,123 @@
+/// Prints what an implicit step costs: press and drag (a 5 mm ball, 4 mm deep, 20 mm/s) on a block or on a Gmsh mesh of the
+/// same block, with the median and the 99th percentile of the processor time of a step in contact. `--trace FILE` writes
+/// every step: why was this one slow?
+/// usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--tolerance T] [--relaxation NAME] [--step S] [--drag M] [--trace FILE]
+#include <time.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tissue_contact/scene/load_scene.h"
+#include "tissue_contact/simulation/simulator.h"
+
+namespace {
+
+using namespace tissue_contact;
+
+constexpr double kSpeed = 0.02;   // m/s
+constexpr double kDown = 0.0041;  // m, of which .1 mm through air
+
+struct Arguments {
+  std::string mesh;
+  std::map<std::string, std::string> values = {{"--tolerance", "0.001"},
+                                               {"--relaxation", "gauss_seidel"},
+                                               {"--step", "0.001"},
+                                               {"--drag", "0.01"},
+                                               {"--trace", ""}};
+};
+
+bool parse(int argc, char** argv, Arguments& arguments) {
+  if (argc < 2 || argc % 2 != 0) return false;
+  arguments.mesh = argv[1];
+  for (int i = 2; i < argc; i += 2) {
+    const auto value = arguments.values.find(argv[i]);
+    if (value == arguments.values.end()) return false;
+    value->second = argv[i + 1];
+  }
+  return true;
+}
+
+Simulator makeScene(const Arguments& arguments) {
+  const bool file = arguments.mesh.find(".msh") != std::string::npos;
+  const std::string geometry = file ? "mesh: {file: " + arguments.mesh + "}\n"
+                                    : "block: {size_m: [0.10, 0.10, 0.04], cells: [" + arguments.mesh + "]}\n";
+  const std::string yaml =
+      "tissues:\n  - name: block\n    " + geometry +
+      "    material: {model: corotational, youngs_modulus_pa: 5000, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n"
+      "    damping: {stiffness_s: 0.003}\n"
+      "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
+      "instruments:\n  - name: probe\n    urdf: package://tissue_contact/urdf/probe.urdf\n    tip_link: tip\n"
+      "    joint_state_topics: [/probe/joint_states]\n    base_pose: {position_m: [-0.01, 0, 0.0451]}\n"
+      "    contact_links: [tip]\n"
+      "step: {max_step_s: " +
+      arguments.values.at("--step") + "}\nsolver: {relaxation: " + arguments.values.at("--relaxation") +
+      ", tolerance: " + arguments.values.at("--tolerance") +
+      "}\nfriction: [{instrument: probe, tissue: block, static: 0.5}]\n";
+  SceneEnvironment environment;
+  environment.package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
+  return Simulator(parseScene(yaml, "step_costs", environment.package_path), environment);
+}
+
+/// Of this thread, so that others on the machine count little.
+double processorSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+void run(Simulator& simulator, const Arguments& arguments) {
+  const double dt = std::stod(arguments.values.at("--step"));
+  const double way = kDown + std::stod(arguments.values.at("--drag"));
+  const std::string& trace = arguments.values.at("--trace");
+  std::FILE* const file = trace.empty() ? nullptr : std::fopen(trace.c_str(), "w");
+  if (file != nullptr) std::fprintf(file, "step,ms,iterations,contacts,static,kinetic,fx,fz\n");
+  std::vector<double> ms;
+  double iterations = 0.0;
+  for (int k = 1; kSpeed * dt * k <= way; ++k) {
+    const double path = kSpeed * dt * k;
+    const std::vector<VectorX> joints = {Vector3(std::max(path - kDown, 0.0), 0.0, -std::min(path, kDown))};
+    const double before = processorSeconds();
+    simulator.advance(dt, joints);
+    const double took = 1e3 * (processorSeconds() - before);
+    const StepReport& report = simulator.report();
+    const int contacts = report.open_contacts + report.static_contacts + report.kinetic_contacts;
+    const Vector3 force = simulator.wrench(0).force;
+    if (file != nullptr) {
+      std::fprintf(file, "%d,%.4f,%d,%d,%d,%d,%.9g,%.9g\n", k, took, report.iterations, contacts,
+                   report.static_contacts, report.kinetic_contacts, force.x(), force.z());
+    }
+    if (report.static_contacts + report.kinetic_contacts == 0) continue;
+    ms.push_back(took);
+    iterations += report.iterations;
+  }
+  if (file != nullptr) std::fclose(file);
+  std::printf("%s nodes %d median_ms %.4f p99_ms %.4f max_ms %.4f iterations %.1f steps %zu\n", arguments.mesh.c_str(),
+              simulator.tissues()[0].nodeCount(), quantile(ms, 0.5), quantile(ms, 0.99), quantile(ms, 1.0),
+              ms.empty() ? 0.0 : iterations / static_cast<double>(ms.size()), ms.size());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  if (!parse(argc, argv, arguments)) {
+    std::fprintf(stderr,
+                 "usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--tolerance T] [--relaxation NAME] [--step S] "
+                 "[--drag M] [--trace FILE]\n");
+    return 2;
+  }
+  Simulator simulator = makeScene(arguments);
+  run(simulator, arguments);
+  return 0;
+}
