@@ -17,7 +17,7 @@ JointStateSample jaw(std::int64_t stamp_ns, double z) { return {stamp_ns, {"z"},
 
 /// run(), where nothing is refused.
 Trace runAll(Simulator& simulator, JointStatePlayer& player, const Order& order) {
-  const Trace trace = run(simulator, player, order);
+  Trace trace = run(simulator, player, order);
   for (int v = 1; v < kVerdictCount; ++v) {
     EXPECT_EQ(player.count(static_cast<Verdict>(v)), 0) << verdictText(static_cast<Verdict>(v));
   }
@@ -268,7 +268,7 @@ TEST(JointStateMoments, NoOrderOfArrivalMattersWithinMaxGap) {
     const auto simulator =
         blockTouchedBy(probe("a", "/a/measured_js, /a/jaw/measured_js", -0.015) + probe("b", "/b", 0.015));
     JointStatePlayer player(*simulator);
-    const Trace trace = runAll(*simulator, player, order);
+    Trace trace = runAll(*simulator, player, order);
     resets = player.resets();
     return trace;
   };

@@ -13,7 +13,7 @@ Trace traceOf(const std::vector<JointStateSample>& samples, std::int64_t late) {
   JointStatePlayer player(*simulator);
   Order order;
   for (const JointStateSample& s : samples) order.emplace_back(0, s);
-  const Trace trace = run(*simulator, player, order);
+  Trace trace = run(*simulator, player, order);
   EXPECT_EQ(player.count(Verdict::kLate), late);
   EXPECT_EQ(player.resets(), 0);
   return trace;
