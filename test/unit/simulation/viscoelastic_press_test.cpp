@@ -46,7 +46,7 @@ std::vector<double> press(Simulator simulator, const std::vector<double>& times)
 class ViscoelasticPress : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Models, ViscoelasticPress,
                          ::testing::Values("linear, dilatation: patch", "corotational, dilatation: patch",
-                                           "neo_hookean"));
+                                           "neo_hookean, dilatation: element", "neo_hookean, dilatation: patch"));
 
 TEST_P(ViscoelasticPress, GoesFromTheModulusAtOnceToTheRelaxedOne) {
   const double shear = kYoung / (2.0 * (1.0 + kPoisson));
