@@ -27,7 +27,7 @@ constexpr const char* kUsage =
     "on\n"
     "one core, and writes a CSV file and a picture per scene: time per step against solver error (same scene, solved "
     "to\n"
-    "convergence) and against total error (finer mesh, or closed form).\n"
+    "convergence) and against total error (stored truth, or finer mesh).\n"
     "  --out DIR         where to (default: benchmark)\n"
     "  --only SCENE      press-drag, grasp, partial-slip or robot\n"
     "  --quick           a coarse grid, about a minute\n"

@@ -32,24 +32,7 @@ BenchmarkScene shippedScene(const std::string& name, const std::string& file) {
   return scene;
 }
 
-/// The scene on a finer mesh. Its solver error, a ten-thousandth or so, is small beside what meshes differ by.
-BenchmarkScene finer(const BenchmarkScene& scene, const std::array<int, 3>& cells) {
-  Settings settings = shippedSettings(scene);
-  settings.solver.iterations = 100;
-  settings.solver.tolerance = 1e-5;
-  settings.cells = cells;
-  BenchmarkScene result = scene;
-  result.scene = withSettings(scene.scene, settings);
-  return result;
-}
-
-/// The same with cells that are smallest where the ball goes.
-BenchmarkScene graded(BenchmarkScene scene, const std::array<double, 3>& growth) {
-  auto& block = std::get<BlockDescription>(scene.scene.tissues[0].geometry);
-  for (std::size_t axis = 0; axis < 3; ++axis) block.grading[axis].growth = growth[axis];
-  block.grading[2].fine_at = AxisGrading::FineAt::kMaximum;
-  return scene;
-}
+std::string truthTable(const std::string& name) { return packageDirectory() + "/benchmark/truth/" + name + ".csv"; }
 
 std::string pressDragYaml() {
   std::ostringstream yaml;
@@ -68,7 +51,6 @@ std::string pressDragYaml() {
 
 constexpr double kSlipDepth = 0.000625;  // m, form H
 constexpr double kSlipMu = 0.3;
-constexpr double kSlipPress = 0.0613;    // N, form H
 constexpr double kSlideAll = 0.2642e-3;  // d1 of form G, m
 constexpr int kSlipSamples = 50;         // to 1.5 d1 in a second
 
@@ -87,19 +69,6 @@ void playPartialSlip(Simulator& simulator, const Sampled& sampled) {
     simulator.advance(kPressStep, {away, Vector3(slipDrag(time), 0.0, -kSlipDepth)});
     sampled(time);
   }
-}
-
-/// Forms G and H: Q = mu P (1 - (1 - d/d1)^1.5) against the drag, P up.
-Run partialSlipClosedForm(const Run& like) {
-  Run run;
-  run.times_s = like.times_s;
-  for (const double time : like.times_s) {
-    const double left = std::max(0.0, 1.0 - slipDrag(time) / kSlideAll);
-    Wrench rough;
-    rough.force = kSlipPress * Vector3(-kSlipMu * (1.0 - std::pow(left, 1.5)), 0.0, 1.0);
-    run.wrenches.push_back({Wrench(), rough});
-  }
-  return run;
 }
 
 }  // namespace
@@ -148,16 +117,7 @@ ScenePlan pressDragPlan(const SceneOptions& options) {
     plan.meshes = {{20, 20, 6}};
     plan.steps_s = {0.005};
   }
-  // 48 cells along the drag, 1.4 mm under the ball; growth so that the coarser one has the same shape, 1.4 times as large.
-  plan.truth.how = "mesh graded to 1.4 mm cells under the ball (15925 nodes)";
-  plan.truth.levels = {graded(finer(plan.scene, {34, 18, 8}), {1.043, 1.205, 1.233}),
-                       graded(finer(plan.scene, {48, 24, 12}), {1.03, 1.15, 1.15})};
-  plan.truth.ratio = 1.41;
-  if (options.quick) {
-    plan.truth.how = "converged run on the finer mesh";
-    plan.truth.levels.clear();
-    plan.truth.ratio = 2.0;
-  }
+  plan.truth.table = truthTable("press_drag");
   return plan;
 }
 
@@ -181,7 +141,6 @@ ScenePlan graspPlan(const SceneOptions& options) {
     }
   };
   plan.steps_s = {0.0005, 0.002, 0.005};
-  plan.truth.how = "converged run on the finer mesh";
   plan.truth.ratio = 1.5;
   plan.meshes = {{6, 12, 18}};
   if (options.quick) {
@@ -209,9 +168,7 @@ ScenePlan partialSlipPlan(const SceneOptions& options) {
   plan.meshes = {{16, 16, 8}, {24, 24, 12}};
   plan.exact_rivals = !options.quick;
   if (options.quick) plan.meshes.clear();
-  plan.truth.how = "closed form (Cattaneo-Mindlin; press force of form H)";
-  plan.truth.closed_form = partialSlipClosedForm;
-  plan.truth.closed_form_error = 0.006;  // Q/(mu P) = .648 +- .006, P +- .5 %: validation room, form H
+  plan.truth.table = truthTable("partial_slip");
   return plan;
 }
 
@@ -228,7 +185,6 @@ ScenePlan robotPlan(const SceneOptions& options) {
   plan.duration_s = recording.duration_s;
   plan.scene.motion = playRecording(std::move(recording));
   plan.steps_s = options.quick ? std::vector{0.005} : std::vector{0.001, 0.005, 0.0105};
-  plan.truth.how = "converged run on the finer mesh";
   plan.truth.ratio = 1.5;
   plan.meshes = {{30, 18, 5}};
   plan.exact_rivals = !options.quick;

@@ -13,14 +13,10 @@ namespace tissue_contact {
 
 /// The best answer there is, for total errors.
 struct TruthPlan {
-  std::string how;  ///< in words
-  /// Two scenes, coarse and fine: the fine one is the truth, the other tells its error. None: the converged runs of the
-  /// finest two of the scene's meshes.
-  std::vector<BenchmarkScene> levels;
-  double ratio = 0.0;  ///< of the mesh sizes of the last two
-  /// The truth in closed form, at the times and with the instruments of a run; null: `levels`.
-  std::function<Run(const Run& like)> closed_form;
-  double closed_form_error = 0.0;  ///< relative, as published
+  /// File of the truth, see truth_table.h. Empty: the converged run of the finest of the scene's meshes, whose error the one
+  /// before it tells.
+  std::string table;
+  double ratio = 0.0;  ///< of those two mesh sizes
 };
 
 constexpr int kLargeMesh = 10000;

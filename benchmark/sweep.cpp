@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "benchmark/peer.h"
+#include "benchmark/truth_table.h"
 
 namespace tissue_contact {
 namespace {
@@ -148,15 +149,16 @@ class Sweep {
   }
 
   void findTruth() {
-    result_.truth = plan_.truth.how;
-    if (plan_.truth.closed_form) {
-      truth_ = plan_.truth.closed_form(converged(shipped_));
-      result_.truth_error = plan_.truth.closed_form_error;
+    if (!plan_.truth.table.empty()) {
+      const TruthTable table = readTruthTable(plan_.truth.table);
+      truth_ = truthAt(table, converged(shipped_));
+      result_.truth = table.how + " (of the force alone)";
+      result_.truth_error = table.uncertainty;
       return;
     }
-    const std::vector<BenchmarkScene>& levels = plan_.truth.levels;
-    truth_ = levels.empty() ? converged(onMesh(plan_.meshes.size())) : runLevel(levels[1]);
-    const Run before = levels.empty() ? converged(onMesh(plan_.meshes.size() - 1)) : runLevel(levels[0]);
+    result_.truth = "converged run on the finer mesh";
+    truth_ = converged(onMesh(plan_.meshes.size()));
+    const Run& before = converged(onMesh(plan_.meshes.size() - 1));
     // Linear tetrahedra under a moving contact: between first and second order; the first is the safer guess.
     result_.truth_error = richardsonError(wrenchError(before, truth_).relative, plan_.truth.ratio, 1.0);
   }
@@ -221,7 +223,7 @@ class Sweep {
  private:
   /// On the truth's own mesh only the solver differs: no total error.
   bool isTruth(const Settings& settings) const {
-    return !plan_.truth.closed_form && plan_.truth.levels.empty() && settings.cells == plan_.meshes.back();
+    return plan_.truth.table.empty() && settings.cells == plan_.meshes.back();
   }
 
   /// 0: the shipped mesh, then the others.
@@ -230,8 +232,6 @@ class Sweep {
     if (index > 0) settings.cells = plan_.meshes.at(index - 1);
     return settings;
   }
-
-  Run runLevel(const BenchmarkScene& level) { return play(level, shippedSettings(level), "truth, "); }
 
   Run run(const Settings& settings, const std::string& what) {
     BenchmarkScene scene = plan_.scene;
@@ -309,7 +309,6 @@ double sweepWork(const ScenePlan& plan, const SceneOptions& options) {
     work += workOf(plan, settings);
     converged.emplace(sizeOf(settings), settings);
   }
-  for (const BenchmarkScene& level : plan.truth.levels) work += workOf(plan, shippedSettings(level));
   for (const auto& [size, settings] : converged) work += workOf(plan, convergedSettings(settings));
   if (plan.has_peer && hasPeer()) {
     for (const Settings& settings : peerSizes(plan, options)) {

@@ -158,8 +158,8 @@ SPEED_HEAD = ["solver", "stops at; iterations \u00d7 passes", "nodes", "dt, ms",
 def speed_section(folder):
     parts = ["## Speed against error",
              "Time per step on one core against the RMS error of the wrench over the run, in per cent of its RMS. *Solver "
-             "error*: against the same mesh and step solved to convergence. *Total error*: against a finer mesh or the "
-             "closed form. Bold: as shipped. Made by `tissue_contact_benchmark`; errors are the same in every run, times "
+             "error*: against the same mesh and step solved to convergence. *Total error*: against a stored truth or a "
+             "finer mesh. Bold: as shipped. Made by `tissue_contact_benchmark`; errors are the same in every run, times "
              "are this machine's."]
     with open(os.path.join(folder, "summary.txt"), encoding="utf-8") as stream:
         parts.append("```\n" + stream.read().strip("\n") + "\n```")

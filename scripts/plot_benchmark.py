@@ -164,7 +164,7 @@ def plot_scene(rows, folder, scene):
     left.set_ylabel("wall time per step, ms")
     of = rows[0]["error_of"]
     left.set_xlabel("solver error of the %s, %% RMS\n(same mesh and step, solved to convergence)" % of)
-    right.set_xlabel("total error of the %s, %% RMS\n(finer mesh, or closed form)" % of)
+    right.set_xlabel("total error of the %s, %% RMS\n(stored truth, or finer mesh)" % of)
     for axis in (left.xaxis, right.xaxis, left.yaxis):
         plain(axis)
     figure.suptitle("%s: %g nodes, %g ms steps as shipped; one core" % (

@@ -109,7 +109,7 @@ void validatePartialSlip(Report& report) {
   constexpr const char* kTheory = "Cattaneo-Mindlin";
   Drag drag;
   const double press = drag.normalForce();
-  report.near("press force", "N", kPress, press, 0.03 * kPress, "refined finite elements");
+  report.near("press force", "N", 0.06166, press, 0.01 * press, "as in benchmark-block");
   for (int k = 1; k <= kSteps * 2 / 5; ++k) {
     drag.step(k * kDragStep);
     report.progress(static_cast<double>(k) / kSteps);

@@ -1,0 +1,86 @@
+/// One run of a scene of tissue_contact_benchmark on a mesh of one's own: forces on the last instrument over time, in tip
+/// axes, as CSV. benchmark/truth/make_truth.py makes truths of many of them.
+/// usage: truth_run SCENE MESH STEP_S TOLERANCE SECONDS [BAG]
+///   SCENE press-drag, grasp, partial-slip or robot (with its BAG); MESH a file in the tissue's frame, or - for the scene's
+///   own; SECONDS of the motion, 0: all
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "benchmark/scenes.h"
+
+namespace {
+
+using namespace tissue_contact;
+
+struct Enough : std::exception {};
+
+ScenePlan planOf(const std::string& name, const std::string& bag) {
+  SceneOptions options;
+  options.robot_bag = bag;
+  if (name == "press-drag") return pressDragPlan(options);
+  if (name == "grasp") return graspPlan(options);
+  if (name == "partial-slip") return partialSlipPlan(options);
+  if (name == "robot") return robotPlan(options);
+  throw std::invalid_argument("no scene '" + name + "'");
+}
+
+void prepare(const std::vector<std::string>& words, Scene& scene) {
+  if (words[1] != "-") {
+    MeshDescription mesh;
+    mesh.file = words[1];
+    mesh.remove_unreferenced_nodes = true;
+    scene.tissues[0].geometry = mesh;
+  }
+  scene.step.max_step_s = std::stod(words[2]);
+  scene.solver.tolerance = std::stod(words[3]);
+  scene.solver.iterations = 500;
+  if (scene.step.max_step_s > 0.004) scene.solver.relaxation = RelaxationKind::kCholesky;  // as convergedSettings()
+  scene.advisor.sleep = scene.advisor.adapt_rotations = false;
+}
+
+void run(const std::vector<std::string>& words) {
+  const ScenePlan plan = planOf(words[0], words.size() > 5 ? words[5] : "");
+  Scene scene = plan.scene.scene;
+  prepare(words, scene);
+  const double seconds = std::stod(words[4]);
+  Simulator simulator(scene, plan.scene.environment);
+  const int last = static_cast<int>(simulator.instruments().size()) - 1;
+  int steps = 0;
+  int met = 0;
+  simulator.setStepObserver([&] {
+    ++steps;
+    met += simulator.report().stop == StopReason::kTolerance ? 1 : 0;
+  });
+  std::printf("time_s,force_x_n,force_y_n,force_z_n\n");
+  try {
+    plan.scene.motion(simulator, [&](double time_s) {
+      const Vector3 force = simulator.wrench(last).force;
+      std::printf("%.9g,%.9g,%.9g,%.9g\n", time_s, force.x(), force.y(), force.z());
+      if (seconds > 0.0 && time_s > seconds - 1e-9) throw Enough();
+    });
+  } catch (const Enough&) {
+  }
+  std::fprintf(stderr, "%d nodes, %d steps, %d of them to the tolerance\n", simulator.tissues()[0].nodeCount(), steps,
+               met);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() < 5) {
+    std::fprintf(stderr, "usage: truth_run SCENE MESH STEP_S TOLERANCE SECONDS [BAG]\n");
+    return 2;
+  }
+  try {
+    run(words);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "truth_run: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,99 @@
+/// Stored truths: what is read, what is refused, and that the product, refined where it counts, comes near them.
+#include "benchmark/truth_table.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <stdexcept>
+
+#include "benchmark/measures.h"
+#include "benchmark/scenes.h"
+#include "support/temporary_directory.h"
+
+namespace tissue_contact {
+namespace {
+
+using RunRecord = Run;  // Run alone is a member of testing::Test
+
+class TruthTableTest : public testing::Test {
+ protected:
+  std::string write(const std::string& text) const { return directory_.write("truth.csv", text); }
+
+  /// What readTruthTable() says against this text.
+  std::string complaint(const std::string& text) const {
+    try {
+      readTruthTable(write(text));
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const std::string head_ = "# how: by hand\n# uncertainty: 0.004\n";
+  const std::string columns_ = "time_s,force_x_n,force_y_n,force_z_n\n";
+  TemporaryDirectory directory_;
+};
+
+TEST_F(TruthTableTest, GivesForcesAtTheTimesOfARun) {
+  const TruthTable table = readTruthTable(write(head_ + columns_ + "0.01,1,2,3\n0.02,4,5,6\n0.03,7,8,9\n"));
+  EXPECT_EQ(table.how, "by hand");
+  EXPECT_EQ(table.uncertainty, 0.004);
+  RunRecord like;
+  like.times_s = {0.01, 0.03};
+  like.wrenches.assign(2, std::vector<Wrench>(2));
+  const RunRecord truth = truthAt(table, like);
+  ASSERT_EQ(truth.wrenches.size(), 2U);
+  EXPECT_EQ(truth.wrenches[0][0].force, Vector3::Zero());
+  EXPECT_EQ(truth.wrenches[0][1].force, Vector3(1, 2, 3));
+  EXPECT_EQ(truth.wrenches[1][1].force, Vector3(7, 8, 9));
+  like.times_s = {0.015};
+  EXPECT_THROW(truthAt(table, like), std::invalid_argument);
+  like.times_s = {0.04};
+  EXPECT_THROW(truthAt(table, like), std::invalid_argument);
+}
+
+TEST_F(TruthTableTest, NamesTheLineItRefuses) {
+  EXPECT_NE(complaint(head_ + "time_s,force_z_n\n0,1\n").find("truth.csv:3: the columns must be"), std::string::npos);
+  EXPECT_NE(complaint(head_ + columns_ + "0,1,2,3\n0,1,2,3\n").find(":5: times must ascend"), std::string::npos);
+  for (const char* row : {"0,1,2\n", "0,1,2,3,4\n", "0,1,2,x\n", "0,1,2,nan\n", "\n"}) {
+    EXPECT_NE(complaint(head_ + columns_ + row).find(":4: four finite numbers"), std::string::npos) << row;
+  }
+  EXPECT_NE(complaint("# how: by hand\n" + columns_ + "0,1,2,3\n").find("uncertainty"), std::string::npos);
+  EXPECT_NE(complaint("# uncertainty: 0.1\n" + columns_ + "0,1,2,3\n").find("how"), std::string::npos);
+  EXPECT_NE(complaint(head_ + columns_).find("rows are needed"), std::string::npos);
+}
+
+double errorOf(const ScenePlan& plan, const Settings& settings) {
+  const RunRecord run = runScene(plan.scene, settings);
+  return wrenchError(run, truthAt(readTruthTable(plan.truth.table), run)).relative;
+}
+
+// Press and the first 4 mm of the drag; cells of 2.3 mm across the drag and 1.6 mm deep under the ball in place of 10 mm. The
+// mesh's error is 10 %, all of one sign (too stiff): a truth or a scene that changed by more than 1.5 % shows.
+TEST(StoredTruthTest, PressAndDragComesNearItWithFineCellsUnderTheBall) {
+  SceneOptions beginning;
+  beginning.quick = true;
+  ScenePlan plan = pressDragPlan(beginning);
+  Settings settings = shippedSettings(plan.scene);
+  settings.dt_s = 0.002;
+  EXPECT_GT(errorOf(plan, settings), 1.0);
+  auto& block = std::get<BlockDescription>(plan.scene.scene.tissues[0].geometry);
+  block.cells = settings.cells = {30, 18, 9};
+  block.grading[0].growth = 1.05;
+  block.grading[1].growth = 1.2;
+  block.grading[2].growth = 1.25;
+  block.grading[2].fine_at = AxisGrading::FineAt::kMaximum;
+  EXPECT_NEAR(errorOf(plan, settings), 0.102, 0.015);
+}
+
+// Cells of 1 mm, 4.8 per contact radius.
+TEST(StoredTruthTest, PartialSlipComesNearIt) {
+  const ScenePlan plan = partialSlipPlan({});
+  Settings settings = shippedSettings(plan.scene);
+  settings.cells = plan.meshes.back();
+  settings.solver.iterations = 150;
+  EXPECT_LT(errorOf(plan, settings), 0.02);
+}
+
+}  // namespace
+}  // namespace tissue_contact
