@@ -5,7 +5,7 @@ contact, extrapolated to no mesh size, no growth of the cells away from the cont
 usage, after scripts/build and `make -C "$(scripts/build --where)" truth_run`:
   make_truth.py SCENE --runs DIR [--out FILE]      (Debian: gmsh, python3-numpy)
   SCENE       press-drag or partial-slip
-  --runs DIR  meshes and runs; what is there is not run again. All of press-drag is an hour of one processor
+  --runs DIR  meshes and runs; what is there is not run again. All of press-drag takes a quarter of an hour of one processor
   --out FILE  the table (default: beside this script)
 
 A tetrahedron of edge s misses forces by s^2 times something that depends on the place alone. Edges here are h within `reach` of the
@@ -191,7 +191,10 @@ def main():
     build = subprocess.run([os.path.join(PACKAGE, "scripts", "build"), "--where"], stdout=subprocess.PIPE, text=True,
                            check=True).stdout.strip()
     truth_run = os.path.join(build, "benchmark", "drivers", "truth_run")
-    of = lambda runs: [(run,) + forces(arguments.scene, plan, run, folder, truth_run) for run in runs]
+
+    def of(runs):
+        return [(run,) + forces(arguments.scene, plan, run, folder, truth_run) for run in runs]
+
     bent = step_slope(of(plan.bends))[1]
     slope = step_slope(of(plan.steps))[0]
     data = of(plan.runs)
