@@ -5,6 +5,8 @@
 /// depend on the machine.
 #pragma once
 
+#include <cstdint>
+
 // One build of a function for AVX2 and one for any processor, chosen when the library is loaded.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define TISSUE_CONTACT_CLONES __attribute__((target_clones("avx2", "default")))
@@ -18,5 +20,13 @@ namespace tissue_contact {
 constexpr int kLanes = 4;
 
 using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
+using LanePlaces = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+
+// Lanes i, j, k, l of the eight of a and b: one or two instructions, where lanes put together one by one are five.
+#if defined(__clang__)
+#define TISSUE_CONTACT_SHUFFLE(a, b, i, j, k, l) __builtin_shufflevector(a, b, i, j, k, l)
+#else
+#define TISSUE_CONTACT_SHUFFLE(a, b, i, j, k, l) __builtin_shuffle(a, b, LanePlaces{i, j, k, l})
+#endif
 
 }  // namespace tissue_contact

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
 
 #include "core/lanes.h"
@@ -18,8 +17,7 @@ TISSUE_CONTACT_INLINE void loadBlock(const Matrix3& block, Lanes& x, Lanes& y, L
   std::memcpy(&x, m, sizeof(Lanes));
   std::memcpy(&y, m + 3, sizeof(Lanes));
   std::memcpy(&z, m + 5, sizeof(Lanes));  // not beyond the block
-  using Places = std::int64_t __attribute__((vector_size(sizeof(Lanes))));
-  z = __builtin_shuffle(z, Places{1, 2, 3, 3});  // one instruction; put together from its parts it would be five
+  z = TISSUE_CONTACT_SHUFFLE(z, z, 1, 2, 3, 3);
 }
 
 TISSUE_CONTACT_INLINE Vector3 blockProduct(const Matrix3& block, const Vector3& v) {

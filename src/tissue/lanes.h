@@ -103,8 +103,8 @@ struct VaryingMaterial {
 /// where elements share a node.
 TISSUE_CONTACT_INLINE void scatter(const ElementBatch& batch, std::size_t corner, const Lanes* vector, double* all) {
   using Pair = double __attribute__((vector_size(2 * sizeof(double))));
-  const Lanes even = __builtin_shuffle(vector[0], vector[1], Mask{0, 4, 2, 6});  // x, y of lanes 0 and 2
-  const Lanes odd = __builtin_shuffle(vector[0], vector[1], Mask{1, 5, 3, 7});
+  const Lanes even = TISSUE_CONTACT_SHUFFLE(vector[0], vector[1], 0, 4, 2, 6);  // x, y of lanes 0 and 2
+  const Lanes odd = TISSUE_CONTACT_SHUFFLE(vector[0], vector[1], 1, 5, 3, 7);
   const Pair pairs[kLanes] = {{even[0], even[1]}, {odd[0], odd[1]}, {even[2], even[3]}, {odd[2], odd[3]}};
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     double* const at = all + 3 * static_cast<std::ptrdiff_t>(batch.nodes[lane][corner]);
