@@ -55,20 +55,20 @@ TISSUE_CONTACT_INLINE unsigned char bits(const Mask& mask) {
 
 /// Place r of node `corner` of each of the four elements. From memory straight into lanes: a vector put together in memory
 /// would have to wait for its four stores.
-TISSUE_CONTACT_INLINE void gather(const ElementBatch& batch, const double* x, std::size_t corner, std::ptrdiff_t r,
+TISSUE_CONTACT_INLINE void gather(const ElementBatch& batch, const double* x, std::size_t corner, std::size_t r,
                                   Lanes& to) {
-  const auto at = [&](std::size_t lane) { return x[3 * static_cast<std::ptrdiff_t>(batch.nodes[lane][corner]) + r]; };
+  const auto at = [&](std::size_t lane) { return x[3 * static_cast<std::size_t>(batch.nodes[lane][corner]) + r]; };
   to = Lanes{at(0), at(1), at(2), at(3)};
 }
 
 /// F = D D_rest^-1.
 TISSUE_CONTACT_INLINE void deformationGradients(const ElementBatch& batch, const double* x, LaneMatrix& F) {
   Lanes D[9];
-  for (int r = 0; r < 3; ++r) {
+  for (std::size_t r = 0; r < 3; ++r) {
     Lanes origin;
     gather(batch, x, 0, r, origin);
-    for (int c = 0; c < 3; ++c) {
-      gather(batch, x, static_cast<std::size_t>(c + 1), r, D[r + 3 * c]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      gather(batch, x, c + 1, r, D[r + 3 * c]);
       D[r + 3 * c] -= origin;
     }
   }
