@@ -254,7 +254,7 @@ void openAndComeToRest(Grasp& grasp, const std::string& name, Report& report) {
                 "elastic: nothing remains");
 }
 
-// The step only loses energy (doc/method.md, "Damping"), so what is more than the work is round-off, but for what the linearised step gets
+// Implicit Euler only loses energy, so what is more than the work is round-off, but for what the linearised step gets
 // wrong. 30 sweeps end before the tolerance where a jaw first touches the flap at rest (1.3e-3 measured), where it snaps
 // back at mu 1 / .1 (2.2e-3), and while it swings freely as a whole (2.6e-2 where its load passes through nothing).
 // A micrometre is a thousandth of the flap's cells.

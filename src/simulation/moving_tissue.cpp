@@ -1,7 +1,5 @@
 #include "simulation/moving_tissue.h"
 
-#include <algorithm>
-
 #include "simulation/advisor.h"
 
 namespace tissue_contact {
@@ -52,9 +50,7 @@ void MovingTissue::assemble(double dt) {
   elastic_state_->step_s = dt;
   tissue_.elasticity().update(x_, *elastic_state_, loads_);
   tissue_.addPressure(x_, loads_);
-  // Of the dt^2 K of implicit Euler only what keeps each element's share at dt^2 or more (doc/method.md, "Damping").
-  const double beyond_damping = std::max(0.0, dt - tissue_.leastDamping());
-  system_.stiffness_scale = dt * (beyond_damping + tissue_.damping().stiffness_s);
+  system_.stiffness_scale = dt * (dt + tissue_.damping().stiffness_s);
   system_.damping_scale = system_.D != nullptr ? dt : 0.0;
   system_.mass = (1.0 + dt * tissue_.damping().mass_per_s) * tissue_.nodeMasses();
   system_.b = v_ * tissue_.nodeMasses().asDiagonal();

@@ -159,12 +159,6 @@ ElementMaterials elementMaterials(const TissueDescription& description, const Pl
   return materials;
 }
 
-double smallestDamping(std::size_t elements, const ElementMaterials& materials) {
-  double least = materials.dampingOf(0);
-  for (std::size_t e = 1; e < elements; ++e) least = std::min(least, materials.dampingOf(e));
-  return least;
-}
-
 /// If all elements damp alike, takes that out of the materials and returns it; else 0.
 double takeUniformDamping(std::size_t elements, ElementMaterials& materials) {
   const double first = materials.dampingOf(0);
@@ -203,8 +197,6 @@ Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
   ElementMaterials materials = elementMaterials(description, placed);
   // Springs are damped as the tissue, also where all its elements belong to regions that are damped otherwise.
   const bool is_uniform = placed.springs.empty() || materials.dampingOf(0) == description.damping.stiffness_s;
-  least_damping_s_ = smallestDamping(placed.elementCount(), materials);
-  if (!placed.springs.empty()) least_damping_s_ = std::min(least_damping_s_, description.damping.stiffness_s);
   damping_.stiffness_s = is_uniform ? takeUniformDamping(placed.elementCount(), materials) : 0.0;
   masses_ = lumpedMasses(placed, materials);
   if (placed.isVolume()) {

@@ -15,8 +15,8 @@
 namespace tissue_contact {
 
 /// Linear system of one tissue, A = diag(mass) + stiffness_scale * K + damping_scale * D, with K and D symmetric, which
-/// solvers rely on. K is not copied, so a change of dt costs nothing. For a step with Rayleigh damping alpha M + beta K:
-/// mass_i = (1 + alpha dt) m_i, stiffness_scale = dt max(beta, dt), b = M v0 + dt f(x0) (doc/method.md, "Damping").
+/// solvers rely on. K is not copied, so a change of dt costs nothing. For an implicit Euler step with Rayleigh
+/// damping alpha M + beta K: mass_i = (1 + alpha dt) m_i, stiffness_scale = dt (dt + beta), b = M v0 + dt f(x0).
 struct BodySystem {
   const BlockMatrix* K = nullptr;  ///< N/m
   const BlockMatrix* D = nullptr;  ///< N s/m, added as dt * D; null: damping is all in stiffness_scale and mass

@@ -77,7 +77,6 @@ class Tissue {
   std::vector<bool> fixed_;
   VectorX masses_;
   DampingDescription damping_;
-  double least_damping_s_ = 0.0;
   double thickness_ = 0.0;
   std::vector<int> surface_regions_;
   std::vector<Vector2> surface_fibres_;
