@@ -56,7 +56,6 @@ class Tissue {
   const VectorX& nodeMasses() const { return masses_; }  ///< kg, lumped: each element's mass in equal parts
   /// Rayleigh damping; stiffness_s is 0 where regions differ in it, the elasticity's state then has a damping matrix.
   const DampingDescription& damping() const { return damping_; }
-  double leastDamping() const { return least_damping_s_; }       ///< stiffness_s of what is damped least, s
   const Elasticity& elasticity() const { return *elasticity_; }  ///< with the springs of attachments
 
   /// Of all springs that attach free nodes, N/m, against a shift of the body; 0: no attachment.
