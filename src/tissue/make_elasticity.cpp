@@ -18,7 +18,8 @@ bool isContinuum(ElasticModel model) {
 bool averagesDilatation(const ElementMaterials& materials) {
   const MaterialDescription& first = materials.materials.at(0);
   if (first.dilatation != Dilatation::kAuto) return first.dilatation == Dilatation::kPatch;
-  return isContinuum(first.model) &&
+  // Averaged neo-Hookean elements give way under sharp edges, which then hook (doc/method.md).
+  return isContinuum(first.model) && first.model != ElasticModel::kNeoHookean &&
          std::any_of(materials.materials.begin(), materials.materials.end(),
                      [](const MaterialDescription& one) { return one.poissons_ratio >= kAveragedPoissonsRatio; });
 }

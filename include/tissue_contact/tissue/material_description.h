@@ -21,7 +21,7 @@ constexpr std::pair<const char*, ElasticModel> kElasticModelNames[] = {{"linear"
 
 /// Over what a linear, corotational or neo-Hookean volume averages its change of volume.
 enum class Dilatation {
-  kAuto,     ///< kPatch from Poisson's ratio 0.3 on, where it pays; else kElement
+  kAuto,     ///< kPatch for linear and corotational bodies from Poisson's ratio 0.3 on, where it pays; else kElement
   kElement,  ///< each tetrahedron: locks as Poisson's ratio nears 1/2
   kPatch     ///< the five tetrahedra of a block's cell, or about five neighbours of a mesh: does not
 };
