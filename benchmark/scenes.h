@@ -3,7 +3,6 @@
 /// against.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 

@@ -64,7 +64,7 @@ def positions(rows, time):
 
 
 def write(output, topic, names, positions_at, length, inputs=()):
-    """Joint states from 0 to `length` (s) with the positions that `positions_at` gives for a time. Returns their count."""
+    """Joint states from 0 to `length` (s) with the positions that `positions_at` gives for a time. Says how many."""
     count = int(round(length * RATE_HZ)) + 1
     try:
         with whole_file(output, inputs) as part, rosbag.Bag(part, "w", compression=rosbag.Compression.BZ2) as bag:

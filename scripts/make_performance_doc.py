@@ -107,7 +107,7 @@ def main():
                      os.path.join(PACKAGE, "benchmark", "drivers", "refined_block.geo"), "-o", file])
             return file
         text = ["# What a step costs", "",
-                "Written by `scripts/make_performance_doc.py`: press and drag of `benchmark/drivers/step_costs.cpp` (5 mm ball, 4 mm deep,",
+                "The tables by `scripts/make_performance_doc.py`, the notes below them by hand: press and drag of `benchmark/drivers/step_costs.cpp` (5 mm ball, 4 mm deep,",
                 "μ .5, E 5 kPa, ν .45, 1 ms steps), processor time of the steps in contact, both programs at once on one processor.", "",
                 "%s. Before: %s; after: commit %s." % (machine(), before, commit), "",
                 "| mesh, tolerance | nodes | before: median / p99, ms | after | ratio of medians | wanted |", "|---|---|---|---|---|---|"]

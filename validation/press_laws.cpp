@@ -139,7 +139,7 @@ void checkEstimates(Report& report) {
   for (std::size_t law = 0; law < 2; ++law) {
     const std::string name =
         std::string("likely error of the ") + kLaws[law].model + " law less that found, share of the force: ";
-    // Of errors of up to 28 %. The scatter between meshes and spheres is 2 %, 5.4 % at most.
+    // Of errors of up to 28 %. The scatter between meshes and spheres is 2 %, 5.6 % at most.
     report.atMost(name + "largest", "", 0.07, fitted[law].largest, "the neo-Hookean run beside it");
     report.atMost(name + "RMS", "", 0.03, std::sqrt(fitted[law].squares / fitted[law].count),
                   "the neo-Hookean run beside it");

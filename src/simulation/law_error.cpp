@@ -44,7 +44,9 @@ std::string lawErrorText(const Simulator& simulator) {
   text << "tissue '" << tissue.name << "' is strained by " << error.strain << " under " << by
        << ", beyond the range of the " << elasticModelName(tissue.material.model) << " law: forces are likely "
        << 100.0 * std::abs(error.relative) << " % " << (error.relative < 0.0 ? "too small" : "too large")
-       << " against a neo-Hookean tissue. For such depths set material.model: neo_hookean";
+       << " against neo-Hookean tissue that averages its change of volume. For such depths set material: {model: "
+          "neo_hookean, "
+       << "dilatation: patch}; under sharp edges in coarse cells without the latter";
   return text.str();
 }
 

@@ -41,6 +41,9 @@ std::unique_ptr<const Elasticity> makeElasticBody(const NodalVectors& rest, cons
       }
       return std::make_unique<TetElasticity>(rest, tetrahedra, fixed, materials);
     case ElasticModel::kNeoHookean:
+      if (averagesDilatation(materials) && patch_of.empty()) {
+        throw std::invalid_argument("dilatation over patches: no patch is given");
+      }
       return std::make_unique<NeoHookean>(rest, tetrahedra, fixed, materials,
                                           averagesDilatation(materials) ? patch_of : std::vector<int>());
     case ElasticModel::kMassSpring:

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tissue/dilatation_patches.h"
 #include "tissue/neo_hookean_kernel.h"

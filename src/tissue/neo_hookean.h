@@ -13,15 +13,16 @@
 ///
 /// Stiffness: the exact second derivative with its negative eigenvalues set to zero, element by element, in closed form
 /// from the singular values of F (one 3 x 3 eigenproblem is left).
-/// Averaged over patches of elements (they lock where Poisson's ratio is near 1/2): the energy of the change of volume beyond
-/// what elements need to keep their shape is that of each patch,
+/// With a patch_of (scenes ask for it by `dilatation: patch`, since single elements lock where Poisson's ratio is near 1/2) the energy
+/// of the change of volume beyond what elements need to keep their shape is that of each patch,
 ///   sum_e V (psi with mu/8 for lambda + 4 mu min(0, J - 1/2)^2)  +  sum_p V_p kappa/2 (Jbar - 1)^2,   Jbar = sum_e V J / V_p,
 /// kappa = lambda - mu/8 = lambda_Lame + 2/3 mu_Lame: at small strain the elements' part is mu_Lame |dev e|^2, and the whole that
 /// of mean_dilatation.h. The second term, as stiff as a whole element at nu = .45, holds up what the patch would let go flat: without
-/// it single elements turn inside out where a narrow tool sweeps (4 in the recorded motion of config/psm_dvrk.yaml). The patch's pressure kappa (Jbar - 1) joins the factor of dJ/dF in each of its elements; with
-/// b = sum_e V dJ/dF grad N its own stiffness is kappa/V_p b b'. Forces are the gradient of this energy, which F-bar (one J for all
-/// of a patch put into psi: de Souza Neto, Andrade Pires & Owen, IJNME 62 (2005) 353-383) does not have without an unsymmetric
-/// stiffness; it is the mean dilatation of Simo, Taylor & Pister, CMAME 51 (1985) 177-208, on patches.
+/// it single elements turn inside out where a narrow tool sweeps (4 in the recorded motion of config/psm_dvrk.yaml with patches).
+/// The patch's pressure kappa (Jbar - 1) joins the factor of dJ/dF in each of its elements; with b = sum_e V dJ/dF grad N its own
+/// stiffness is kappa/V_p b b'. Forces are the gradient of this energy, which F-bar (one J for all of a patch put into psi: de Souza
+/// Neto, Andrade Pires & Owen, IJNME 62 (2005) 353-383) does not have without an unsymmetric stiffness; it is the mean dilatation of
+/// Simo, Taylor & Pister, CMAME 51 (1985) 177-208, on patches.
 /// Source: Smith, de Goes, Kim, "Stable Neo-Hookean Flesh Simulation", ACM TOG 37(2), 2018, eq. 14 and what follows.
 #pragma once
 

@@ -35,9 +35,9 @@ class ReplayOutputs(harness.TestCase):
     def test_a_law_out_of_its_range_is_told_with_the_fix(self):
         errors = self.replay("out.csv")
         self.assertEqual(errors.count("warning: "), 1, errors)
-        for words in ["beyond the range of the corotational law", "model: neo_hookean", "1 times: forces likely wrong by up to -"]:
+        for words in ["beyond the range of the corotational law", "{model: neo_hookean, dilatation: patch}", "1 times: forces likely wrong by up to -"]:
             self.assertIn(words, errors)
-        scene = self.changed_scene({"material: {": "material: {model: neo_hookean, "})
+        scene = self.changed_scene({"material: {": "material: {model: neo_hookean, dilatation: patch, "})
         self.assertNotIn("beyond the range", self.replay("neo.csv", scene=scene))
 
     def test_times_go_to_a_file_of_their_own(self):

@@ -12,8 +12,9 @@ namespace tissue_contact {
 /// a small uniaxial strain e at constant volume.
 double equivalentStrain(const Matrix3& F);
 
-/// Likely relative error of the force a tool meets on tissue of this law, against a neo-Hookean one of the same moduli; negative: too
-/// small; 0 for other laws than linear and corotational.
+/// Likely relative error of the force a tool meets on tissue of this law, against a neo-Hookean one of the same moduli, volume averaged over
+/// patches in both (`dilatation: patch`); negative: too small; 0 for other laws than linear and corotational. Elements that do not
+/// average are stiffer: their error is another.
 ///
 /// a s + b (nu - .3) s + c s^2, fitted to presses of a sphere, some of which `tissue_contact_validate --case press-laws` repeats: depths of
 /// .1 to .8 R, R 5 and 10 mm, cells of .16 to .8 R, nu .3 to .49 (others count as the nearest of these), volume averaged over patches; s up to

@@ -128,7 +128,8 @@ void Health::warn(const PlayedSample& played, int steps) {
   if (simulator_.report().implausible_load.found && implausible_loads_.pass()) {
     ROS_WARN_STREAM(toTime(played.stamp_ns) << " s: " << implausibleLoadText(simulator_));
   }
-  if (law_alarm_.leaves(simulator_.report().law_error.relative) && law_errors_.pass()) {
+  if (played.was_reset) law_alarm_ = LawAlarm();
+  if (law_alarm_.leaves(simulator_.report().law_error.relative)) {
     ROS_WARN_STREAM(toTime(played.stamp_ns) << " s: " << lawErrorText(simulator_));
   }
 }

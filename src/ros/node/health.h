@@ -100,7 +100,6 @@ class Health {
   Throttle jumps_;
   Throttle implausible_loads_;
   LawAlarm law_alarm_;
-  Throttle law_errors_;
 
   mutable std::mutex mutex_;  ///< guards the six below
   LiveFigures figures_;
