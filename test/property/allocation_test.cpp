@@ -69,6 +69,14 @@ constexpr const char* kAttachedAndPressed =
 
 void PrintTo(const Case& value, std::ostream* out) { *out << value.name; }
 
+bool stepAllocates(Simulator& simulator, const std::vector<VectorX>& joints) {
+  allocations = 0;
+  counting = true;
+  simulator.advance(0.001, joints);
+  counting = false;
+  return allocations > 0;
+}
+
 class Allocation : public testing::TestWithParam<Case> {
  protected:
   static Simulator makeScene() {
@@ -87,11 +95,7 @@ class Allocation : public testing::TestWithParam<Case> {
     for (int i = 0; i < 200; ++i) {
       joints[0][2] -= i < 50 ? 5e-5 : 0.0;
       joints[0][0] += i < 50 ? 0.0 : (i < 120 ? 4e-5 : -4e-5);
-      allocations = 0;
-      counting = true;
-      simulator.advance(0.001, joints);
-      counting = false;
-      with += allocations > 0 ? 1 : 0;
+      with += stepAllocates(simulator, joints) ? 1 : 0;
     }
     return with;
   }
@@ -136,11 +140,8 @@ TEST_P(AllocationAtRest, NoneWhereNodesSleepAndWake) {
   for (int cycle = 0; cycle < 3; ++cycle) {
     for (int i = 0; i < 1500; ++i) {
       joints[0][2] -= i < 50 ? 5e-5 : (i >= 750 && i < 800 ? -5e-5 : 0.0);
-      allocations = 0;
-      counting = true;
-      simulator.advance(0.001, joints);
-      counting = false;
-      if (cycle == 2) with += allocations > 0 ? 1 : 0;
+      const bool allocated = stepAllocates(simulator, joints);
+      if (cycle == 2) with += allocated ? 1 : 0;
       if (cycle == 2) slept += simulator.report().sleeping_nodes > 0 ? 1 : 0;
     }
   }
@@ -164,11 +165,7 @@ int allocatingSteps(Simulator& simulator, int steps, const Step& step) {
     with = 0;
     for (int k = 0; k < steps; ++k) {
       const std::vector<VectorX> joints = step(k);
-      allocations = 0;
-      counting = true;
-      simulator.advance(0.001, joints);
-      counting = false;
-      with += allocations > 0 ? 1 : 0;
+      with += stepAllocates(simulator, joints) ? 1 : 0;
     }
   }
   return with;
