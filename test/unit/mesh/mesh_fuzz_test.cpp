@@ -17,11 +17,15 @@
 namespace {
 std::atomic<std::size_t> largest_request{0};
 
-void* countedAllocation(std::size_t size) {
+void* countedAllocation(std::size_t size, const std::nothrow_t&) noexcept {
   std::size_t largest = largest_request.load();
   while (size > largest && !largest_request.compare_exchange_weak(largest, size)) {
   }
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  return std::malloc(size == 0 ? 1 : size);
+}
+
+void* countedAllocation(std::size_t size) {
+  if (void* memory = countedAllocation(size, std::nothrow)) return memory;
   throw std::bad_alloc();
 }
 }  // namespace
@@ -29,6 +33,8 @@ void* countedAllocation(std::size_t size) {
 // The whole program's, the core library's included.
 void* operator new(std::size_t size) { return countedAllocation(size); }
 void* operator new[](std::size_t size) { return countedAllocation(size); }
+void* operator new(std::size_t size, const std::nothrow_t& how) noexcept { return countedAllocation(size, how); }
+void* operator new[](std::size_t size, const std::nothrow_t& how) noexcept { return countedAllocation(size, how); }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete[](void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
