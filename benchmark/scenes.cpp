@@ -16,14 +16,6 @@
 namespace tissue_contact {
 namespace {
 
-SceneEnvironment ownEnvironment() {
-  SceneEnvironment environment;
-  environment.package_path = [](const std::string& package) {
-    return package == "tissue_contact" ? packageDirectory() : std::string();
-  };
-  return environment;
-}
-
 BenchmarkScene shippedScene(const std::string& name, const std::string& file) {
   BenchmarkScene scene;
   scene.name = name;
@@ -35,18 +27,12 @@ BenchmarkScene shippedScene(const std::string& name, const std::string& file) {
 std::string truthTable(const std::string& name) { return packageDirectory() + "/benchmark/truth/" + name + ".csv"; }
 
 std::string pressDragYaml() {
-  std::ostringstream yaml;
   const Vector3 base = pressDragBase();
-  yaml
-      << "tissues:\n  - name: block\n    block: {size_m: [0.10, 0.10, 0.04], cells: [10, 10, 4]}\n"
-      << "    material: {model: corotational, youngs_modulus_pa: 5000, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n"
-      << "    damping: {stiffness_s: 0.003}\n"
-      << "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
-      << "instruments:\n  - {name: probe, robot_description: probe, tip_link: tip, contact_links: [tip],\n"
-      << "     joint_state_topics: [/probe/joint_states], base_pose: {position_m: [" << base.x() << ", " << base.y()
-      << ", " << base.z() << "]}}\n"
-      << "friction: [{instrument: probe, tissue: block, static: " << kPressDragMu << "}]\n";
-  return yaml.str();
+  std::ostringstream position, friction;
+  position << "[" << base.x() << ", " << base.y() << ", " << base.z() << "]";
+  friction << "friction: [{instrument: probe, tissue: block, static: " << kPressDragMu << "}]\n";
+  return blockScene("[0.10, 0.10, 0.04]", "[10, 10, 4]", "model: corotational, poissons_ratio: 0.45") +
+         onlyBall(position.str()) + friction.str();
 }
 
 constexpr double kSlipDepth = 0.000625;  // m, form H

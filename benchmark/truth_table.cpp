@@ -64,8 +64,9 @@ TruthTable readTruthTable(const std::string& file) {
     }
   }
   const std::optional<double> uncertainty = toDouble(keys["uncertainty"]);
-  if (!uncertainty || !(*uncertainty > 0.0) || keys["how"].empty() || table.run.times_s.empty()) {
-    fail(file, number, "the lines '# uncertainty: <share of the force>', '# how: <words>' and rows are needed");
+  const bool is_known = uncertainty && *uncertainty > 0.0 && std::isfinite(*uncertainty);
+  if (!is_known || keys["how"].empty() || table.run.times_s.empty()) {
+    fail(file, number, "the lines '# uncertainty: <share of the force, > 0>', '# how: <words>' and rows are needed");
   }
   table.uncertainty = *uncertainty;
   table.how = keys["how"];

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Regenerates doc/performance.md: what an implicit step costs, before and after, both run at the same time on one processor.
+"""Makes the tables of doc/performance.md anew: what an implicit step costs, before and after, both run at the same time on one
+processor. What stands below its first heading of the second order is written by hand and stays.
 
 usage, after scripts/build and `make -C "$(scripts/build --where)" step_costs`:
     scripts/make_performance_doc.py --before DIR [--before-name NAME] [--no-counts]
@@ -18,7 +19,7 @@ import tempfile
 from whole_file import whole_file
 
 PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
-NOTES = os.path.join(PACKAGE, "scripts", "performance_notes.md")
+DOC = os.path.join(PACKAGE, "doc", "performance.md")
 # name, mesh (cells, or h of refined_block.geo), arguments, wanted: median / p99, ms
 ROWS = [
     ("uniform, 1e-2", "10,10,4", ["--tolerance", "1e-2"], ".10 / .15"),
@@ -44,11 +45,16 @@ PARTS = [
 ]
 
 
+def checked(command, code, output, errors):
+    """The output, or the end with what the program said."""
+    if code != 0:
+        sys.exit("make_performance_doc.py: %s: exit code %d:\n%s" % (" ".join(command), code, errors[-2000:]))
+    return output
+
+
 def run(command, **more):
     result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, **more)
-    if result.returncode != 0:
-        sys.exit("make_performance_doc.py: %s failed:\n%s" % (command[0], result.stderr[-2000:]))
-    return result.stdout
+    return checked(command, result.returncode, result.stdout, result.stderr)
 
 
 def environment(library):
@@ -63,9 +69,10 @@ def figures(text):
 
 def pair(program, libraries, arguments):
     """Both at once on one processor, so that both meet the same disturbances."""
-    both = [subprocess.Popen(["taskset", "-c", "0", program] + arguments, env=environment(library),
-                             stdout=subprocess.PIPE, universal_newlines=True) for library in libraries]
-    return [figures(process.communicate()[0]) for process in both]
+    both = [subprocess.Popen(["taskset", "-c", "0", program] + arguments, env=environment(library), stdout=subprocess.PIPE,
+                             stderr=subprocess.PIPE, universal_newlines=True) for library in libraries]
+    return [figures(checked(process.args, process.returncode, *said))
+            for process, said in [(process, process.communicate()) for process in both]]
 
 
 def count(program, library, mesh, scratch):
@@ -97,6 +104,8 @@ def main():
     libraries = [options.before, os.path.join(build, "devel", "lib")]
     before = options.before_name or options.before
     commit = run(["git", "-C", PACKAGE, "rev-parse", "--short", "HEAD"]).strip()
+    with open(DOC, encoding="utf-8") as old:  # what stands there by hand
+        notes = re.search(r"^## .*", old.read(), re.M | re.S)[0].rstrip()
     with tempfile.TemporaryDirectory() as scratch:
         def mesh_of(mesh):
             if "," in mesh:
@@ -123,9 +132,8 @@ def main():
                     total, parts = count(program, library, mesh_of(mesh), scratch)
                     text.append("| %s, %s | %.2f | " % (name, which, total / 1e6)
                                 + " | ".join("%.0f %%" % (100 * part) for part in parts) + " |")
-    with open(NOTES) as notes:
-        text += ["", notes.read().rstrip()]
-    with whole_file(os.path.join(PACKAGE, "doc", "performance.md")) as path, open(path, "w") as out:
+    text += ["", notes]
+    with whole_file(DOC) as path, open(path, "w", encoding="utf-8") as out:
         out.write("\n".join(text) + "\n")
 
 

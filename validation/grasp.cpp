@@ -6,6 +6,7 @@
 #include <functional>
 #include <stdexcept>
 
+#include "support/text_scene.h"
 #include "tissue_contact/mesh/tissue_surface.h"
 #include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/simulation/scene.h"
@@ -24,8 +25,7 @@ constexpr double kSample = 0.002;  // s, of the recording that scripts/make_join
 enum Row { kClosed = 5, kLifted = 6, kHeld = 7, kPulled = 8, kOpened = 10, kEnd = 11 };
 
 Simulator makeGrasp(double mu_static, double mu_kinetic) {
-  SceneEnvironment environment;
-  environment.package_path = [](const std::string&) { return packageDirectory(); };
+  const SceneEnvironment environment = ownEnvironment();
   Scene scene = loadScene(packageDirectory() + "/config/grasp.yaml", environment.package_path);
   scene.friction.at(0).law.static_coefficients = {mu_static};
   scene.friction.at(0).law.kinetic_coefficients = {mu_kinetic};

@@ -16,21 +16,14 @@
 #include <vector>
 
 #include "simulation/build_scene.h"
+#include "support/text_scene.h"
 #include "tissue_contact/core/command_line.h"
-#include "tissue_contact/scene/load_scene.h"
-#include "tissue_contact/simulation/simulator.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
 #include "validation/joint_path.h"
 
 namespace {
 
 using namespace tissue_contact;
-
-SceneEnvironment environment() {
-  SceneEnvironment all;
-  all.package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
-  return all;
-}
 
 /// A run: the scene, and where the joints are after each step.
 struct Run {
@@ -43,19 +36,11 @@ struct Run {
 /// A ball over a corotational block of 0.1 x 0.1 x 0.04 m.
 Scene ballOnBlock(int across, int high, const std::string& extra) {
   const std::string cells = std::to_string(across);
-  const std::string yaml =
-      "tissues:\n  - name: block\n    block: {size_m: [0.10, 0.10, 0.04], cells: [" + cells + ", " + cells + ", " +
-      std::to_string(high) +
-      "]}\n    material: {model: corotational, youngs_modulus_pa: 5000, poissons_ratio: 0.45, density_kg_per_m3: "
-      "1000}\n"
-      "    damping: {stiffness_s: 0.003}\n"
-      "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
-      "instruments:\n  - name: probe\n    urdf: package://tissue_contact/urdf/probe.urdf\n    tip_link: tip\n"
-      "    joint_state_topics: [/probe/joint_states]\n    base_pose: {position_m: [-0.01, 0, 0.0451]}\n"
-      "    contact_links: [tip]\n"
-      "step: {max_step_s: 0.001}\n" +
-      extra;
-  return parseScene(yaml, "benchmark scene", environment().package_path);
+  const std::string size = "[" + cells + ", " + cells + ", " + std::to_string(high) + "]";
+  return parseScene(blockScene("[0.10, 0.10, 0.04]", size, "model: corotational, poissons_ratio: 0.45") +
+                        "instruments:\n" + probeEntry("probe", "/probe/joint_states", "[-0.01, 0, 0.0451]") +
+                        "step: {max_step_s: 0.001}\n" + extra,
+                    "benchmark scene", ownEnvironment().package_path);
 }
 
 const std::string kFriction = "friction:\n  - {instrument: probe, tissue: block, static: 0.6, kinetic: 0.4}\n";
@@ -79,13 +64,13 @@ VectorX away(int) { return Vector3(0.0, 0.0, 0.01); }
 /// The recorded or planned path of an instrument with many joints, linear in between.
 Run alongPath(Scene scene, const std::string& file, double dt_s, double end_s) {
   const JointPath path = loadJointPath(file);
-  const Instrument instrument = buildInstruments(scene, environment()).at(0);
+  const Instrument instrument = buildInstruments(scene, ownEnvironment()).at(0);
   std::vector<int> column;
   for (const IndependentJoint& joint : instrument.model().joints()) {
     const auto at = std::find(path.joints.begin(), path.joints.end(), joint.name);
     column.push_back(at == path.joints.end() ? -1 : static_cast<int>(at - path.joints.begin()) + 1);
   }
-  const Simulator start(scene, environment());
+  const Simulator start(scene, ownEnvironment());
   const VectorX initial = start.jointPositions(0);
   Run run{std::move(scene), static_cast<int>(std::lround(end_s / dt_s)), dt_s, {}};
   run.joints = [path, column, initial, dt_s](int step) {
@@ -114,7 +99,7 @@ struct Outcome {
 Outcome simulate(const Run& run, const AdvisorDescription& advisor) {
   Scene scene = run.scene;
   scene.advisor = advisor;
-  Simulator simulator(scene, environment());
+  Simulator simulator(scene, ownEnvironment());
   simulator.placeInstrument(0, run.joints(0));
   Outcome outcome;
   const std::clock_t start = std::clock();
@@ -208,7 +193,7 @@ void compare(const std::string& name, const Run& run, int repeats) {
 /// The arm of config/psm_dvrk.yaml along a recording.
 Run recordedArm(const std::string& file) {
   const std::string source = TISSUE_CONTACT_SOURCE_DIR;
-  return alongPath(loadScene(source + "/config/psm_dvrk.yaml", environment().package_path), file, 0.002,
+  return alongPath(loadScene(source + "/config/psm_dvrk.yaml", ownEnvironment().package_path), file, 0.002,
                    loadJointPath(file).rows.back()[0]);
 }
 
@@ -231,7 +216,7 @@ std::map<std::string, std::function<Run()>> scenes() {
       {"rest_14256", ball(35, 10, kFriction, 1000, away)},
       {"grasp",
        [=] {
-         return alongPath(loadScene(source + "/config/grasp.yaml", environment().package_path),
+         return alongPath(loadScene(source + "/config/grasp.yaml", ownEnvironment().package_path),
                           source + "/config/grasp_path.csv", 0.002, 8.0);
        }},
   };

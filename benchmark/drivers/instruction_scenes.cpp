@@ -6,8 +6,7 @@
 #include <map>
 #include <string>
 
-#include "tissue_contact/scene/load_scene.h"
-#include "tissue_contact/simulation/simulator.h"
+#include "support/text_scene.h"
 
 namespace {
 
@@ -29,21 +28,13 @@ const std::map<std::string, std::string>& frictionOfScenes() {
 }
 
 Simulator makeScene(const std::string& friction) {
-  const std::string yaml =
-      "tissues:\n  - name: block\n    block: {size_m: [0.10, 0.10, 0.04], cells: [10, 10, 4]}\n"
-      "    material: {model: corotational, youngs_modulus_pa: 5000, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n"
-      "    damping: {stiffness_s: 0.003}\n"
-      "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
-      "instruments:\n  - name: probe\n    urdf: package://tissue_contact/urdf/probe.urdf\n    tip_link: tip\n"
-      "    joint_state_topics: [/probe/joint_states]\n    base_pose: {position_m: [-0.01, 0, 0.0451]}\n"
-      "    contact_links: [tip]\n"
+  return makeSimulator(
+      blockScene("[0.10, 0.10, 0.04]", "[10, 10, 4]", "model: corotational, poissons_ratio: 0.45") + "instruments:\n" +
+      probeEntry("probe", "/probe/joint_states", "[-0.01, 0, 0.0451]") +
       "step: {max_step_s: 0.001}\n"
       "solver: {iterations: 10, contact_passes: 2, tolerance: 1.0e-16}\n"  // nothing stops early: the same work in every step
       "friction: " +
-      friction + "\n";
-  SceneEnvironment environment;
-  environment.package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
-  return Simulator(parseScene(yaml, "benchmark scene", environment.package_path), environment);
+      friction + "\n");
 }
 
 }  // namespace

@@ -9,8 +9,7 @@
 #include <string>
 
 #include "simulation/contact_memory.h"
-#include "tissue_contact/scene/load_scene.h"
-#include "tissue_contact/simulation/simulator.h"
+#include "support/text_scene.h"
 
 namespace {
 
@@ -30,11 +29,9 @@ std::size_t heapBytes() { return mallinfo2().uordblks + mallinfo2().hblkhd; }
 
 std::string sceneText(int cells, const char* relaxation) {
   const std::string across = std::to_string(cells);
-  return "gravity_m_per_s2: [0, 0, -0.1]\ntissues:\n  - name: block\n    block: {size_m: [0.10, 0.10, 0.04], cells: [" +
-         across + ", " + across + ", " + std::to_string(2 * cells / 5) +
-         "]}\n    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n"
-         "    damping: {stiffness_s: 0.003}\n"
-         "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
+  return "gravity_m_per_s2: [0, 0, -0.1]\n" +
+         blockScene("[0.10, 0.10, 0.04]", "[" + across + ", " + across + ", " + std::to_string(2 * cells / 5) + "]",
+                    "poissons_ratio: 0.45") +
          "instruments:\n  - name: plate\n    urdf: package://tissue_contact/urdf/probe.urdf\n    tip_link: tip\n"
          "    joint_state_topics: [/probe/joint_states]\n    base_pose: {position_m: [-0.01, 0, 0.0801]}\n"
          "    contact_links: [{link: tip, shapes: [{sphere: {radius_m: 0.04}}]}]\n"
@@ -44,11 +41,8 @@ std::string sceneText(int cells, const char* relaxation) {
 }
 
 void measure(int cells, const char* relaxation) {
-  SceneEnvironment environment;
-  environment.package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
   const std::size_t before = heapBytes();
-  auto simulator = std::make_unique<Simulator>(
-      parseScene(sceneText(cells, relaxation), "scene", environment.package_path), environment);
+  auto simulator = std::make_unique<Simulator>(makeSimulator(sceneText(cells, relaxation)));
   simulator->advance(0.001, {Vector3(0.0, 0.0, 0.0)});  // one step under gravity: all per-node buffers are there
   const double nodes = simulator->tissues()[0].nodeCount();
   const std::size_t at_rest = heapBytes();

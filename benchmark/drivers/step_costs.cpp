@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <exception>
 #include <map>
 #include <string>
 #include <vector>
@@ -117,7 +118,12 @@ int main(int argc, char** argv) {
                  "[--drag M] [--trace FILE]\n");
     return 2;
   }
-  Simulator simulator = makeScene(arguments);
-  run(simulator, arguments);
+  try {
+    Simulator simulator = makeScene(arguments);
+    run(simulator, arguments);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "step_costs: %s\n", error.what());
+    return 2;
+  }
   return 0;
 }

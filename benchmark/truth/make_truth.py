@@ -5,7 +5,8 @@ contact, extrapolated to no mesh size, no growth of the cells away from the cont
 usage, after scripts/build and `make -C "$(scripts/build --where)" truth_run`:
   make_truth.py SCENE --runs DIR [--out FILE]      (Debian: gmsh, python3-numpy)
   SCENE       press-drag or partial-slip
-  --runs DIR  meshes and runs; what is there is not run again. All of press-drag takes a quarter of an hour of one processor
+  --runs DIR  meshes and runs; what is there is not run again, unless geometry, motion, tolerance or program are others. All of
+              press-drag takes a quarter of an hour of one processor
   --out FILE  the table (default: beside this script)
 
 A tetrahedron of edge s misses forces by s^2 times something that depends on the place alone. Edges here are h within `reach` of the
@@ -18,7 +19,9 @@ Runs weigh 1 / h^2, as what is left of nodes that come into contact one by one d
 """
 import argparse
 import csv
+import hashlib
 import os
+import re
 import subprocess
 import sys
 
@@ -53,6 +56,16 @@ def program(*command, output=None):
     return done.stderr
 
 
+def key(*parts):
+    """A part of a name for what these texts and files make."""
+    return hashlib.sha256(b"\0".join(part.encode() for part in parts)).hexdigest()[:12]
+
+
+def content(file):
+    with open(file, "rb") as stream:
+        return hashlib.sha256(stream.read()).hexdigest()
+
+
 def box_geometry(size_m, path, run, reach_m):
     """Gmsh text of a box on z = 0, finest around the segment `path` (x from, x to) in the middle of its upper face."""
     x, y, z = size_m[0] / 2, size_m[1] / 2, size_m[2]
@@ -72,19 +85,20 @@ def box_geometry(size_m, path, run, reach_m):
     return "\n".join(text) + "\n"
 
 
-def forces(scene, plan, run, folder, truth_run):
-    """Times and forces (samples x 3) of a run."""
+def forces(scene, plan, run, folder, truth_run, version):
+    """Times and forces (samples x 3) of a run. version: of the programs that make it."""
     path = (plan.path_m[0], plan.path_m[1] if run.path_end is None else run.path_end)
-    mesh = os.path.join(folder, "h%g_g%g_c%g_x%g" % (run.h, run.g, run.c, 1e3 * path[1]))
+    geometry = box_geometry(plan.size_m, path, run, 1e-3 * plan.reach_mm)
+    mesh = os.path.join(folder, "h%g_g%g_%s" % (run.h, run.g, key(geometry, version)))
     if not os.path.exists(mesh + ".msh"):
         with open(mesh + ".geo", "w", encoding="utf-8") as stream:
-            stream.write(box_geometry(plan.size_m, path, run, 1e-3 * plan.reach_mm))
+            stream.write(geometry)
         program("gmsh", "-3", "-format", "msh22", "-nopopup", mesh + ".geo", "-o", mesh + ".part.msh")
         os.rename(mesh + ".part.msh", mesh + ".msh")
-    result = "%s_dt%g_s%g.csv" % (mesh, 1e3 * run.step_s, run.seconds)
+    arguments = ["%g" % run.step_s, "%g" % plan.tolerance, "%g" % run.seconds]
+    result = "%s_%s.csv" % (mesh, "_".join(arguments))
     if not os.path.exists(result):
-        print(os.path.basename(result), program(truth_run, scene, mesh + ".msh", "%g" % run.step_s, "%g" % plan.tolerance,
-                                                "%g" % run.seconds, output=result).strip(), flush=True)
+        print(os.path.basename(result), program(truth_run, scene, mesh + ".msh", *arguments, output=result).strip(), flush=True)
     with open(result, newline="", encoding="utf-8") as stream:
         rows = np.array([[float(v) for v in row] for row in list(csv.reader(stream))[1:]])
     return rows[:, 0], rows[:, 1:]
@@ -191,9 +205,12 @@ def main():
     build = subprocess.run([os.path.join(PACKAGE, "scripts", "build"), "--where"], stdout=subprocess.PIPE, text=True,
                            check=True).stdout.strip()
     truth_run = os.path.join(build, "benchmark", "drivers", "truth_run")
+    libraries = re.findall(re.escape(build) + r"\S+", subprocess.run(["ldd", truth_run], stdout=subprocess.PIPE, text=True,
+                                                                     check=True).stdout)
+    version = key(program("gmsh", "--version"), *map(content, [truth_run] + libraries))
 
     def of(runs):
-        return [(run,) + forces(arguments.scene, plan, run, folder, truth_run) for run in runs]
+        return [(run,) + forces(arguments.scene, plan, run, folder, truth_run, version) for run in runs]
 
     bent = step_slope(of(plan.bends))[1]
     slope = step_slope(of(plan.steps))[0]

@@ -46,6 +46,9 @@ LoadWatch::LoadWatch(const Scene& scene, const std::vector<Tissue>& tissues) {
     body.element_seen.assign(elements.size(), 0);
     body.law = scene.tissues[t].material.model;
     body.poissons_ratio = scene.tissues[t].material.poissons_ratio;
+    for (const TissueRegion& region : scene.tissues[t].regions) {
+      body.poissons_ratio_of_regions.push_back(region.material.poissons_ratio - body.poissons_ratio);
+    }
     if (hasRange(body.law)) body.strains.resize(elements.size());
     body.first_of_node.assign(nodes + 1, 0);
     for (const Tetrahedron& element : elements) {
@@ -72,7 +75,7 @@ void LoadWatch::check(const std::vector<SolvedContact>& contacts, const std::vec
     ++checks_;
     double force = 0.0;
     double area = 0.0;
-    double strain = 0.0;  // times force
+    UnderTool sum;  // times force
     std::size_t strongest = first;
     for (end = first; end < contacts.size(); ++end) {
       const SolvedContact& contact = contacts[end];
@@ -87,9 +90,12 @@ void LoadWatch::check(const std::vector<SolvedContact>& contacts, const std::vec
         area += body.node_area[node];
         checkElements(body, node, x, key.instrument, key.tissue, load);
       }
-      if (!body.strains.empty()) strain += contact.force_on_tissue_n.norm() * strainUnder(body, contact.contact);
+      if (body.strains.empty()) continue;
+      const UnderTool under = underTool(body, contact.contact);
+      sum.strain += contact.force_on_tissue_n.norm() * under.strain;
+      sum.poissons_ratio += contact.force_on_tissue_n.norm() * under.poissons_ratio;
     }
-    if (force > 0.0) add(key, body, strain / force, law_error);
+    if (force > 0.0) add(key, body, {sum.strain / force, sum.poissons_ratio / force}, law_error);
     if (!(area > 0.0)) continue;
     const double pressure = force / area;
     const bool is_of_finding =
@@ -133,28 +139,32 @@ void LoadWatch::checkElements(Body& body, int node, const NodalVectors& x, int i
 }
 
 /// Of elements that checkElements() has seen.
-double LoadWatch::strainUnder(const Body& body, const Contact& contact) {
-  double mean = 0.0;
+LoadWatch::UnderTool LoadWatch::underTool(const Body& body, const Contact& contact) {
+  UnderTool mean;
+  const std::vector<int>& regions = body.tissue->elementRegions();
   for (int k = 0; k < 3; ++k) {
     if (contact.weights[k] == 0.0) continue;
     const int node = contact.nodes[k];
-    double strain = 0.0;
+    UnderTool sum;  // times volume
     double volume = 0.0;
     for (int i = body.first_of_node[node]; i < body.first_of_node[node + 1]; ++i) {
-      const Body::Strain& of_element = body.strains[body.elements_of_node[i]];
-      strain += of_element.times_volume;
-      volume += of_element.volume;
+      const int e = body.elements_of_node[i];
+      const int region = regions.empty() ? -1 : regions[e];
+      sum.strain += body.strains[e].times_volume;
+      if (region >= 0) sum.poissons_ratio += body.strains[e].volume * body.poissons_ratio_of_regions[region];
+      volume += body.strains[e].volume;
     }
-    mean += std::abs(contact.weights[k]) * strain / volume;
+    mean.strain += std::abs(contact.weights[k]) * sum.strain / volume;
+    mean.poissons_ratio += std::abs(contact.weights[k]) * sum.poissons_ratio / volume;
   }
   return mean;
 }
 
-void LoadWatch::add(const ContactKey& key, const Body& body, double strain, LawError& law_error) {
-  const double relative = likelyLawError(body.law, body.poissons_ratio, strain);
+void LoadWatch::add(const ContactKey& key, const Body& body, const UnderTool& mean, LawError& law_error) {
+  const double relative = likelyLawError(body.law, body.poissons_ratio + mean.poissons_ratio, mean.strain);
   if (!hasRange(body.law)) return;
   if (law_error.tissue >= 0 && !(std::abs(relative) > std::abs(law_error.relative))) return;
-  law_error = {key.tissue, key.instrument, strain, relative};
+  law_error = {key.tissue, key.instrument, mean.strain, relative};
 }
 
 std::string implausibleLoadText(const Simulator& simulator) {

@@ -18,8 +18,8 @@ namespace tissue_contact {
 ///    modulus. Soft tissue fails at strains of about .3 to 1 (capsule of the liver .35: Brunon et al. 2010), so at
 ///    stresses below its modulus. Opposed forces that a tool catches tissue with count here, although they cancel in
 ///    its wrench.
-/// Takes the strain under each tool, where the law is one that leaves its range (law_error.h): of each contact the mean over
-/// the elements around its nodes, by volume; of those the mean by force.
+/// Takes the strain and Poisson's ratio under each tool, where the law is one that leaves its range (law_error.h): of each contact
+/// the mean over the elements around its nodes, by volume; of those the mean by force.
 class LoadWatch {
  public:
   static constexpr double kMostPressure = 2.0;  ///< times Young's modulus
@@ -41,14 +41,19 @@ class LoadWatch {
     std::vector<int> elements_of_node;
     std::vector<long> node_seen, element_seen;  ///< the check in which it last was
     ElasticModel law;
-    double poissons_ratio;
+    double poissons_ratio;                          ///< of the tissue
+    std::vector<double> poissons_ratio_of_regions;  ///< less that
     struct Strain {
       double times_volume, volume;
     };
     std::vector<Strain> strains;  ///< of the elements seen in this check; empty: the law has no range
   };
-  static double strainUnder(const Body& body, const Contact& contact);
-  static void add(const ContactKey& key, const Body& body, double strain, LawError& law_error);
+  struct UnderTool {
+    double strain = 0.0;
+    double poissons_ratio = 0.0;  ///< less that of the tissue
+  };
+  static UnderTool underTool(const Body& body, const Contact& contact);
+  static void add(const ContactKey& key, const Body& body, const UnderTool& mean, LawError& law_error);
   void checkElements(Body& body, int node, const NodalVectors& x, int instrument, int tissue, ImplausibleLoad& load);
 
   std::vector<Body> bodies_;

@@ -214,6 +214,7 @@ Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
   surface_ = std::move(placed.surface);
   fixed_ = std::move(placed.fixed);
   surface_regions_ = std::move(placed.surface_regions);
+  element_regions_ = std::move(placed.element_regions);
   surface_fibres_ = std::move(placed.surface_fibres);
   pressed_ = std::move(placed.pressed);
 }

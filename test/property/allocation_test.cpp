@@ -190,8 +190,7 @@ TEST(AllocationOfScenes, NoneInAGrasp) {
 #ifndef TISSUE_CONTACT_COUNTS_MALLOC
   GTEST_SKIP() << "this build has a malloc of its own";
 #endif
-  SceneEnvironment environment;
-  environment.package_path = [](const std::string&) { return packageDirectory(); };
+  const SceneEnvironment environment = ownEnvironment();
   Simulator simulator(loadScene(packageDirectory() + "/config/grasp.yaml", environment.package_path), environment);
   const std::vector<Vector3> path = graspPath(packageDirectory());
   const auto joints = [&](int k) {

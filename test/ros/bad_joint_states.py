@@ -1,15 +1,9 @@
 #!/usr/bin/python3
 """Joint states that cannot be used: no wrench, a count, a warning; the next good one goes on as if they had not come."""
-import sys
-
-import rosbag
 import rospy
-import rostest
-from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import WrenchStamped
 from rosgraph_msgs.msg import Log
-from sensor_msgs.msg import JointState
 
+import faults
 import harness
 
 NAN = float("nan")
@@ -25,8 +19,8 @@ def all_bits_set():
 
 class BadJointStates(harness.TestCase):
     def test_are_refused_counted_and_forgotten(self):
-        wrenches = harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)
-        diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+        wrenches = harness.wrenches()
+        diagnostics = harness.diagnostics()
         log = harness.Listener("/rosout", Log)
         source = harness.JointSource()
         samples = harness.press()
@@ -60,7 +54,7 @@ class BadJointStates(harness.TestCase):
                   "names and positions differ in number": bad, "bad stamp": 2 * bad, "duplicate stamp": bad, "too late": 0}
 
         def told(messages):
-            values = {v.key: v.value for v in messages[-1].status[0].values} if messages else {}
+            values = faults.figures(messages[-1]) if messages else {}
             return all(values.get("joint states: " + key) == str(count) for key, count in counts.items())
         diagnostics.wait(told, "the counts %s" % counts)
 
@@ -69,24 +63,6 @@ class BadJointStates(harness.TestCase):
             self.assertTrue(any(words in w for w in warnings), (words, warnings))
         self.assertLess(len(warnings), bad)  # throttled
 
-    def test_a_recorded_stamp_past_the_end_of_time_is_refused_by_replay(self):
-        samples = harness.press(20)
-        tables = []
-        for name, more in [("clean", []), ("bad", [(all_bits_set(), (0.0, 0.0, 0.0))])]:
-            bag = self.path(name + ".bag")
-            with rosbag.Bag(bag, "w") as out:
-                for i, (stamp, positions) in enumerate(samples[:10] + more + samples[10:]):
-                    message = JointState(name=["x", "y", "z"], position=list(positions))
-                    message.header.stamp = stamp
-                    out.write(harness.TOPIC, message, rospy.Time(harness.START_S + i))
-            code, errors = harness.replay(harness.SCENE, bag, bag + ".csv")
-            self.assertEqual(code, 0, errors)
-            tables.append(harness.read_csv(bag + ".csv"))
-        self.assertIn("1 bad stamp", errors)
-        self.assertIn("stamp out of range", errors)
-        self.assertEqual(tables[0], tables[1])
-
 
 if __name__ == "__main__":
-    rospy.init_node("bad_joint_states")
-    rostest.rosrun("tissue_contact", "bad_joint_states", BadJointStates, sys.argv)
+    harness.main(BadJointStates)

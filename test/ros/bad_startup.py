@@ -2,38 +2,25 @@
 """Every start-up that cannot work ends with one fatal message that names the fault, and an exit code other than 0."""
 import os
 import signal
-import sys
 
 import rosgraph
 import rospy
-import rostest
-from geometry_msgs.msg import WrenchStamped
 
 import harness
 
-MESH_URDF = """<robot name="m"><link name="base"/><link name="tip"><collision><geometry>
-<mesh filename="no_such_mesh.stl"/></geometry></collision></link><joint name="x" type="prismatic"><parent link="base"/>
-<child link="tip"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"""
+URDF = "urdf: package://tissue_contact/urdf/probe.urdf"
 
 
 class BadStartup(harness.TestCase):
-    def setUp(self):
-        super().setUp()
-
     def changed(self, old, new):
         return self.changed_scene({old: new})
-
-    def with_urdf(self, text):
-        self.write("robot.urdf", text)
-        return self.changed("package://tissue_contact/urdf/probe.urdf", "robot.urdf")
 
     def assert_refused(self, arguments, *words):
         command = [harness.program("tissue_contact_node"), "__name:=tissue_contact"] + list(arguments)
         with harness.running(command) as node:
             harness.wait_until(lambda: node.poll() is not None, "the end of the node")
             self.assertGreater(node.returncode, 0)  # an exit code, not a signal
-            node.output.seek(0)
-            output = node.output.read()
+            output = harness.output_of(node)
         self.assertEqual(output.count("[FATAL]"), 1, output)
         self.assertNotIn("rospack", output)  # says nothing that the message does not
         for word in words:
@@ -56,40 +43,22 @@ class BadStartup(harness.TestCase):
     def test_typo_in_a_key(self):
         self.assert_scene_refused(self.changed("youngs_modulus_pa", "young_modulus_pa"), "young_modulus_pa", "scene.yaml:5")
 
-    def test_unknown_joint_in_the_map(self):
-        path = self.changed("    tip_link: tip\n", "    tip_link: tip\n    joint_names: {outer_yaw: yaaw}\n")
-        self.assert_scene_refused(path, "yaaw", "probe")
-
     def test_unknown_contact_link(self):
         self.assert_scene_refused(self.changed("contact_links: [tip]", "contact_links: [jaw]"), "jaw", "probe")
 
-    def test_malformed_urdf(self):
-        self.assert_scene_refused(self.with_urdf("<robot name='x'><link name='base'>"), "robot.urdf")
-
-    def test_urdf_whose_mesh_is_missing(self):
-        self.assert_scene_refused(self.with_urdf(MESH_URDF), "no_such_mesh.stl")
-
-    def test_urdf_file_missing(self):
-        path = self.changed("package://tissue_contact/urdf/probe.urdf", "none.urdf")
-        self.assert_scene_refused(path, "none.urdf")
-
     def test_unknown_package(self):
-        path = self.changed("package://tissue_contact/urdf/probe.urdf", "package://no_such_package/probe.urdf")
-        self.assert_scene_refused(path, "no_such_package")
+        self.assert_scene_refused(self.changed(URDF, "urdf: package://no_such_package/probe.urdf"), "no_such_package")
 
     def test_urdf_parameter_missing(self):
-        path = self.changed("urdf: package://tissue_contact/urdf/probe.urdf",
-                            "robot_description: no_description")
+        path = self.changed(URDF, "robot_description: no_description")
         self.assert_scene_refused(path, "/tissue_contact/no_description", "textfile")
 
     def test_urdf_parameter_is_no_text(self):
-        path = self.changed("urdf: package://tissue_contact/urdf/probe.urdf",
-                            "robot_description: number_description")
+        path = self.changed(URDF, "robot_description: number_description")
         self.assert_refused(["_scene:=" + path, "_number_description:=7"], "number_description", "not a string")
 
     def test_malformed_urdf_parameter(self):
-        path = self.changed("urdf: package://tissue_contact/urdf/probe.urdf",
-                            "robot_description: bad_description")
+        path = self.changed(URDF, "robot_description: bad_description")
         rospy.set_param("/bad_description", "<robot")
         self.assert_scene_refused(path, "bad_description")
 
@@ -130,11 +99,10 @@ class BadStartup(harness.TestCase):
         for name in others:
             rospy.set_param("/tissue_contact/" + name, "x")
         with harness.node(harness.SCENE) as node:
-            harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)  # waits for the publisher
+            harness.wrenches()  # waits for the publisher
             node.send_signal(signal.SIGINT)
             self.assertEqual(node.wait(harness.DEADLINE_S), 0)
-            node.output.seek(0)
-            warnings = [line for line in node.output if "[ WARN]" in line and "does not read" in line]
+            warnings = [line for line in harness.output_of(node).splitlines() if "[ WARN]" in line and "does not read" in line]
         self.assertEqual(len(warnings), 1, warnings)
         for name in others:
             self.assertIn("/tissue_contact/" + name, warnings[0])
@@ -148,7 +116,7 @@ class BadStartup(harness.TestCase):
 
     def test_known_parameters_start_the_node(self):
         # Of the node, of diagnostic_updater, of roscpp and of nodes beside it.
-        path = self.changed("urdf: package://tissue_contact/urdf/probe.urdf", "robot_description: arm/description")
+        path = self.changed(URDF, "robot_description: arm/description")
         with open(os.path.join(harness.PACKAGE, "urdf", "probe.urdf"), encoding="utf-8") as stream:
             rospy.set_param("/tissue_contact/arm/description", stream.read())
         rospy.set_param("/tissue_contact_of_another/sceen", "x")
@@ -157,7 +125,7 @@ class BadStartup(harness.TestCase):
             rospy.set_param("/tissue_contact/" + name, value)
         arguments = ["__log:=" + self.path("log"), "chatter:=elsewhere", "/tissue_contact/status:=/s"]
         with harness.node(path, *arguments):
-            harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)  # waits for the publisher
+            harness.wrenches()  # waits for the publisher
 
     def tearDown(self):
         if rospy.has_param("/tissue_contact"):
@@ -165,5 +133,4 @@ class BadStartup(harness.TestCase):
 
 
 if __name__ == "__main__":
-    rospy.init_node("bad_startup")
-    rostest.rosrun("tissue_contact", "bad_startup", BadStartup, sys.argv)
+    harness.main(BadStartup)

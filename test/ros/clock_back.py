@@ -1,23 +1,20 @@
 #!/usr/bin/python3
 """A bag shorter than max_gap_s in a loop with /clock: the clock going back starts the scene again. Time is simulated, so
 every state is stepped to although their stamps are of the present."""
-import sys
 import time
 import unittest
 
 import rospy
-import rostest
-from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import WrenchStamped
 from rosgraph_msgs.msg import Clock
 
+import faults
 import harness
 
 
 class ClockBack(unittest.TestCase):
     def test_scene_starts_again(self):
-        wrenches = harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)
-        diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+        wrenches = harness.wrenches()
+        diagnostics = harness.diagnostics()
         clock = rospy.Publisher("/clock", Clock, queue_size=10)
         harness.wait_until(lambda: clock.get_num_connections() >= 2, "the node listening to /clock")  # the test does as well
         source = harness.JointSource()
@@ -38,11 +35,10 @@ class ClockBack(unittest.TestCase):
         self.assertEqual(loops[0], loops[2])
 
         def told(messages):
-            values = {v.key: v.value for v in messages[-1].status[0].values}
+            values = faults.figures(messages[-1])
             return (values["resets"], values["joint states: too late"], values["policy"]) == ("2", "0", "every_state")
         diagnostics.wait(told, "two resets")
 
 
 if __name__ == "__main__":
-    rospy.init_node("clock_back")
-    rostest.rosrun("tissue_contact", "clock_back", ClockBack, sys.argv)
+    harness.main(ClockBack)

@@ -1,5 +1,4 @@
 """Shared by live.py, flood.py and the faults_*.py: what the node says it did with every joint state, and its end."""
-import math
 import re
 import signal
 import socket
@@ -34,11 +33,6 @@ def all_told(diagnostics, sent):
         values = figures(messages[-1]) if messages else {}
         return values.get("joint states: received") == str(sent) and values["joint states: waiting"] == "0"
     return figures(diagnostics.wait(complete, "%d joint states received and played" % sent)[-1])
-
-
-def is_finite(wrench):
-    f, t = wrench.wrench.force, wrench.wrench.torque
-    return all(math.isfinite(x) for x in [f.x, f.y, f.z, t.x, t.y, t.z])
 
 
 def free_port():
@@ -82,8 +76,7 @@ def counts_at_the_end(process, number=signal.SIGINT):
     process.send_signal(number)
     code = process.wait(harness.DEADLINE_S)
     took = time.monotonic() - start
-    process.output.seek(0)
-    output = process.output.read()
+    output = harness.output_of(process)
     assert code == 0, output
     assert took < harness.SLOWNESS, "took %.2f s to end: %s" % (took, output)
     lines = [line for line in output.splitlines() if line.startswith("joint states: ")]

@@ -4,11 +4,7 @@ what is counted, and memory stays bounded."""
 import os
 import socket
 import struct
-import sys
 
-import rospy
-import rostest
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import JointState
 from visualization_msgs.msg import MarkerArray
@@ -18,13 +14,8 @@ import harness
 import tcpros
 from tissue_contact.msg import TissueMesh
 
-NODE = "/tissue_contact"
-
-
-def joint_state(sample):
-    message = JointState(name=["x", "y", "z"], position=list(sample[1]))
-    message.header.stamp = sample[0]
-    return message
+def framed(sample):
+    return tcpros.framed(harness.joint_state(*sample))
 
 
 def resident_mb(process):
@@ -35,13 +26,13 @@ def resident_mb(process):
 class FaultsConnections(harness.TestCase):
     def test_publisher_dies_within_a_message(self):
         samples = harness.press(60)
-        length = len(tcpros.framed(joint_state(samples[0])))
+        length = len(framed(samples[0]))
         # Ends: within the length of the message, its header, its names, its positions; and before anything.
         cuts = [0, 2, 9, length // 2, length - 1]
         pieces = []
         for i, cut in enumerate(cuts):
-            pieces.append(b"".join(tcpros.framed(joint_state(s)) for s in samples[10 * i:10 * i + 10]) +
-                          tcpros.framed(joint_state(samples[10 * i + 10]))[:cut])
+            pieces.append(b"".join(framed(s) for s in samples[10 * i:10 * i + 10]) +
+                          framed(samples[10 * i + 10])[:cut])
         # And one that announces much more than ever comes.
         pieces.append(struct.pack("<I", 900000000) + 1000 * b"x")
 
@@ -51,7 +42,7 @@ class FaultsConnections(harness.TestCase):
                 connection.shutdown(socket.SHUT_WR)
 
         with harness.node(harness.SCENE) as process:
-            wrenches = harness.Listener(NODE + "/probe/wrench", WrenchStamped)
+            wrenches = harness.wrenches()
             before_mb = resident_mb(process)
             dying = tcpros.Publisher("/dying", harness.TOPIC, JointState, send)
             wrenches.wait_for_stamp(samples[49][0])
@@ -62,7 +53,7 @@ class FaultsConnections(harness.TestCase):
             self.assertLess(resident_mb(process) - before_mb, 50.0)
             counts = faults.counts_at_the_end(process)
         self.assertEqual([w.header.stamp for w in everything], [stamp for stamp, _ in samples])
-        self.assertTrue(all(map(faults.is_finite, everything)))
+        self.assertTrue(all(map(harness.is_finite, everything)))
         self.assertEqual((counts["received"], counts["accepted"]), (len(samples), len(samples)))
 
     def test_subscribers_that_do_not_read(self):
@@ -70,8 +61,8 @@ class FaultsConnections(harness.TestCase):
         # Every state gives a mesh and markers: a hundred megabytes, if they were kept.
         scene = self.changed_scene({"mesh_rate_hz: 20": "mesh_rate_hz: 100", "markers_rate_hz: 10": "markers_rate_hz: 100"})
         with harness.node(scene) as process:
-            wrenches = harness.Listener(NODE + "/probe/wrench", WrenchStamped)
-            stalled = [tcpros.Subscriber(NODE, NODE + topic, message_type) for topic, message_type in
+            wrenches = harness.wrenches()
+            stalled = [tcpros.Subscriber(harness.NODE, harness.NODE + topic, message_type) for topic, message_type in
                        [("/probe/wrench", WrenchStamped), ("/block/mesh", TissueMesh), ("/markers", MarkerArray)]]
             source = harness.JointSource()
             source.send_all(samples[:300])
@@ -97,16 +88,16 @@ class FaultsConnections(harness.TestCase):
     def test_two_publishers_of_one_clock(self):
         samples = harness.press(400)
         with harness.node(harness.SCENE) as process:
-            wrenches = harness.Listener(NODE + "/probe/wrench", WrenchStamped)
-            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+            wrenches = harness.wrenches()
+            diagnostics = harness.diagnostics()
             source = harness.JointSource()
 
             def send(connection):  # every other state, and each fifth of the other publisher's as well
                 for i in range(0, len(samples), 2):
-                    connection.sendall(tcpros.framed(joint_state(samples[i])))
+                    connection.sendall(framed(samples[i]))
                     source.send(*samples[i + 1])
                     if i % 10 == 0:
-                        connection.sendall(tcpros.framed(joint_state(samples[i + 1])))
+                        connection.sendall(framed(samples[i + 1]))
                         wrenches.wait_for_stamp(samples[i + 1][0])  # of one clock: neither runs far ahead
                 while connection.recv(1000):
                     pass
@@ -126,9 +117,8 @@ class FaultsConnections(harness.TestCase):
         self.assertGreaterEqual(counts["accepted"], len(samples) // 2)
         late = ["joint states: too late", "joint states: duplicate stamp"]
         self.assertEqual(sum(int(values[key]) for key in late), counts["refused"])
-        self.assertTrue(all(map(faults.is_finite, wrenches.messages)))
+        self.assertTrue(all(map(harness.is_finite, wrenches.messages)))
 
 
 if __name__ == "__main__":
-    rospy.init_node("faults_connections")
-    rostest.rosrun("tissue_contact", "faults_connections", FaultsConnections, sys.argv)
+    harness.main(FaultsConnections)

@@ -9,14 +9,11 @@ import sys
 import rosgraph
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import WrenchStamped
 
 import faults
 import harness
 
 PORT = faults.free_port()
-NODE = "/tissue_contact"
 
 
 class Master:
@@ -39,7 +36,7 @@ class Master:
 def registrations():
     """What the master knows of the node: (kind, topic or service), and where its service is."""
     master = rosgraph.Master("/test")
-    known = {(kind, name) for kind, entries in enumerate(master.getSystemState()) for name, nodes in entries if NODE in nodes}
+    known = {(kind, name) for kind, entries in enumerate(master.getSystemState()) for name, nodes in entries if harness.NODE in nodes}
     return known | {master.lookupService(name) for kind, name in known if kind == 2}
 
 
@@ -57,15 +54,14 @@ class FaultsMaster(harness.TestCase):
 
     def play(self, samples):
         """By a program that was not there before either."""
-        bag = self.path("more.bag")
-        harness.write_bag(bag, samples)
+        bag = self.bag_of("more.bag", samples)
         command = [harness.program_of("rosbag", "play"), "--quiet", "--wait-for-subscribers", "--rate", "10", bag]
         subprocess.run(command, check=True, timeout=harness.DEADLINE_S, stdin=subprocess.DEVNULL)
 
     def seen_by_newcomer(self):
         """Stamp of the latched topology, by a program that was not there before."""
         program = ("import rospy; from tissue_contact.msg import TissueTopology; rospy.init_node('newcomer'); "
-                   "print(rospy.wait_for_message('%s/block/topology', TissueTopology).header.stamp.to_nsec())" % NODE)
+                   "print(rospy.wait_for_message('%s/block/topology', TissueTopology).header.stamp.to_nsec())" % harness.NODE)
         return int(subprocess.run([sys.executable, "-c", program], check=True, stdout=subprocess.PIPE, text=True,
                                   timeout=harness.DEADLINE_S).stdout)
 
@@ -76,8 +72,8 @@ class FaultsMaster(harness.TestCase):
     def test_stopped_then_killed_and_restarted(self):
         samples = harness.press(160)
         with harness.node(harness.SCENE) as process:
-            wrenches = harness.Listener(NODE + "/probe/wrench", WrenchStamped)
-            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+            wrenches = harness.wrenches()
+            diagnostics = harness.diagnostics()
             source = harness.JointSource()
             self.master_status(diagnostics, lambda s: s.level == faults.OK, "a node that is registered")
             before = registrations()

@@ -3,20 +3,15 @@
 and the answers that follow are right."""
 import math
 import signal
-import sys
 import time
 import unittest
 
 import rospy
-import rostest
-from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import WrenchStamped
 from rosgraph_msgs.msg import Clock
 
 import faults
 import harness
 
-NODE = "/tissue_contact"
 
 
 def path(time_s):
@@ -26,8 +21,8 @@ def path(time_s):
 class FaultsTime(unittest.TestCase):
     def test_node_stopped_for_ten_seconds(self):
         with harness.node(harness.SCENE) as process:
-            wrenches = harness.Listener(NODE + "/probe/wrench", WrenchStamped)
-            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+            wrenches = harness.wrenches()
+            diagnostics = harness.diagnostics()
             driver = faults.Driver(200, path)
             try:
                 wrenches.wait(lambda all: len(all) > 100, "wrenches before")
@@ -49,15 +44,15 @@ class FaultsTime(unittest.TestCase):
         self.assertEqual(counts["accepted"] + counts["merged"], sent)
         self.assertEqual(len(wrenches.messages), counts["wrenches"])
         self.assertEqual(values["joint states: missing by header.seq"], "0")
-        self.assertTrue(all(map(faults.is_finite, wrenches.messages)))
+        self.assertTrue(all(map(harness.is_finite, wrenches.messages)))
 
     def test_clock_stepped(self):
         rospy.set_param("/use_sim_time", True)
         self.addCleanup(rospy.delete_param, "/use_sim_time")
         blocks = [harness.press(40, start_s=10 * harness.START_S + offset) for offset in [0, 3600, 10, -3600, -3590]]
         with harness.node(harness.SCENE) as process:
-            wrenches = harness.Listener(NODE + "/probe/wrench", WrenchStamped)
-            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+            wrenches = harness.wrenches()
+            diagnostics = harness.diagnostics()
             clock = rospy.Publisher("/clock", Clock, queue_size=10)
             harness.wait_until(lambda: clock.get_num_connections() > 0, "the node listening to /clock")
             source = harness.JointSource()
@@ -73,7 +68,7 @@ class FaultsTime(unittest.TestCase):
             counts = faults.counts_at_the_end(process)
         self.assertEqual((counts["received"], counts["wrenches"]), (sent, counts["accepted"]))
         self.assertEqual(len(wrenches.messages), counts["wrenches"])
-        self.assertTrue(all(map(faults.is_finite, wrenches.messages)))
+        self.assertTrue(all(map(harness.is_finite, wrenches.messages)))
         # Each step back starts the scene again, so what follows is what came first.
         by_stamp = {w.header.stamp: w.wrench.force.z for w in wrenches.messages}
         forces = [[by_stamp[stamp] for stamp, _ in block if stamp in by_stamp] for block in blocks]
@@ -83,5 +78,4 @@ class FaultsTime(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rospy.init_node("faults_time")
-    rostest.rosrun("tissue_contact", "faults_time", FaultsTime, sys.argv)
+    harness.main(FaultsTime)

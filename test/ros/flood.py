@@ -2,12 +2,9 @@
 """Far more joint states than the node can step through or even hold: what became of each is counted, and the node ends
 within a second."""
 import io
-import sys
 import time
 
 import rospy
-import rostest
-from diagnostic_msgs.msg import DiagnosticArray
 from sensor_msgs.msg import JointState
 
 import faults
@@ -46,7 +43,7 @@ class Flood(harness.TestCase):
     def test_what_was_sent_is_received_or_known_to_be_missing(self):
         messages = [pack(i) for i in range(COUNT)]
         with harness.node(self.scene()) as process:
-            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+            diagnostics = harness.diagnostics()
             publisher = rospy.Publisher(harness.TOPIC, Packed, queue_size=COUNT, tcp_nodelay=True)
             harness.wait_until(lambda: publisher.get_num_connections() > 0, "a subscriber")
             start = time.monotonic()
@@ -70,5 +67,4 @@ class Flood(harness.TestCase):
 
 
 if __name__ == "__main__":
-    rospy.init_node("flood")
-    rostest.rosrun("tissue_contact", "flood", Flood, sys.argv)
+    harness.main(Flood)

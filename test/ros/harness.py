@@ -2,10 +2,12 @@
 import contextlib
 import csv
 import hashlib
+import math
 import os
 import shutil
 import struct
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -15,14 +17,26 @@ import rosbag
 import roslib.packages
 import rospkg
 import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import TransformStamped, WrenchStamped
 from sensor_msgs.msg import JointState
+from tf2_msgs.msg import TFMessage
 
 SLOWNESS = float(os.environ.get("TISSUE_CONTACT_SLOWNESS", "1"))  # of builds with sanitizers
 DEADLINE_S = 120.0 * SLOWNESS  # generous: the machine may be busy with other tests
+NODE = "/tissue_contact"
 TOPIC = "/probe/joint_states"
 PACKAGE = rospkg.RosPack().get_path("tissue_contact")
 SCENE = os.path.join(PACKAGE, "test", "ros", "press.yaml")
 START_S = 1000
+
+
+def main(test_case):
+    """Of the node of a rostest: it and its test are called as its file is."""
+    name = os.path.splitext(os.path.basename(sys.argv[0]))[0]
+    rospy.init_node(name)
+    rostest.rosrun("tissue_contact", name, test_case, sys.argv)
 
 
 def wait_until(condition, what, deadline_s=DEADLINE_S):
@@ -48,6 +62,17 @@ class TestCase(unittest.TestCase):
             stream.write(text)
         return self.path(name)
 
+    def bag_of(self, name, samples, **options):
+        """A bag of joint states, see write_bag()."""
+        write_bag(self.path(name), samples, **options)
+        return self.path(name)
+
+    def replayed(self, scene, bag, csv_file, *more):
+        """A replay that must succeed; returns what it said."""
+        code, errors = replay(scene, bag, csv_file, *more)
+        self.assertEqual(code, 0, errors)
+        return errors
+
     def changed_scene(self, changes, source=SCENE, name="scene.yaml"):
         """A scene of test/ros, or one with a path, each of whose `changes` {old text: new one} was made once."""
         with open(os.path.join(os.path.dirname(SCENE), source), encoding="utf-8") as stream:
@@ -56,6 +81,12 @@ class TestCase(unittest.TestCase):
             self.assertEqual(text.count(old), 1, old)
             text = text.replace(old, str(new))
         return self.write(name, text)
+
+
+def joint_state(stamp, positions, names=("x", "y", "z")):
+    message = JointState(name=list(names), position=list(positions))
+    message.header.stamp = stamp
+    return message
 
 
 class Listener:
@@ -89,6 +120,14 @@ class Listener:
         self._subscriber.unregister()
 
 
+def wrenches(instrument="probe"):
+    return Listener("%s/%s/wrench" % (NODE, instrument), WrenchStamped)
+
+
+def diagnostics():
+    return Listener("/diagnostics", DiagnosticArray)
+
+
 class JointSource:
     """Publishes joint states to the node; returns once the node listens."""
 
@@ -97,9 +136,7 @@ class JointSource:
         wait_until(lambda: self._publisher.get_num_connections() > 0, "a subscriber of " + topic)
 
     def send(self, stamp, positions, names=("x", "y", "z")):
-        message = JointState(name=list(names), position=list(positions))
-        message.header.stamp = stamp
-        self._publisher.publish(message)
+        self._publisher.publish(joint_state(stamp, positions, names))
 
     def send_all(self, samples):
         for stamp, positions in samples:
@@ -116,12 +153,15 @@ def press(count=100, start_s=START_S, depth_m=0.005):
     return samples
 
 
-def write_bag(file, samples, topic=TOPIC):
-    with rosbag.Bag(file, "w") as bag:
-        for stamp, positions in samples:
-            message = JointState(name=["x", "y", "z"], position=list(positions))
-            message.header.stamp = stamp
-            bag.write(topic, message, stamp)
+def write_messages(file, messages, **options):
+    """messages: (topic, message, time of recording)."""
+    with rosbag.Bag(file, "w", **options) as bag:
+        for message in messages:
+            bag.write(*message)
+
+
+def write_bag(file, samples, topic=TOPIC, **options):
+    write_messages(file, [(topic, joint_state(stamp, positions), stamp) for stamp, positions in samples], **options)
 
 
 def program(name):
@@ -132,12 +172,23 @@ def program(name):
     return found[0]
 
 
-def replay(scene, bag, csv_file, *more):
+def run(command, **options):
+    """Waits for a program; returns (exit code, what it printed, to stderr alone if that is piped)."""
+    done = subprocess.run(command, **{"stderr": subprocess.STDOUT, **options}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          universal_newlines=True, timeout=4 * DEADLINE_S, check=False)
+    return done.returncode, done.stdout if done.stderr is None else done.stderr
+
+
+def launch(*arguments):
+    """What scripts/demo ends with: roslaunch on a master of its own, without a display."""
+    environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+    return run([program("run_launch.py")] + list(arguments), env=environment)
+
+
+def replay(scene, bag, csv_file, *more, **options):
     """Runs tissue_contact_replay; returns (exit code, stderr)."""
     command = [program("tissue_contact_replay"), "--scene", scene, "--bag", bag, "--csv", csv_file] + list(more)
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True,
-                          timeout=4 * DEADLINE_S, check=False)
-    return done.returncode, done.stderr
+    return run(command, stderr=subprocess.PIPE, **options)
 
 
 @contextlib.contextmanager
@@ -163,10 +214,33 @@ def node(scene, *parameters):
     return running([program("tissue_contact_node"), "__name:=tissue_contact", "_scene:=" + scene] + list(parameters))
 
 
+def output_of(process):
+    """What running() has printed so far."""
+    process.output.seek(0)
+    return process.output.read()
+
+
+def wrench_of(message):
+    """The six numbers of a WrenchStamped."""
+    return [getattr(vector, axis) for vector in [message.wrench.force, message.wrench.torque] for axis in "xyz"]
+
+
 def wrench_bits(message):
-    """The six doubles of a WrenchStamped as bytes."""
-    w = message.wrench
-    return struct.pack("<6d", w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z)
+    return struct.pack("<6d", *wrench_of(message))
+
+
+def is_finite(message):
+    return all(map(math.isfinite, wrench_of(message)))
+
+
+def stage_at(z):
+    """The tf of a frame "stage" above the world's origin."""
+    transform = TransformStamped()
+    transform.header.frame_id = "world"
+    transform.child_frame_id = "stage"
+    transform.transform.translation.z = z
+    transform.transform.rotation.w = 1.0
+    return TFMessage([transform])
 
 
 WRENCH_COLUMNS = ["force_x_n", "force_y_n", "force_z_n", "torque_x_nm", "torque_y_nm", "torque_z_nm"]
@@ -174,9 +248,8 @@ WRENCH_COLUMNS = ["force_x_n", "force_y_n", "force_z_n", "torque_x_nm", "torque_
 
 def read_csv(file):
     """Rows of a replay's CSV: (stamp text, instrument, wrench bytes)."""
-    with open(file, newline="", encoding="ascii") as stream:
-        return [(row["stamp_s"], row["instrument"], struct.pack("<6d", *[float(row[c]) for c in WRENCH_COLUMNS]))
-                for row in csv.DictReader(stream)]
+    return [(row["stamp_s"], row["instrument"], struct.pack("<6d", *[float(row[c]) for c in WRENCH_COLUMNS]))
+            for row in read_table(file)]
 
 
 def read_table(file):
@@ -198,19 +271,18 @@ def digest(rows):
     return hashed.hexdigest()
 
 
-def play_through_node(scene, bag, topic, wrench_topic, count, rate, deadline_s=DEADLINE_S):
+def play_through_node(scene, bag, topic, instrument, count, rate, deadline_s=DEADLINE_S):
     """Plays a bag into a fresh node at `rate` times real time; returns (stamp text, wrench bytes) of every wrench."""
-    from geometry_msgs.msg import WrenchStamped
     with node(scene):
-        wrenches = Listener(wrench_topic, WrenchStamped)
+        listener = wrenches(instrument)
         # The queue holds what piles up while the player has no processor; by default it is a hundred messages.
         with running([program_of("rosbag", "play"), "--quiet", "--wait-for-subscribers", "--queue", "100000", "--rate",
                       str(rate), bag, "--topics", topic]) as player:
             wait_until(lambda: player.poll() is not None, "the end of the bag", deadline_s)
             assert player.returncode == 0, "rosbag play: exit code %d" % player.returncode
-        all_wrenches = wrenches.wait(lambda all: len(all) >= count, "%d wrenches" % count, deadline_s)
-        wrenches.close()
-    return [(stamp_text(w.header.stamp), wrench_bits(w)) for w in all_wrenches]
+        got = listener.wait(lambda all: len(all) >= count, "%d wrenches" % count, deadline_s)
+        listener.close()
+    return [(stamp_text(w.header.stamp), wrench_bits(w)) for w in got]
 
 
 def program_of(package, name):

@@ -1,14 +1,8 @@
 #!/usr/bin/python3
 """An instrument that is suddenly a kilometre away, and back: placed, not swept; said in Status and CSV; all finite."""
-import csv
 import math
-import sys
 
-import rospy
-import rostest
-from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import WrenchStamped
-
+import faults
 import harness
 from tissue_contact.msg import Status, TissueMesh
 
@@ -30,14 +24,10 @@ class Jump(harness.TestCase):
         self.assertEqual([v for v in values if not math.isfinite(v)], [])
 
     def test_replay(self):
-        bag = self.path("jump.bag")
         out = self.path("jump.csv")
-        harness.write_bag(bag, self.samples)
-        code, errors = harness.replay(self.scene, bag, out)
-        self.assertEqual(code, 0, errors)
+        errors = self.replayed(self.scene, self.bag_of("jump.bag", self.samples), out)
         self.assertIn("2 jumps", errors)
-        with open(out, newline="", encoding="ascii") as stream:
-            rows = list(csv.DictReader(stream))
+        rows = harness.read_table(out)
         self.assertEqual([i for i, row in enumerate(rows) if row["jumped"] == "1"], [AWAY, BACK])
         self.assertEqual({row["jumped"] for row in rows}, {"0", "1"})
         self.assertEqual({row["discarded"] for row in rows}, {"0"})
@@ -47,10 +37,10 @@ class Jump(harness.TestCase):
 
     def test_node(self):
         with harness.node(self.scene):
-            wrenches = harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)
+            wrenches = harness.wrenches()
             statuses = harness.Listener("/tissue_contact/status", Status)
             meshes = harness.Listener("/tissue_contact/block/mesh", TissueMesh)
-            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+            diagnostics = harness.diagnostics()
             source = harness.JointSource()
             for stamp, position in self.samples:  # one by one: a status or mesh may be dropped by a full queue
                 source.send(stamp, position)
@@ -58,13 +48,12 @@ class Jump(harness.TestCase):
                     listener.wait_for_stamp(stamp)
 
             def told(messages):
-                return bool(messages) and ("jumps", "2") in [(v.key, v.value) for v in messages[-1].status[0].values]
+                return bool(messages) and faults.figures(messages[-1]).get("jumps") == "2"
             diagnostics.wait(told, "two jumps")
         self.assertEqual([i for i, status in enumerate(statuses.messages) if status.jumped], [AWAY, BACK])
         self.assertFalse(any(status.discarded for status in statuses.messages))
         self.assertEqual(len(wrenches.messages), len(self.samples))
-        self.assert_all_finite(getattr(v, axis) for w in wrenches.messages
-                               for v in [w.wrench.force, w.wrench.torque] for axis in "xyz")
+        self.assert_all_finite(value for w in wrenches.messages for value in harness.wrench_of(w))
         self.assert_all_finite(getattr(p, axis) for m in meshes.messages for p in m.positions for axis in "xyz")
         self.assert_all_finite(getattr(status, name) for status in statuses.messages for name in [
             "momentum_residual", "penetration", "adhesion", "complementarity", "cone_violation", "static_slip",
@@ -72,5 +61,4 @@ class Jump(harness.TestCase):
 
 
 if __name__ == "__main__":
-    rospy.init_node("jump")
-    rostest.rosrun("tissue_contact", "jump", Jump, sys.argv)
+    harness.main(Jump)

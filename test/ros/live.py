@@ -12,7 +12,6 @@ import time
 import unittest
 
 import rospy
-import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from rosgraph_msgs.msg import Log
@@ -116,8 +115,8 @@ class Live(harness.TestCase):
         seen = {}
         with harness.node(scene) as process:
             log = harness.Listener("/rosout", Log, connect=False)
-            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
-            wrenches = harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)
+            diagnostics = harness.diagnostics()
+            wrenches = harness.wrenches()
             statuses = harness.Listener("/tissue_contact/status", Status)
             bulky = [Arrivals("/tissue_contact/block/mesh", TissueMesh), Arrivals("/tissue_contact/markers", MarkerArray)]
             told = Arrivals("/diagnostics", DiagnosticArray)
@@ -200,7 +199,7 @@ class Live(harness.TestCase):
         scene = self.scene(**{"MAX_LAG_S}": "0.02, joint_states: every_state}", "MAX_STEP_S": 0.0005,
                               "[14, 10, 5]": "[36, 28, 14]"})
         with harness.node(scene) as process:
-            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+            diagnostics = harness.diagnostics()
             driver = faults.Driver(500.0, press_at)
             try:
                 def far_behind(messages):
@@ -245,7 +244,7 @@ class Live(harness.TestCase):
         for policy in ["every_state", "newest_state"]:
             scene = self.changed_scene({"max_step_s: 0.002": "max_step_s: 0.002, joint_states: " + policy})
             with harness.node(scene):
-                wrenches = harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)
+                wrenches = harness.wrenches()
                 source = harness.JointSource()
                 start = rospy.Time.from_sec(math.ceil(time.time()))
                 samples = [(start + (stamp - rospy.Time(harness.START_S)), position)
@@ -269,7 +268,7 @@ class Live(harness.TestCase):
             scene = self.scene(**{"MAX_LAG_S}": "0.02, joint_states: every_state}\nsolver: {iterations: 10000, tolerance: 1.0e-16}",
                                   "MAX_STEP_S": 0.01, "[14, 10, 5]": "[36, 28, 14]"})
             with harness.node(scene) as process:
-                diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+                diagnostics = harness.diagnostics()
                 source = harness.JointSource()
                 for i in range(100):
                     source.send(rospy.Time(harness.START_S) + rospy.Duration.from_sec(0.01 * i), press_at(0.01 * i))
@@ -285,10 +284,9 @@ class Live(harness.TestCase):
 
     def test_signals_end_a_node_without_work(self):
         with harness.node(harness.SCENE) as process:
-            harness.Listener("/diagnostics", DiagnosticArray).wait(len, "a node that runs")
+            harness.diagnostics().wait(len, "a node that runs")
             self.assertEqual(faults.counts_at_the_end(process, signal.SIGTERM)["received"], 0)
 
 
 if __name__ == "__main__":
-    rospy.init_node("live")
-    rostest.rosrun("tissue_contact", "live", Live, sys.argv)
+    harness.main(Live)

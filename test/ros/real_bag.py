@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """A dVRK PSM over a slab: a wrench for every joint state, all finite, the same bits offline and through the node at any rate.
 
-Without an argument a sweep of our own, psm_sweep.csv; with `recording` 34 s of a real robot, also in real time, skipped where they are
+As test psm_sweep a sweep of our own, psm_sweep.csv; as real_bag 34 s of a real robot, also in real time, skipped where they are
 absent (TISSUE_CONTACT_SHARED_DATA, default ../shared/data beside the package).
 """
 import math
@@ -10,9 +10,6 @@ import struct
 import subprocess
 import sys
 import unittest
-
-import rospy
-import rostest
 
 import harness
 
@@ -27,8 +24,7 @@ class OverASlab(harness.TestCase):
         digests = set()
         for run in ["first", "second"]:
             csv = self.path(run + ".csv")
-            code, errors = harness.replay(SCENE, bag, csv)
-            self.assertEqual(code, 0, errors)
+            self.replayed(SCENE, bag, csv)
             rows = harness.read_csv(csv)
             self.assertEqual(len(rows), count)
             forces = [struct.unpack("<6d", bits) for _, _, bits in rows]
@@ -36,7 +32,7 @@ class OverASlab(harness.TestCase):
             self.assertGreater(sum(any(force) for force in forces), 100)  # it does touch
             digests.add(harness.digest((stamp, bits) for stamp, _, bits in rows))
         for rate in rates:
-            wrenches = harness.play_through_node(SCENE, bag, TOPIC, "/tissue_contact/psm/wrench", count, rate,
+            wrenches = harness.play_through_node(SCENE, bag, TOPIC, "psm", count, rate,
                                                  deadline_s=max(harness.DEADLINE_S, 0.1 * count))
             self.assertEqual(len(wrenches), count)
             digests.add(harness.digest(wrenches))
@@ -59,5 +55,4 @@ class Recording(OverASlab):
 
 
 if __name__ == "__main__":
-    rospy.init_node("real_bag")
-    rostest.rosrun("tissue_contact", "real_bag", Recording if "recording" in sys.argv else Sweep, sys.argv)
+    harness.main(Recording if "real_bag" in sys.argv else Sweep)

@@ -1,11 +1,7 @@
 #!/usr/bin/python3
 """A looped bag: the scene resets, says so once per loop, and gives the same bits again; meshes come from the start on."""
-import sys
 import unittest
 
-import rospy
-import rostest
-from geometry_msgs.msg import WrenchStamped
 from rosgraph_msgs.msg import Log
 
 import harness
@@ -14,7 +10,7 @@ from tissue_contact.msg import Status, TissueMesh
 
 class TimeBackwards(unittest.TestCase):
     def test_scene_resets_once_per_loop(self):
-        wrenches = harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)
+        wrenches = harness.wrenches()
         meshes = harness.Listener("/tissue_contact/block/mesh", TissueMesh)
         statuses = harness.Listener("/tissue_contact/status", Status)
         log = harness.Listener("/rosout", Log)
@@ -44,5 +40,4 @@ class TimeBackwards(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rospy.init_node("time_backwards")
-    rostest.rosrun("tissue_contact", "time_backwards", TimeBackwards, sys.argv)
+    harness.main(TimeBackwards)

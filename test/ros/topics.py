@@ -1,11 +1,8 @@
 #!/usr/bin/python3
-"""Topology (latched, once), mesh, contacts, status, markers and tf: what they hold and how often they come."""
-import sys
+"""Wrenches, topology (latched, once), mesh, contacts, status, markers and tf: what they hold and how often they come."""
 import unittest
 
 import rospy
-import rostest
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from roscpp.srv import GetLoggers, SetLoggerLevel
 from tf2_msgs.msg import TFMessage
@@ -29,7 +26,7 @@ class Topics(unittest.TestCase):
             ("probe/wrench", WrenchStamped), ("block/mesh", TissueMesh), ("contacts", ContactArray), ("status", Status),
             ("markers", MarkerArray)]}
         tf = harness.Listener("/tf", TFMessage)
-        diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
+        diagnostics = harness.diagnostics()
         harness.JointSource().send_all(cls.samples)
         cls.wrenches = listeners["probe/wrench"].wait_for_stamp(cls.last)
         for name, rate in RATES_HZ.items():
@@ -51,6 +48,18 @@ class Topics(unittest.TestCase):
             self.assertEqual(stamps, sorted(stamps), name)
         # One more than by rate: the scene as it was is shown to whoever subscribes.
         self.assertEqual(len(self.listeners["markers"].messages), 21)
+
+    def test_a_wrench_for_every_joint_state(self):
+        self.assertEqual([w.header.stamp for w in self.wrenches], [stamp for stamp, _ in self.samples])
+        self.assertEqual({w.header.frame_id for w in self.wrenches}, {"tip"})
+        self.assertTrue(all(map(harness.is_finite, self.wrenches)))
+        first, deepest, last = [self.wrenches[i].wrench.force for i in [0, 100, -1]]
+        self.assertEqual(first.z, 0.0)
+        # The tissue pushes the probe up; 5 mm into 5 kPa is a few tenths of a newton.
+        self.assertGreater(deepest.z, 0.05)
+        self.assertLess(deepest.z, 2.0)
+        self.assertLess(deepest.x, 0.0)  # dragged in +x, so friction pulls the probe back
+        self.assertAlmostEqual(last.z, 0.0, delta=1e-9)
 
     def test_topology_is_latched_and_published_once(self):
         late = harness.Listener(NODE + "block/topology", TissueTopology)
@@ -152,7 +161,7 @@ class Topics(unittest.TestCase):
 
     def test_diagnostics(self):
         status = self.diagnostics.status[0]
-        values = {v.key: v.value for v in status.values}
+        values = faults.figures(self.diagnostics)
         if "late" not in status.message:  # two seconds of motion are sent at once: a slow machine lags
             self.assertEqual(status.level, 0, status)
         self.assertEqual(values[ACCEPTED], "200")
@@ -160,5 +169,4 @@ class Topics(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rospy.init_node("topics")
-    rostest.rosrun("tissue_contact", "topics", Topics, sys.argv)
+    harness.main(Topics)

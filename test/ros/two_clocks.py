@@ -3,19 +3,15 @@
 single stamp an hour off changes next to nothing; recordings and floods of such stamps end as promptly as any."""
 import math
 import signal
-import sys
 import time
 import unittest
 
 import rospy
-import rostest
-from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import WrenchStamped
 from rosgraph_msgs.msg import Log
 
+import faults
 import harness
 
-ERROR = 2
 HOUR = rospy.Duration(3600)
 
 
@@ -24,8 +20,8 @@ class TwoClocks(unittest.TestCase):
         """Alternately by the present and `offset` from it; returns the stamps sent by the present, and what was seen."""
         with harness.node(harness.SCENE) as process:
             log = harness.Listener("/rosout", Log)
-            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
-            wrenches = harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)
+            diagnostics = harness.diagnostics()
+            wrenches = harness.wrenches()
             source = harness.JointSource()
             sent = [[], []]
             start = time.monotonic()
@@ -37,14 +33,14 @@ class TwoClocks(unittest.TestCase):
                 source.send(stamp, (0.0, 0.0, -0.003 + 0.002 * math.cos(6.28 * i / rate_hz)))
 
             def all_played(messages):
-                values = {v.key: v.value for v in messages[-1].status[0].values} if messages else {}
+                values = faults.figures(messages[-1]) if messages else {}
                 return values.get("joint states: received") == str(count) and int(values["joint states: waiting"]) <= 2
             told = diagnostics.wait(all_played, "%d joint states" % count)
             start = time.monotonic()
             process.send_signal(signal.SIGINT)
             self.assertEqual(process.wait(harness.DEADLINE_S), 0)
             self.assertLess(time.monotonic() - start, 1.0)
-        values = {v.key: v.value for v in told[-1].status[0].values}
+        values = faults.figures(told[-1])
         merged = int(values["joint states: merged"])  # a busy machine has no wrench for each of them, but counts them
         followed = [w for w in wrenches.messages if w.header.stamp in set(sent[0])]
         print("offset %d s: %d wrenches and %d merged of %d; %s" % (offset.to_sec(), len(followed), merged, len(sent[0]), values))
@@ -53,7 +49,7 @@ class TwoClocks(unittest.TestCase):
         self.assertGreaterEqual(int(values["joint states: two clocks"]), 0.95 * len(sent[1]))
         self.assertEqual(values["resets"], "0")
         self.assertLessEqual(int(values["gaps"]), 1)
-        self.assertEqual(max(d.status[0].level for d in told), ERROR)
+        self.assertEqual(max(d.status[0].level for d in told), faults.ERROR)
         self.assertTrue(any("two clocks" in d.status[0].message for d in told))
         warnings = [m.msg for m in log.messages if m.name == "/tissue_contact" and m.level >= Log.WARN]
         self.assertLess(len(warnings), 8, warnings)
@@ -70,8 +66,8 @@ class TwoClocks(unittest.TestCase):
 
     def test_a_single_stamp_ahead(self):
         with harness.node(harness.SCENE):
-            diagnostics = harness.Listener("/diagnostics", DiagnosticArray)
-            wrenches = harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)
+            diagnostics = harness.diagnostics()
+            wrenches = harness.wrenches()
             source = harness.JointSource()
             samples = harness.press(100)
             for i, (stamp, positions) in enumerate(samples):
@@ -82,11 +78,10 @@ class TwoClocks(unittest.TestCase):
                 self.assertGreater(now.wrench.force.z, 0.5 * then.wrench.force.z)  # still pressed, not started again
 
             def told(messages):
-                values = {v.key: v.value for v in messages[-1].status[0].values} if messages else {}
+                values = faults.figures(messages[-1]) if messages else {}
                 return (values.get("joint states: accepted"), values.get("resets"), values.get("gaps")) == ("100", "0", "1")
             diagnostics.wait(told, "one gap and no reset")
 
 
 if __name__ == "__main__":
-    rospy.init_node("two_clocks")
-    rostest.rosrun("tissue_contact", "two_clocks", TwoClocks, sys.argv)
+    harness.main(TwoClocks)

@@ -1,13 +1,7 @@
 #!/usr/bin/python3
 """Two topics, of two instruments or of an arm and its jaw: moments in the order of their stamps, whichever way they arrive;
 the bits of the replay."""
-import sys
-
-import rosbag
 import rospy
-import rostest
-from geometry_msgs.msg import WrenchStamped
-from sensor_msgs.msg import JointState
 
 import harness
 
@@ -33,17 +27,14 @@ class TwoTopics(harness.TestCase):
     def write_bag(self, name, messages):
         """messages: (topic, stamp, names, positions), recorded in this order."""
         bag = self.path(name)
-        with rosbag.Bag(bag, "w") as out:
-            for i, (topic, stamp, names, positions) in enumerate(messages):
-                message = JointState(name=list(names), position=list(positions))
-                message.header.stamp = stamp
-                out.write(topic, message, self.samples[0][0] + rospy.Duration(0, 1000) * i)
+        harness.write_messages(bag, [
+            (topic, harness.joint_state(stamp, positions, names), self.samples[0][0] + rospy.Duration(0, 1000) * i)
+            for i, (topic, stamp, names, positions) in enumerate(messages)])
         return bag
 
     def rows(self, scene, bag):
         table = bag + ".csv"
-        code, errors = harness.replay(scene, bag, table)
-        self.assertEqual(code, 0, errors)
+        self.replayed(scene, bag, table)
         return harness.read_table(table)
 
     def test_equal_stamps_are_one_moment(self):
@@ -67,11 +58,7 @@ class TwoTopics(harness.TestCase):
 
     def test_a_jaw_beside_its_arm_gives_no_wrench_of_its_own(self):
         arm, jaw = "/probe/measured_js", "/probe/jaw/measured_js"
-        with open(harness.SCENE, encoding="utf-8") as stream:
-            text = stream.read().replace("[%s]" % harness.TOPIC, "[%s, %s]" % (arm, jaw))
-        scene = self.path("jaw.yaml")
-        with open(scene, "w", encoding="utf-8") as stream:
-            stream.write(text)
+        scene = self.changed_scene({"[%s]" % harness.TOPIC: "[%s, %s]" % (arm, jaw)}, name="jaw.yaml")
         messages = []
         for i, (stamp, (x, y, z)) in enumerate(self.samples):  # the "jaw" has the probe's z
             messages.append((arm, stamp, "xy", (x, y)))
@@ -85,7 +72,7 @@ class TwoTopics(harness.TestCase):
         self.assertGreater(len({bits for _, _, bits in expected}), 50)  # not all zero
 
         with harness.node(scene):
-            wrenches = harness.Listener("/tissue_contact/probe/wrench", WrenchStamped)
+            wrenches = harness.wrenches()
             sources = {topic: harness.JointSource(topic) for topic in [arm, jaw]}
             for begin in range(0, len(messages), 25):  # 0.1 s of one topic, then of the other; max_gap_s is 0.2 s
                 for topic in [arm, jaw] if begin % 50 else [jaw, arm]:
@@ -100,21 +87,15 @@ class TwoTopics(harness.TestCase):
 
     def test_arrival_order_does_not_matter(self):
         bag = self.path("two.bag")
-        with rosbag.Bag(bag, "w") as out:
-            for stamp, positions in self.samples:
-                for topic, at in [(harness.TOPIC, stamp), ("/other/joint_states", stamp + self.shift)]:
-                    message = JointState(name=["x", "y", "z"], position=list(positions))
-                    message.header.stamp = at
-                    out.write(topic, message, at)
+        harness.write_messages(bag, [(topic, harness.joint_state(at, positions), at) for stamp, positions in self.samples
+                                     for topic, at in [(harness.TOPIC, stamp), ("/other/joint_states", stamp + self.shift)]])
         csv = self.path("out.csv")
-        code, errors = harness.replay(self.scene, bag, csv)
-        self.assertEqual(code, 0, errors)
+        self.replayed(self.scene, bag, csv)
         rows = harness.read_csv(csv)
         self.assertEqual(len(rows), 200)
 
         with harness.node(self.scene):
-            listeners = {name: harness.Listener("/tissue_contact/%s/wrench" % name, WrenchStamped)
-                         for name in ["probe", "other"]}
+            listeners = {name: harness.wrenches(name) for name in ["probe", "other"]}
             first = harness.JointSource(harness.TOPIC)
             second = harness.JointSource("/other/joint_states")
             for begin in range(0, 100, 10):  # alternately one topic and the other 0.1 s ahead; max_gap_s is 0.2 s
@@ -135,17 +116,11 @@ class TwoTopics(harness.TestCase):
                              expected, name)
 
     def test_tf_of_two_links_with_one_name_is_refused(self):
-        with open(self.scene, encoding="utf-8") as stream:
-            text = stream.read()
-        with open(self.scene, "w", encoding="utf-8") as stream:
-            stream.write(text.replace("tf: false", "tf: true"))
-        with harness.node(self.scene) as node:
+        with harness.node(self.changed_scene({"tf: false": "tf: true"}, source=self.scene, name="tf.yaml")) as node:
             harness.wait_until(lambda: node.poll() is not None, "the end of the node")
             self.assertEqual(node.returncode, 1)
-            node.output.seek(0)
-            self.assertIn("publish.tf", node.output.read())
+            self.assertIn("publish.tf", harness.output_of(node))
 
 
 if __name__ == "__main__":
-    rospy.init_node("two_topics")
-    rostest.rosrun("tissue_contact", "two_topics", TwoTopics, sys.argv)
+    harness.main(TwoTopics)

@@ -13,9 +13,9 @@
 
 namespace tissue_contact {
 
-/// Builds a simulator from scene text; `robot_description: <name>` in it means entry <name> of `urdfs`.
-inline Simulator makeSimulator(const std::string& yaml, const std::map<std::string, std::string>& urdfs = {},
-                               const std::function<double()>& clock = nullptr) {
+/// Knows this package; `robot_description: <name>` in a scene means entry <name> of `urdfs`.
+inline SceneEnvironment ownEnvironment(const std::map<std::string, std::string>& urdfs = {},
+                                       const std::function<double()>& clock = nullptr) {
   SceneEnvironment environment;
   environment.package_path = [](const std::string& package) {
     return package == "tissue_contact" ? packageDirectory() : std::string();
@@ -26,15 +26,32 @@ inline Simulator makeSimulator(const std::string& yaml, const std::map<std::stri
     return urdf->second;
   };
   environment.clock = clock;
+  return environment;
+}
+
+/// Builds a simulator from scene text. @param urdfs, clock see ownEnvironment().
+inline Simulator makeSimulator(const std::string& yaml, const std::map<std::string, std::string>& urdfs = {},
+                               const std::function<double()>& clock = nullptr) {
+  const SceneEnvironment environment = ownEnvironment(urdfs, clock);
   return Simulator(parseScene(yaml, "text scene", environment.package_path), environment);
 }
 
-/// The section `tissues` of a small scene: a block whose base, at z = 0, is held. @param size_m, cells lists.
-inline std::string blockScene(const std::string& size_m = "[0.06, 0.06, 0.02]",
-                              const std::string& cells = "[4, 4, 2]") {
+/// The section `tissues` of a small scene: a block of 5 kPa whose base, at z = 0, is held. @param size_m, cells lists.
+/// @param material more of it
+inline std::string blockScene(const std::string& size_m = "[0.06, 0.06, 0.02]", const std::string& cells = "[4, 4, 2]",
+                              const std::string& material = "poissons_ratio: 0.4") {
   return "tissues:\n  - name: block\n    block: {size_m: " + size_m + ", cells: " + cells +
-         "}\n    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}\n"
-         "    damping: {stiffness_s: 0.003}\n    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n";
+         "}\n    material: {youngs_modulus_pa: 5000, density_kg_per_m3: 1000, " + material +
+         "}\n    damping: {stiffness_s: 0.003}\n    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n";
+}
+
+/// A scene's only instrument: a ball on probeUrdf() by the name `probe`, with its centre at `position_m` (a list) while all
+/// joints are 0.
+inline std::string onlyBall(const std::string& position_m) {
+  return "instruments:\n  - {name: probe, robot_description: probe, tip_link: tip, contact_links: [tip], "
+         "joint_state_topics: [/js],\n"
+         "     base_pose: {position_m: " +
+         position_m + "}}\n";
 }
 
 /// An entry of `instruments`: urdf/probe.urdf, whose ball of 5 mm has its centre at `position_m` (a list) while all joints

@@ -7,12 +7,6 @@ namespace {
 
 constexpr double kModulus = 5000.0;
 
-std::string boxUrdf(const std::string& size) {
-  std::string urdf = probeUrdf(1.0);
-  const std::size_t from = urdf.find("<sphere");
-  return urdf.replace(from, urdf.find("/>", from) + 2 - from, "<box size='" + size + "'/>");
-}
-
 /// A free plate of 31 x 31 cells, 60 x 60 x 4 mm, on a table and under one: up to 2048 nodes touch. nu = 0, so that it
 /// does not spread and the stress is E delta / h everywhere, whatever the friction.
 Simulator makePlate() {
@@ -25,7 +19,7 @@ Simulator makePlate() {
        << " joint_state_topics: [/js], base_pose: {position_m: [0, 0, 0.0141]}}\n"
        << "friction:\n  - {instrument: table, tissue: plate, static: 0.5}\n"
        << "  - {instrument: press, tissue: plate, static: 0.5}\n";
-  return makeSimulator(yaml.str(), {{"table", tableUrdf()}, {"press", boxUrdf("0.08 0.08 0.02")}});
+  return makeSimulator(yaml.str(), {{"table", tableUrdf()}, {"press", tipUrdf("<box size='0.08 0.08 0.02'/>")}});
 }
 
 void pressPlate(Report& report) {
@@ -66,12 +60,9 @@ void pinch(const std::string& name, const std::string& solver, double closing, R
        << "    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n"
        << "    damping: {stiffness_s: 0.003}\n    fixed: [{plane: {point_m: [-0.0199, 0, 0], normal: [1, 0, 0]}}]\n"
        << "instruments:\n";
-  for (const char* const name_and_z : {"lower: -0.005", "upper: 0.011"}) {
-    const std::string text = name_and_z;
-    const std::size_t colon = text.find(':');
-    yaml << "  - {name: " << text.substr(0, colon) << ", robot_description: probe, tip_link: tip, contact_links: [tip],"
-         << " joint_state_topics: [/" << text.substr(0, colon) << "], base_pose: {position_m: [0.01, 0, "
-         << text.substr(colon + 1) << "]}}\n";
+  for (const auto& [side, z] : {std::pair("lower", "-0.005"), std::pair("upper", "0.011")}) {
+    yaml << "  - {name: " << side << ", robot_description: probe, tip_link: tip, contact_links: [tip],"
+         << " joint_state_topics: [/" << side << "], base_pose: {position_m: [0.01, 0, " << z << "]}}\n";
   }
   yaml << "friction:\n  - {instrument: lower, tissue: flap, static: 0.6, kinetic: 0.4}\n"
        << "  - {instrument: upper, tissue: flap, static: 0.6, kinetic: 0.4}\nsolver: " << solver << "\n";

@@ -36,12 +36,6 @@ std::string coneStl() {
   return stl.str();
 }
 
-std::string tipUrdf(const std::string& geometry) {
-  std::string urdf = probeUrdf(1.0);
-  const std::size_t from = urdf.find("<sphere");
-  return urdf.replace(from, urdf.find("/>", from) + 2 - from, geometry);
-}
-
 /// Block whose grid lines pair up at a thousandth of the cell size in the middle of each axis: cells between two pairs
 /// are flat (1000 x 1000 x 1), long (1000 x 1 x 1) and regular; in legacy VTK text. `spoil` may change the mesh first.
 std::string sliverVtk(const std::function<void(TetMesh&)>& spoil = {}) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "support/replaced.h"
 #include "support/text_scene.h"
 #include "validation/hard/hard_run.h"
 
@@ -29,6 +30,11 @@ struct PadScene {
   std::string urdf;      ///< instead of a sphere's
   double start_m = 0.0;  ///< of joint z: where the probe is before the first step
 };
+
+/// The probe with another shape in place of its ball.
+inline std::string tipUrdf(const std::string& geometry) {
+  return replaced(probeUrdf(1.0), "<sphere radius='" + std::to_string(1.0) + "'/>", geometry);
+}
 
 inline Simulator makePad(const PadScene& scene) {
   std::ostringstream yaml;

@@ -37,9 +37,10 @@ struct ImplausibleLoad {
 /// tissue for which it is largest. Zeros where no linear or corotational tissue is touched.
 struct LawError {
   int tissue = -1;
-  int instrument = -1;    ///< -1: another tissue
-  double strain = 0.0;    ///< equivalent strain under the tool, see equivalentStrain()
-  double relative = 0.0;  ///< likely error of the contact force against the neo-Hookean law; negative: too small
+  int instrument = -1;  ///< -1: another tissue
+  double strain = 0.0;  ///< equivalent strain under the tool, see equivalentStrain()
+  /// Likely error of the contact force against neo-Hookean tissue with `dilatation: patch`; negative: too small.
+  double relative = 0.0;
 };
 
 /// How the last step went.

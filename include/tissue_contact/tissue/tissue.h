@@ -46,6 +46,8 @@ class Tissue {
   /// Per surface triangle: index into TissueDescription::regions (by the triangle's own centroid), -1 where none.
   /// Empty: the tissue has no regions.
   const std::vector<int>& surfaceRegions() const { return surface_regions_; }
+  /// Likewise per element, by its centroid.
+  const std::vector<int>& elementRegions() const { return element_regions_; }
 
   /// Per surface triangle: the fibre direction at rest, projected into it, as coefficients over its edges (x1 - x0,
   /// x2 - x0); applied to the deformed edges they give the carried direction, of length 1 at rest. Zero where fibres
@@ -77,7 +79,7 @@ class Tissue {
   VectorX masses_;
   DampingDescription damping_;
   double thickness_ = 0.0;
-  std::vector<int> surface_regions_;
+  std::vector<int> surface_regions_, element_regions_;
   std::vector<Vector2> surface_fibres_;
   std::unique_ptr<const Elasticity> elasticity_;
   double attachment_stiffness_ = 0.0;

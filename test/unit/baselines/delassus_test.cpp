@@ -116,24 +116,6 @@ TEST(DelassusResiduals, TwoCoefficientsAllowBothBranchesAndNothingBetween) {
   EXPECT_GT(map(oneContact(Vector3(-1.0, 2.0, 0.0), 0.5, 0.3), {2.0, -1.0, 0.0}), 0.05);
 }
 
-TEST(SolveDelassus, ClosedForms) {
-  for (const SolverMethod method : {SolverMethod::kPredictorCorrector, SolverMethod::kReference}) {
-    DelassusSolution held;
-    EXPECT_TRUE(solveDelassus(oneContact({-1.0, 0.2, 0.1}, 0.5, 0.5), solver(method), held).converged);
-    EXPECT_LE((held.r - Vector3(2.0, -0.4, -0.2)).norm(), 1e-14);
-    EXPECT_EQ(held.states[0], ContactState::kStatic);
-    DelassusSolution sliding;
-    EXPECT_TRUE(solveDelassus(oneContact({-1.0, 1.2, 1.6}, 0.5, 0.5), solver(method), sliding).converged);
-    EXPECT_LE((sliding.r - Vector3(2.0, -0.6, -0.8)).norm(), 1e-14);
-    EXPECT_LE((sliding.u - Vector3(0.0, 0.9, 1.2)).norm(), 1e-14);
-    EXPECT_EQ(sliding.states[0], ContactState::kKinetic);
-    DelassusSolution open;
-    EXPECT_TRUE(solveDelassus(oneContact({1.0, 0.2, 0.1}, 0.5, 0.5), solver(method), open).converged);
-    EXPECT_EQ(open.r, Vector3::Zero());
-    EXPECT_EQ(open.states[0], ContactState::kOpen);
-  }
-}
-
 TEST(SolveDelassus, FrictionlessProblemsAreTheSameForAll) {
   const DelassusProblem problem = randomContactProblem(12, 0.0, 4);
   DelassusSolution reference;

@@ -8,6 +8,7 @@
 
 #include "benchmark/measures.h"
 #include "benchmark/scenes.h"
+#include "support/refusal.h"
 #include "support/temporary_directory.h"
 
 namespace tissue_contact {
@@ -19,14 +20,8 @@ class TruthTableTest : public testing::Test {
  protected:
   std::string write(const std::string& text) const { return directory_.write("truth.csv", text); }
 
-  /// What readTruthTable() says against this text.
-  std::string complaint(const std::string& text) const {
-    try {
-      readTruthTable(write(text));
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+  void expectRefused(const std::string& text, const std::string& words) const {
+    expectRefusal([&] { readTruthTable(write(text)); }, {words});
   }
 
   const std::string head_ = "# how: by hand\n# uncertainty: 0.004\n";
@@ -53,14 +48,16 @@ TEST_F(TruthTableTest, GivesForcesAtTheTimesOfARun) {
 }
 
 TEST_F(TruthTableTest, NamesTheLineItRefuses) {
-  EXPECT_NE(complaint(head_ + "time_s,force_z_n\n0,1\n").find("truth.csv:3: the columns must be"), std::string::npos);
-  EXPECT_NE(complaint(head_ + columns_ + "0,1,2,3\n0,1,2,3\n").find(":5: times must ascend"), std::string::npos);
+  expectRefused(head_ + "time_s,force_z_n\n0,1\n", "truth.csv:3: the columns must be");
+  expectRefused(head_ + columns_ + "0,1,2,3\n0,1,2,3\n", ":5: times must ascend");
   for (const char* row : {"0,1,2\n", "0,1,2,3,4\n", "0,1,2,x\n", "0,1,2,nan\n", "\n"}) {
-    EXPECT_NE(complaint(head_ + columns_ + row).find(":4: four finite numbers"), std::string::npos) << row;
+    expectRefused(head_ + columns_ + row, ":4: four finite numbers");
   }
-  EXPECT_NE(complaint("# how: by hand\n" + columns_ + "0,1,2,3\n").find("uncertainty"), std::string::npos);
-  EXPECT_NE(complaint("# uncertainty: 0.1\n" + columns_ + "0,1,2,3\n").find("how"), std::string::npos);
-  EXPECT_NE(complaint(head_ + columns_).find("rows are needed"), std::string::npos);
+  for (const char* head : {"# how: by hand\n", "# uncertainty: 0.1\n", "# how: by hand\n# uncertainty: 0\n",
+                           "# how: by hand\n# uncertainty: nan\n", "# how: by hand\n# uncertainty: inf\n"}) {
+    expectRefused(head + columns_ + "0,1,2,3\n", "'# uncertainty: <share of the force, > 0>', '# how: <words>'");
+  }
+  expectRefused(head_ + columns_, "rows are needed");
 }
 
 double errorOf(const ScenePlan& plan, const Settings& settings) {

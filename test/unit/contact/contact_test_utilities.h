@@ -130,6 +130,14 @@ inline TriangleMesh sphereMesh(double radius, int levels) {
   return mesh;
 }
 
+inline void append(TriangleMesh& mesh, const TriangleMesh& other, const Vector3& offset) {
+  const int first = static_cast<int>(mesh.vertices.cols());
+  NodalVectors vertices(3, first + other.vertices.cols());
+  vertices << mesh.vertices, other.vertices.colwise() + offset;
+  mesh.vertices = vertices;
+  for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
 inline std::unique_ptr<ShapeDistance> makeMeshDistance(const TriangleMesh& mesh) {
   MeshPreparation silent;
   return std::make_unique<FieldDistance>(prepareMeshField(mesh, "given", silent));

@@ -20,22 +20,9 @@ std::shared_ptr<const MeshField> fieldOf(const TriangleMesh& mesh) {
   return prepareMeshField(mesh, "test", silent);
 }
 
-/// Distance to the nearest triangle by looking at all, without a sign.
+/// Without a sign.
 double bruteForceDistance(const TriangleMesh& mesh, const Vector3& p) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Triangle& t : mesh.triangles) {
-    const TrianglePoints points(mesh.vertices.col(t[0]), mesh.vertices.col(t[1]), mesh.vertices.col(t[2]));
-    least = std::min(least, (points.pointAt(projectOnTriangle(points.corners, p)) - p).norm());
-  }
-  return least;
-}
-
-void append(TriangleMesh& mesh, const TriangleMesh& other, const Vector3& offset) {
-  const int first = static_cast<int>(mesh.vertices.cols());
-  NodalVectors vertices(3, first + other.vertices.cols());
-  vertices << mesh.vertices, other.vertices.colwise() + offset;
-  mesh.vertices = vertices;
-  for (const Triangle& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  return std::abs(bruteForceDistance(Surface{mesh.vertices, mesh.triangles}, p).distance);
 }
 
 TEST(MeshField, SphereIsTheSphere) {

@@ -293,13 +293,7 @@ TEST_P(AnyShape, FixedFeaturesAreLeftOut) {
 /// An L-shaped jaw: the search for its closest point may miss the best point but must give a real one.
 TEST(NarrowPhase, NotConvexMeshTouchesWhereItShould) {
   TriangleMesh jaw = boxMesh({0.01, 0.002, 0.002}, 1);
-  TriangleMesh tooth = boxMesh({0.002, 0.002, 0.002}, 1);
-  tooth.vertices.colwise() += Vector3(0.008, 0.0, -0.004);
-  const int first = static_cast<int>(jaw.vertices.cols());
-  NodalVectors vertices(3, first + tooth.vertices.cols());
-  vertices << jaw.vertices, tooth.vertices;
-  jaw.vertices = vertices;
-  for (const Triangle& t : tooth.triangles) jaw.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  append(jaw, boxMesh({0.002, 0.002, 0.002}, 1), {0.008, 0.0, -0.004});
   const auto shape = makeMeshDistance(jaw);
   const Surface block = boxSurface(kBlock, {10, 10, 3});
   const auto contacts = findContacts(*shape, at({0.0503, 0.0497, 0.036 - 1e-4}), block, 2e-4);

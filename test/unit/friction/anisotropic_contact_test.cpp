@@ -185,27 +185,6 @@ TEST(OrthotropicIncline, SlidesOffTheLoadAtThePredictedAngle) {
   }
 }
 
-// Farther above its limit a block released from rest accelerates along the one theta where T + N f(theta) points along
-// theta, and never turns. Chosen backwards: theta and the acceleration given, T follows.
-TEST(OrthotropicIncline, KeepsThatDirectionWhileItAccelerates) {
-  const double weight = 9.81;
-  const double dt = 1e-3;
-  const double acceleration = 0.7;
-  const LawPointer law = makeLaw(Kind::kOrthotropic, {0.6, 0.3}, {0.6, 0.3});
-  const CoulombLaw contact = contactLaw(law, 0.4);
-  const Vector2 d(std::cos(1.1), std::sin(1.1));
-  const Vector2 load = acceleration * d - weight * kineticFriction(contact, d);
-  EXPECT_GT(std::abs(angleOf(load) - 1.1), 0.1);  // the load points elsewhere
-  Vector3 u = Vector3::Zero();
-  for (int step = 0; step < 200; ++step) {
-    const Vector3 q = u + dt * Vector3(-weight, load.x(), load.y());
-    const ContactAnswer answer = solveAnisotropicContact(Matrix3::Identity(), q, contact, step > 0);
-    ASSERT_EQ(answer.state, ContactState::kKinetic);
-    u = q + answer.impulse;
-  }
-  EXPECT_LE((u.tail<2>() - 200 * dt * acceleration * d).norm(), 200 * kRoundOff);
-}
-
 TEST(SolveAnisotropicContact, EqualCoefficientsAreIsotropic) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

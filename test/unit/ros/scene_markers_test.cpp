@@ -146,9 +146,7 @@ TEST(Conversions, StatusTellsOfJumps) {
 TEST(Conversions, StatusTellsOfSleep) {
   Scene scene = makeScene().scene();
   scene.gravity_m_per_s2 = Vector3(0, 0, -1.0);  // something to be held against
-  SceneEnvironment environment;
-  environment.package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
-  Simulator simulator(scene, environment);
+  Simulator simulator(scene, ownEnvironment());
   const JointStatePlayer player(simulator);
   Status status;
   simulator.advance(0.01, {Vector3(0, 0, 0.01)});
@@ -165,9 +163,7 @@ TEST(Conversions, StatusOfADiscardedStepIsFiniteAndSaysSo) {
   Scene scene = makeScene().scene();
   scene.gravity_m_per_s2 = Vector3(0, 0, -1e308);  // beyond what the loader allows: overflows within a step of 10 s
   scene.step.max_step_s = 10.0;
-  SceneEnvironment environment;
-  environment.package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
-  Simulator simulator(scene, environment);
+  Simulator simulator(scene, ownEnvironment());
   const JointStatePlayer player(simulator);
   simulator.advance(10.0, {Vector3::Zero()});
   Status status;

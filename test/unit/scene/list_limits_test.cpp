@@ -29,14 +29,7 @@ std::string scene(const std::string& of_tissue, const std::string& of_instrument
 const std::string kLinks = "    contact_links: [tip]\n";
 const std::string kSphere = "{sphere: {center_m: [0, 0, 0], radius_m: 1}}";
 
-class ListLimitsTest : public SceneTest {
- protected:
-  void expectRefusedAt(const std::string& yaml, const std::string& where, const std::string& problem) const {
-    const std::string message = refusal(yaml);
-    EXPECT_EQ(message.find("scene.yaml:" + where + ": "), 0U) << message;
-    EXPECT_NE(message.find(problem), std::string::npos) << message;
-  }
-};
+using ListLimitsTest = SceneTest;
 
 TEST_F(ListLimitsTest, OfTopics) {
   const auto topics = [](int count) { return "    joint_state_topics: " + listOf("/t#", count) + "\n" + kLinks; };

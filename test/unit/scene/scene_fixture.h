@@ -48,11 +48,15 @@ class SceneTest : public testing::Test {
     return message;
   }
 
-  void expectRefused(const std::string& good, const BadScene& bad) const {
-    const std::string message = refusal(replaced(good, bad.from, bad.to));
-    EXPECT_EQ(message.find(std::string("scene.yaml:") + bad.where + ": "), 0U) << message;
-    EXPECT_NE(message.find(bad.problem), std::string::npos) << message;
+  void expectRefusedAt(const std::string& yaml, const std::string& where, const std::string& problem) const {
+    const std::string message = refusal(yaml);
+    EXPECT_EQ(message.find("scene.yaml:" + where + ": "), 0U) << message;
+    EXPECT_NE(message.find(problem), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+
+  void expectRefused(const std::string& good, const BadScene& bad) const {
+    expectRefusedAt(replaced(good, bad.from, bad.to), bad.where, bad.problem);
   }
 
   template <std::size_t count>

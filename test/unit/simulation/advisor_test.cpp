@@ -17,12 +17,9 @@ std::string slabYaml(const std::string& advisor, const std::string& friction = "
          "    material: {youngs_modulus_pa: 3000, poissons_ratio: 0.2, density_kg_per_m3: 1000}\n"
          "    damping: {stiffness_s: 0.01}\n"
          "    fixed: [{box: {min_m: [-0.05, -1, -1], max_m: [-0.0001, 1, 1]}}]\n"
-         "tissue_pairs: [{tissue: slab, other: slab}]\n"
-         "instruments:\n  - name: probe\n    robot_description: probe\n    tip_link: tip\n"
-         "    joint_state_topics: [/joint_states]\n    base_pose: {position_m: [0.03, 0.001, -0.0051]}\n"
-         "    contact_links: [tip]\n"
-         "friction:\n  - {instrument: probe, tissue: slab, " +
-         friction + "}\nadvisor: {" + advisor + "}\n";
+         "tissue_pairs: [{tissue: slab, other: slab}]\n" +
+         onlyBall("[0.03, 0.001, -0.0051]") + "friction:\n  - {instrument: probe, tissue: slab, " + friction +
+         "}\nadvisor: {" + advisor + "}\n";
 }
 
 Simulator makeSlab(const std::string& advisor, const std::string& friction = "static: 0.5, kinetic: 0.4") {
@@ -104,9 +101,7 @@ TEST(Advisor, RefusesWhatDoesNotGoTogether) {
       std::invalid_argument);
   Scene scene = parseScene(slabYaml("sleep: auto"), "scene", nullptr);
   scene.advisor.sleep_error = std::numeric_limits<double>::quiet_NaN();
-  SceneEnvironment environment;
-  environment.urdf_text = [](const std::string&) { return probeUrdf(0.005); };
-  EXPECT_THROW(Simulator(scene, environment), std::invalid_argument);
+  EXPECT_THROW(Simulator(scene, ownEnvironment({{"probe", probeUrdf(0.005)}})), std::invalid_argument);
 }
 
 }  // namespace

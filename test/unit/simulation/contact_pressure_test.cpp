@@ -8,6 +8,7 @@
 
 #include "simulation/build_scene.h"
 #include "support/text_scene.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
 
 namespace tissue_contact {
 namespace {
@@ -52,12 +53,6 @@ struct Pressed {
     return solved;
   }
 
-  double areaOf(int tissue, const Triangle& t) const {
-    const NodalVectors& p = x[tissue];
-    const Vector3 first = p.col(t[1]) - p.col(t[0]);
-    return 0.5 * first.cross(p.col(t[2]) - p.col(t[0])).norm();
-  }
-
   /// A uniform pressure on the upper face by three contacts per triangle (exact for what is linear on it), with friction.
   std::vector<SolvedContact> uniform(int tissue, double pressure_pa, const Vector3& n) const {
     std::vector<SolvedContact> contacts;
@@ -66,7 +61,8 @@ struct Pressed {
         Vector3 weights = Vector3::Constant(1.0 / 6.0);
         weights[i] = 4.0 / 6.0;
         contacts.push_back(contactAt(tissue, t, weights, n));
-        contacts.back().force_on_tissue_n = pressure_pa * areaOf(tissue, t) / 3.0 * (n + Vector3(0.4, 0.0, 0.0));
+        contacts.back().force_on_tissue_n =
+            pressure_pa * triangleArea(x[tissue], t) / 3.0 * (n + Vector3(0.4, 0.0, 0.0));
       }
     }
     return contacts;

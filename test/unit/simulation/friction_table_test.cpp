@@ -54,19 +54,13 @@ struct Table {
   std::vector<std::vector<Pose>> X_WL;
 
   explicit Table(const std::string& friction)
-      : environment(makeEnvironment()),
+      : environment(ownEnvironment({{"probe", twoLinkUrdf()}})),
         scene(parseScene(kTissues + friction, "test scene", environment.package_path)),
         instruments(buildInstruments(scene, environment)),
         tissues(buildTissues(scene, environment)),
         table(scene, instruments, tissues) {
     for (const Tissue& tissue : tissues) x.push_back(tissue.restPositions());
     X_WL.emplace_back(instruments[0].model().links().size(), Pose::Identity());
-  }
-
-  static SceneEnvironment makeEnvironment() {
-    SceneEnvironment environment;
-    environment.urdf_text = [](const std::string&) { return twoLinkUrdf(); };
-    return environment;
   }
 
   /// A contact on the first upper face of `pad` whose middle has this sign of x, normal downwards.

@@ -55,29 +55,6 @@ TEST_F(TwoProbes, NothingIsInterpolatedOverMoreThanMaxGap) {
   EXPECT_EQ(heights, (std::vector<double>{0.001, 0.001, 0.001, 0.002}));  // 60 ms waits
 }
 
-TEST(JointStateMoments, EqualStampsAreOneMomentWhateverArrivesFirst) {
-  std::vector<Trace> traces;
-  for (const int first : {0, 1}) {
-    const auto simulator = twoProbes();
-    JointStatePlayer player(*simulator);
-    Order order;
-    const std::vector<JointStateSample> a = press(kSecond, 0.006);
-    const std::vector<JointStateSample> b = press(kSecond, 0.004);
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      order.emplace_back(first, first == 0 ? a[i] : b[i]);
-      order.emplace_back(1 - first, first == 0 ? b[i] : a[i]);
-    }
-    traces.push_back(runAll(*simulator, player, order));
-    EXPECT_EQ(traces.back().stamps.size(), 30U);
-    EXPECT_EQ(traces.back().forces.size(), 30U * 12U);  // two wrenches for each
-    EXPECT_EQ(simulator->stepCount(), 290);
-    EXPECT_EQ(simulator->jointPositions(0).z(), -0.006);
-    EXPECT_EQ(simulator->jointPositions(1).z(), -0.004);
-  }
-  EXPECT_TRUE(traces[0].pressed());
-  EXPECT_TRUE(traces[0] == traces[1]);
-}
-
 TEST(JointStateMoments, TheOrderOfTopicsInTheSceneDoesNotMatter) {
   std::vector<Trace> traces;
   for (const char* topics : {"/arm, /wrist", "/wrist, /arm"}) {
@@ -125,29 +102,6 @@ TEST(JointStateMoments, AJawBesideItsArmOnlyUpdates) {
   EXPECT_EQ(simulator->stepCount(), 10);
   EXPECT_NEAR(simulator->jointPositions(0).z(), 0.003 + 0.6 * 0.010, 1e-15);
   EXPECT_EQ(player.waiting(), 1);  // the jaw's newest, for the arm's next
-}
-
-TEST(JointStateMoments, ArrivalOrderOfAJawDoesNotMatter) {
-  Order in_order;
-  for (int i = 0; i < 30; ++i) {
-    const std::int64_t stamp = kSecond + i * 10 * kMillisecond;
-    in_order.emplace_back(0, arm(stamp, 1e-4 * i));
-    if (i % 3 == 0) in_order.emplace_back(1, jaw(stamp, -2e-4 * i));
-    in_order.emplace_back(1, jaw(stamp + 4 * kMillisecond, -2e-4 * i - 1e-4));
-  }
-  const auto reference_simulator = armAndJaw();
-  JointStatePlayer reference_player(*reference_simulator);
-  const Trace reference = runAll(*reference_simulator, reference_player, in_order);
-  EXPECT_EQ(reference.stamps.size(), 30U);
-  EXPECT_TRUE(reference.pressed());
-  for (const int late_topic : {0, 1}) {
-    for (const std::size_t lag : {1U, 2U, 3U}) {  // in samples: up to 44 ms, max_gap_s is 50
-      const auto simulator = armAndJaw();
-      JointStatePlayer player(*simulator);
-      EXPECT_TRUE(runAll(*simulator, player, delayed(in_order, late_topic, lag)) == reference)
-          << late_topic << ' ' << lag;
-    }
-  }
 }
 
 TEST(JointStateMoments, AJawThatTriggersGivesWrenchesOfItsOwn) {
@@ -235,7 +189,7 @@ TEST(JointStateMoments, AJawLoopsWithItsArm) {
   EXPECT_TRUE(std::equal(trace.forces.begin(), trace.forces.begin() + 180, trace.forces.begin() + 360));
 }
 
-/// Three topics of different rates, played twice as a looped bag, each sample up to 35 ms late: with the longest interval
+/// Three topics of different rates, played twice as a looped bag, each sample up to 39 ms late: with the longest interval
 /// between stamps, 10 ms, less than max_gap_s, 50 ms.
 TEST(JointStateMoments, NoOrderOfArrivalMattersWithinMaxGap) {
   struct Arrival {
@@ -250,9 +204,9 @@ TEST(JointStateMoments, NoOrderOfArrivalMattersWithinMaxGap) {
     const std::array<std::int64_t, 3> periods = {10 * kMillisecond, 4 * kMillisecond, 7 * kMillisecond};
     for (int topic = 0; topic < 3; ++topic) {
       std::int64_t before = 0;
-      for (std::int64_t t = topic * kMillisecond; t < 2 * length; t += periods[static_cast<std::size_t>(topic)]) {
+      for (std::int64_t t = (3 - topic) % 3 * kMillisecond; t < 2 * length; t += periods[static_cast<std::size_t>(topic)]) {
         const std::int64_t stamp = kSecond + t % length;
-        const std::int64_t delay = seed == 0 ? 0 : static_cast<std::int64_t>(random() % 35) * kMillisecond;
+        const std::int64_t delay = seed == 0 ? 0 : static_cast<std::int64_t>(random() % 40) * kMillisecond;
         before = std::max(before, t + delay);
         const double way = 1e-9 * static_cast<double>(t % length);
         const JointStateSample s = topic == 0   ? arm(stamp, 0.01 * way)

@@ -93,24 +93,6 @@ Order twoPresses() {
   return order;
 }
 
-TEST(JointStatePlayer, ArrivalOrderOfTopicsDoesNotMatter) {
-  const auto in_order = twoPresses();
-  const auto reference_simulator = twoProbes();
-  JointStatePlayer reference_player(*reference_simulator);
-  const Trace reference = run(*reference_simulator, reference_player, in_order);
-  EXPECT_EQ(reference.stamps.size(), 60U);
-  EXPECT_TRUE(std::is_sorted(reference.stamps.begin(), reference.stamps.end()));
-  EXPECT_TRUE(reference.pressed());
-  for (const int late_topic : {0, 1}) {
-    for (const std::size_t lag : {1U, 2U, 3U}) {  // in samples of 10 ms: up to 43 ms behind; max_gap_s is 50
-      const auto simulator = twoProbes();
-      JointStatePlayer player(*simulator);
-      EXPECT_TRUE(run(*simulator, player, delayed(in_order, late_topic, lag)) == reference)
-          << "topic " << late_topic << " late by " << lag;
-    }
-  }
-}
-
 TEST_F(TwoProbes, TwoTopicsLoopTogetherWithOneReset) {
   auto order = twoPresses();
   const auto again = order;

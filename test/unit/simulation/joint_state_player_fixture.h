@@ -104,22 +104,6 @@ inline Trace run(Simulator& simulator, JointStatePlayer& player, const Order& or
   return trace;
 }
 
-/// The same samples with one topic's `lag` places later among the other's.
-inline Order delayed(const Order& order, int late_topic, std::size_t lag) {
-  Order result;
-  Order held;
-  for (const auto& entry : order) {
-    if (entry.first != late_topic) {
-      result.push_back(entry);
-      continue;
-    }
-    held.push_back(entry);
-    if (held.size() > lag) result.push_back(held[held.size() - lag - 1]);
-  }
-  result.insert(result.end(), held.end() - static_cast<std::ptrdiff_t>(lag), held.end());
-  return result;
-}
-
 /// All joint states that were pushed, by what became of them.
 inline std::int64_t countedBy(const JointStatePlayer& player) {
   std::int64_t sum = player.merged() + player.waiting();

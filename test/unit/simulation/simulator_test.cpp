@@ -16,18 +16,12 @@ namespace {
 
 /// A 5 mm sphere over a block of 60 x 60 x 20 mm, 1 mm above its middle at joints 0.
 Simulator makeScene(double max_step_s = 0.001, double height_m = 0.026, const std::string& poissons_ratio = "0.45") {
-  std::ostringstream yaml;
-  yaml << "tissues:\n  - name: block\n    block: {size_m: [0.06, 0.06, 0.02], cells: [6, 6, 2]}\n"
-       << "    material: {model: corotational, youngs_modulus_pa: 5000, poissons_ratio: " << poissons_ratio
-       << ", density_kg_per_m3: 1000}\n"
-       << "    damping: {stiffness_s: 0.003}\n"
-       << "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
-       << "instruments:\n  - name: probe\n    robot_description: probe\n    tip_link: tip\n"
-       << "    joint_state_topics: [/joint_states]\n    base_pose: {position_m: [0.001, 0.002, " << height_m << "]}\n"
-       << "    contact_links: [tip]\n"
-       << "friction:\n  - {instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}\n"
-       << "step: {max_step_s: " << max_step_s << "}\n";
-  return makeSimulator(yaml.str(), {{"probe", probeUrdf(0.005)}});
+  std::ostringstream rest;
+  rest << onlyBall("[0.001, 0.002, " + std::to_string(height_m) + "]") << "step: {max_step_s: " << max_step_s << "}\n"
+       << "friction:\n  - {instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}\n";
+  const std::string material = "model: corotational, poissons_ratio: " + poissons_ratio;
+  return makeSimulator(blockScene("[0.06, 0.06, 0.02]", "[6, 6, 2]", material) + rest.str(),
+                       {{"probe", probeUrdf(0.005)}});
 }
 
 /// Deepest point of the tissue surface inside the sphere, m.
@@ -225,12 +219,10 @@ TEST(Simulator, LargeJointMovesAreCutIntoSteps) {
 }
 
 TEST(Simulator, StepWithoutFiniteAnswerIsDiscardedAndSaidSo) {
-  SceneEnvironment environment;
-  environment.urdf_text = [](const std::string&) { return probeUrdf(0.005); };
   Scene scene = makeScene().scene();
   scene.gravity_m_per_s2 = Vector3(0.0, 0.0, -1e308);  // beyond what the loader allows: overflows within a step of 10 s
   scene.step.max_step_s = 10.0;
-  Simulator simulator(scene, environment);
+  Simulator simulator(scene, ownEnvironment({{"probe", probeUrdf(0.005)}}));
   simulator.advance(10.0, {Vector3::Zero()});
   EXPECT_TRUE(simulator.report().discarded);
   EXPECT_NE(simulator.report().stop, StopReason::kTolerance);

@@ -13,19 +13,10 @@ namespace tissue_contact {
 namespace {
 
 Simulator makeScene(const std::string& solver, const std::string& friction = "static: 0.4, kinetic: 0.4") {
-  return makeSimulator(
-      "tissues:\n"
-      "  - name: block\n"
-      "    block: {size_m: [0.06, 0.06, 0.03], cells: [6, 6, 3]}\n"
-      "    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n"
-      "    damping: {stiffness_s: 0.003}\n"
-      "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
-      "instruments:\n"
-      "  - {name: probe, robot_description: probe, tip_link: tip, joint_state_topics: [/js], contact_links: [tip],\n"
-      "     base_pose: {position_m: [0.001, 0.002, 0.0351]}}\n"
-      "friction:\n  - {instrument: probe, tissue: block, " +
-          friction + "}\nsolver: {" + solver + "}\n",
-      {{"probe", probeUrdf(0.005)}});
+  return makeSimulator(blockScene("[0.06, 0.06, 0.03]", "[6, 6, 3]", "poissons_ratio: 0.45") +
+                           onlyBall("[0.001, 0.002, 0.0351]") + "friction:\n  - {instrument: probe, tissue: block, " +
+                           friction + "}\nsolver: {" + solver + "}\n",
+                       {{"probe", probeUrdf(0.005)}});
 }
 
 /// Force at the end of a press of 3 mm and a drag of 4 mm, N.
@@ -81,9 +72,7 @@ TEST(SolversByName, AStepWithoutAnAnswerIsDiscardedByAll) {
     Scene scene = makeScene(solver).scene();
     scene.gravity_m_per_s2 = Vector3(0.0, 0.0, -1e308);  // beyond what the loader allows
     scene.step.max_step_s = 10.0;
-    SceneEnvironment environment;
-    environment.urdf_text = [](const std::string&) { return probeUrdf(0.005); };
-    Simulator simulator(scene, environment);
+    Simulator simulator(scene, ownEnvironment({{"probe", probeUrdf(0.005)}}));
     simulator.advance(10.0, {Vector3::Zero()});
     EXPECT_TRUE(simulator.report().discarded) << solver;
     EXPECT_EQ(simulator.positions(0), simulator.tissues()[0].restPositions()) << solver;

@@ -29,9 +29,7 @@ Simulator makeScene(const Variant& variant, const std::string& advisor) {
        << ", youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}\n"
        << "    damping: {stiffness_s: 0.005}\n"
        << "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
-       << variant.region << "instruments:\n  - name: probe\n    robot_description: probe\n    tip_link: tip\n"
-       << "    joint_state_topics: [/joint_states]\n    base_pose: {position_m: [0.001, 0.002, 0.0351]}\n"
-       << "    contact_links: [tip]\n"
+       << variant.region << onlyBall("[0.001, 0.002, 0.0351]")
        << "friction:\n  - {instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}\n"
        << "step: {max_step_s: 0.001}\n"
        << "advisor: {" << advisor << "}\n"

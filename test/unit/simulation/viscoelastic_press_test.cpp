@@ -24,9 +24,7 @@ Simulator makeScene(const std::string& model, double youngs_modulus_pa, double p
        << "    material: {model: " << model << ", youngs_modulus_pa: " << youngs_modulus_pa
        << ", poissons_ratio: " << poissons_ratio << ", density_kg_per_m3: 1000" << more << "}\n"
        << "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
-       << lines << "instruments:\n  - name: probe\n    robot_description: probe\n    tip_link: tip\n"
-       << "    joint_state_topics: [/joint_states]\n    base_pose: {position_m: [0.001, 0.002, 0.0251]}\n"
-       << "    contact_links: [tip]\n"
+       << lines << onlyBall("[0.001, 0.002, 0.0251]")
        << "friction:\n  - {instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}\n"
        << "step: {max_step_s: 0.002}\ngravity_m_per_s2: [0, 0, 0]\n";
   return makeSimulator(yaml.str(), {{"probe", probeUrdf(0.005)}});
