@@ -9,9 +9,12 @@
 #include <cstdio>
 #include <exception>
 #include <map>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "tissue_contact/core/text.h"
 #include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/simulation/simulator.h"
 
@@ -79,7 +82,9 @@ double quantile(std::vector<double> values, double share) {
 
 void run(Simulator& simulator, const Arguments& arguments) {
   const double dt = std::stod(arguments.values.at("--step"));
-  const double way = kDown + std::stod(arguments.values.at("--drag"));
+  const std::optional<double> drag_m = toDouble(arguments.values.at("--drag"));
+  if (!drag_m) throw std::invalid_argument("--drag: '" + arguments.values.at("--drag") + "' is no number of metres");
+  const double way = kDown + *drag_m;
   const std::string& trace = arguments.values.at("--trace");
   std::FILE* const file = trace.empty() ? nullptr : std::fopen(trace.c_str(), "w");
   if (file != nullptr) std::fprintf(file, "step,ms,iterations,contacts,static,kinetic,fx,fz\n");
