@@ -153,6 +153,26 @@ class FilesTest(unittest.TestCase):
         done = run([program("tissue_contact_solve"), self.path("p.txt")])
         self.assertEqual(done.returncode, 0, done)
 
+    def test_dump_beside_the_table(self):
+        """A name that the table's own unfinished file once had."""
+        done = self.replay("--dump-step", "3", "--dump-file", self.csv + ".part")
+        self.assertEqual(done.returncode, 0, done)
+        self.assertTrue(self.read("out.csv").startswith(b"stamp_s,"))
+        self.assertEqual(self.read("out.csv").count(b"\n"), 41)
+        self.assertTrue(self.read("out.csv.part").startswith(b"FC3D"))
+
+    def test_permissions(self):
+        old = os.umask(0o027)
+        try:
+            self.write("out.csv")
+            os.chmod(self.csv, 0o600)
+            done = self.replay("--timing", self.path("times.csv"))
+        finally:
+            os.umask(old)
+        self.assertEqual(done.returncode, 0, done)
+        self.assertEqual(stat.S_IMODE(os.stat(self.csv).st_mode), 0o600)
+        self.assertEqual(stat.S_IMODE(os.stat(self.path("times.csv")).st_mode), 0o640)
+
     def test_full_disk(self):
         for option in ["--csv", "--timing", "--dump-file"]:
             with self.subTest(option=option):
@@ -167,6 +187,16 @@ class FilesTest(unittest.TestCase):
                 for name in ["out.csv", "times.csv", "p.txt"]:
                     self.assertEqual(self.read(name), BEFORE)
                 self.assertEqual(sorted(os.listdir(self.directory)), ["out.csv", "p.txt", "times.csv"])
+
+    def test_two_replays_into_one_file(self):
+        done = self.replay(csv=self.path("expected.csv"))
+        self.assertEqual(done.returncode, 0, done)
+        for _ in range(3):
+            command = [program("tissue_contact_replay"), "--scene", self.scene, "--bag", self.bag, "--csv", self.csv]
+            both = [subprocess.Popen(command, stderr=subprocess.DEVNULL) for _ in range(2)]
+            self.assertEqual([one.wait(DEADLINE_S) for one in both], [0, 0])
+            self.assertEqual(self.read("out.csv"), self.read("expected.csv"))
+        self.assertEqual(sorted(os.listdir(self.directory)), ["expected.csv", "out.csv"])
 
     def test_ended_in_mid_replay(self):
         for number in [signal.SIGINT, signal.SIGTERM, signal.SIGKILL]:
