@@ -110,6 +110,11 @@ ScenePlan pressDragPlan(const SceneOptions& options) {
 ScenePlan graspPlan(const SceneOptions& options) {
   ScenePlan plan;
   plan.scene = shippedScene("grasp", "grasp.yaml");
+  // Held firmly. With the coefficients it ships with (0.6, 0.4) the flap slips out of fine meshes while it is lifted: the moment
+  // when it does would be all of the error.
+  FrictionLawDescription& law = plan.scene.scene.friction.at(0).law;
+  law.static_coefficients = {1.2};
+  law.kinetic_coefficients = {0.8};
   const std::vector<Vector3> path = graspPath(packageDirectory());
   // From where the open jaws are around the flap until it has been lifted and held; quick: until they have closed half way
   // and touch it. Not on to where it slips out: when that is, and whether it sticks once more on its way, is an event that
@@ -127,13 +132,12 @@ ScenePlan graspPlan(const SceneOptions& options) {
     }
   };
   plan.steps_s = {0.0005, 0.002, 0.005};
-  plan.truth.ratio = 1.5;
+  plan.truth.table = truthTable("grasp");
   plan.meshes = {{6, 12, 18}};
   if (options.quick) {
     plan.steps_s.clear();
     plan.exact_rivals = false;
-    plan.meshes = {{5, 10, 15}};
-    plan.truth.ratio = 1.25;
+    plan.meshes.clear();
   }
   return plan;
 }

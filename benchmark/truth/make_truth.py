@@ -4,7 +4,7 @@ contact, extrapolated to no mesh size, no growth of the cells away from the cont
 
 usage, after scripts/build and `make -C "$(scripts/build --where)" truth_run`:
   make_truth.py SCENE --runs DIR [--out FILE]      (Debian: gmsh, python3-numpy)
-  SCENE       press-drag or partial-slip
+  SCENE       press-drag, partial-slip or grasp
   --runs DIR  meshes and runs; what is there is not run again, unless geometry, motion, tolerance or program are others. All of
               press-drag takes a quarter of an hour of one processor
   --out FILE  the table (default: beside this script)
@@ -39,11 +39,12 @@ class Run:
 
 
 class Plan:
-    """`runs` for mesh and far field, all of one step; `steps` for dF/d(step), `bends` to see that it is straight."""
+    """`runs` for mesh and far field, all of one step; `steps` for dF/d(step), `bends` to see that it is straight; `none`: the
+    components of the force that are 0 by symmetry."""
 
-    def __init__(self, table, size_m, path_m, reach_mm, tolerance, runs, steps, bends):
+    def __init__(self, table, size_m, path_m, reach_mm, tolerance, runs, steps, bends, none=(1,)):
         self.table, self.size_m, self.path_m, self.reach_mm, self.tolerance = table, size_m, path_m, reach_mm, tolerance
-        self.runs, self.steps, self.bends = runs, steps, bends
+        self.runs, self.steps, self.bends, self.none = runs, steps, bends, none
 
 
 def program(*command, output=None):
@@ -171,6 +172,12 @@ PLANS = {
         [Run(1.4, 0.3, 6, 0.02), Run(1.4, 0.15, 5, 0.02), Run(1.0, 0.3, 6, 0.02), Run(1.0, 0.15, 5, 0.02),
          Run(0.7, 0.3, 6, 0.02), Run(0.7, 0.15, 5, 0.02)],
         [Run(1.0, 0.3, 6, step) for step in (0.02, 0.01)], [Run(2.0, 0.3, 6, step) for step in (0.02, 0.01, 0.005)]),
+    "grasp": Plan(
+        "grasp", (0.004, 0.01, 0.03), (-0.002, 0.002), 5.0, 1e-5,
+        [Run(0.7, 0.3, 4, 0.002), Run(0.7, 0.15, 2, 0.002), Run(0.5, 0.3, 4, 0.002), Run(0.5, 0.15, 2, 0.002),
+         Run(0.5, 0.075, 1, 0.002), Run(0.35, 0.3, 4, 0.002), Run(0.35, 0.15, 2, 0.002), Run(0.35, 0.075, 1, 0.002),
+         Run(0.25, 0.3, 4, 0.002), Run(0.25, 0.15, 2, 0.002)],
+        [Run(0.5, 0.3, 4, step) for step in (0.002, 0.001)], [Run(0.7, 0.3, 4, step) for step in (0.002, 0.001, 0.0005)], (0, 1)),
 }
 
 
@@ -222,7 +229,7 @@ def main():
     facts["what is not linear in the step"] = bent
     longest = max(data, key=lambda entry: (len(entry[1]), -entry[0].h, -entry[0].g))
     truth = continued(truth[:samples] + moved, longest[2])
-    truth[:, 1] = 0.0  # by symmetry
+    truth[:, list(plan.none)] = 0.0
     uncertainty = facts["change by leaving out a run, at most"] + bent
     write_table(arguments.out or os.path.join(HERE, plan.table + ".csv"), arguments.scene, plan, longest[1], truth, uncertainty,
                 facts)
