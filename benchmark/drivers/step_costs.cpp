@@ -87,6 +87,7 @@ void run(Simulator& simulator, const Arguments& arguments) {
   const double way = kDown + *drag_m;
   const std::string& trace = arguments.values.at("--trace");
   std::FILE* const file = trace.empty() ? nullptr : std::fopen(trace.c_str(), "w");
+  if (!trace.empty() && file == nullptr) throw std::invalid_argument("--trace: cannot write '" + trace + "'");
   if (file != nullptr) std::fprintf(file, "step,ms,iterations,contacts,static,kinetic,fx,fz\n");
   std::vector<double> ms;
   double iterations = 0.0;

@@ -40,11 +40,11 @@ class Run:
 
 class Plan:
     """`runs` for mesh and far field, all of one step; `steps` for dF/d(step), `bends` to see that it is straight; `none`: the
-    components of the force that are 0 by symmetry."""
+    components of the force that are 0 by symmetry; `files` of the package that hold the scene, where the program does not."""
 
-    def __init__(self, table, size_m, path_m, reach_mm, tolerance, runs, steps, bends, none=(1,)):
+    def __init__(self, table, size_m, path_m, reach_mm, tolerance, runs, steps, bends, none=(1,), files=()):
         self.table, self.size_m, self.path_m, self.reach_mm, self.tolerance = table, size_m, path_m, reach_mm, tolerance
-        self.runs, self.steps, self.bends, self.none = runs, steps, bends, none
+        self.runs, self.steps, self.bends, self.none, self.files = runs, steps, bends, none, files
 
 
 def program(*command, output=None):
@@ -177,13 +177,16 @@ PLANS = {
         [Run(0.7, 0.3, 4, 0.002), Run(0.7, 0.15, 2, 0.002), Run(0.5, 0.3, 4, 0.002), Run(0.5, 0.15, 2, 0.002),
          Run(0.5, 0.075, 1, 0.002), Run(0.35, 0.3, 4, 0.002), Run(0.35, 0.15, 2, 0.002), Run(0.35, 0.075, 1, 0.002),
          Run(0.25, 0.3, 4, 0.002), Run(0.25, 0.15, 2, 0.002)],
-        [Run(0.5, 0.3, 4, step) for step in (0.002, 0.001)], [Run(0.7, 0.3, 4, step) for step in (0.002, 0.001, 0.0005)], (0, 1)),
+        [Run(0.5, 0.3, 4, step) for step in (0.002, 0.001)], [Run(0.7, 0.3, 4, step) for step in (0.002, 0.001, 0.0005)], (0, 1),
+        ("config/grasp.yaml", "config/grasp_path.csv", "urdf/psm_classic.urdf")),
 }
 
 
 def commit():
-    return subprocess.run(["git", "-C", PACKAGE, "log", "-1", "--format=%h of %cs"], stdout=subprocess.PIPE, text=True,
-                          check=False).stdout.strip()
+    def git(*words):
+        return subprocess.run(["git", "-C", PACKAGE] + list(words), stdout=subprocess.PIPE, text=True, check=False).stdout.strip()
+
+    return git("log", "-1", "--format=%h of %cs") + (", changed" if git("status", "--porcelain", "--untracked-files=no") else "")
 
 
 def write_table(file, scene, plan, times, truth, uncertainty, facts):
@@ -214,7 +217,7 @@ def main():
     truth_run = os.path.join(build, "benchmark", "drivers", "truth_run")
     libraries = re.findall(re.escape(build) + r"\S+", subprocess.run(["ldd", truth_run], stdout=subprocess.PIPE, text=True,
                                                                      check=True).stdout)
-    version = key(program("gmsh", "--version"), *map(content, [truth_run] + libraries))
+    version = key(program("gmsh", "--version"), *map(content, [truth_run] + libraries + [os.path.join(PACKAGE, file) for file in plan.files]))
 
     def of(runs):
         return [(run,) + forces(arguments.scene, plan, run, folder, truth_run, version) for run in runs]

@@ -62,8 +62,8 @@ class Demo(harness.TestCase):
     def test_model_goes_to_a_scene_that_names_none(self):
         bag = self.bag_of("press.bag", harness.press(20))
         code, output = harness.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + self.scene_without_urdf(),
-                                   "model:=package://tissue_contact/urdf/probe.urdf",
-                                   "output:=" + self.plots)
+                                      "model:=package://tissue_contact/urdf/probe.urdf",
+                                      "output:=" + self.plots)
         self.assertEqual(code, 0, output)
         self.assert_pictures()
 
@@ -76,7 +76,7 @@ class Demo(harness.TestCase):
                  (self.scene_without_urdf(), "none.urdf", "none.urdf does not exist")]
         for scene, model, words in cases:
             code, output = harness.launch("play_bag.launch", "bag:=" + bag, "scene:=" + scene, "model:=" + model,
-                                       "output:=" + self.plots)
+                                          "output:=" + self.plots)
             self.assertEqual(code, 1, output)
             self.assertIn(words, output)
             self.assertIn("read_model.py: ", output)
@@ -85,7 +85,7 @@ class Demo(harness.TestCase):
     def test_bag_without_the_topic_ends_with_its_name(self):
         bag = self.bag_of("other.bag", harness.press(5), topic="/other/joint_states")
         code, output = harness.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + harness.SCENE,
-                                   "output:=" + self.plots)
+                                      "output:=" + self.plots)
         self.assertEqual(code, 1, output)
         self.assertIn("has no message on " + harness.TOPIC, output)
         self.assertIn("/other/joint_states", output)
@@ -108,8 +108,8 @@ class Demo(harness.TestCase):
         master = rosgraph.Master(rospy.get_name())
         before = (master.getParam("/run_id"), sorted(rospy.get_param_names()), master.getSystemState())
         code, output = harness.launch("psm_bag.launch", "bag:=" + bag,
-                                   "scene:=package://tissue_contact/test/ros/press.yaml",
-                                   "output:=" + self.plots)
+                                      "scene:=package://tissue_contact/test/ros/press.yaml",
+                                      "output:=" + self.plots)
         self.assertEqual(code, 0, output)
         self.assertEqual((master.getParam("/run_id"), sorted(rospy.get_param_names()), master.getSystemState()), before)
 

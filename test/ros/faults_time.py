@@ -13,7 +13,6 @@ import faults
 import harness
 
 
-
 def path(time_s):
     return (0.0, 0.0, -0.002 + 0.001 * math.sin(6.0 * time_s))
 

@@ -83,6 +83,16 @@ TEST(StoredTruthTest, PressAndDragComesNearItWithFineCellsUnderTheBall) {
   EXPECT_NEAR(errorOf(plan, settings), 0.102, 0.015);
 }
 
+// Grasped, lifted and held, with the finest mesh of the benchmark, 1729 nodes. Its error is 18 %: a truth or a scene that changed by three
+// times what the truth is known to shows.
+TEST(StoredTruthTest, GraspComesNearIt) {
+  const ScenePlan plan = graspPlan({});
+  Settings settings = shippedSettings(plan.scene);
+  settings.dt_s = 0.002;
+  settings.cells = plan.meshes.back();
+  EXPECT_NEAR(errorOf(plan, settings), 0.185, 0.03);
+}
+
 // Cells of 1 mm, 4.8 per contact radius.
 TEST(StoredTruthTest, PartialSlipComesNearIt) {
   const ScenePlan plan = partialSlipPlan({});

@@ -183,10 +183,12 @@ TEST_F(WholeFileTest, AFailingWriteNamesFileAndReason) {
 TEST_F(WholeFileTest, RefusesWhatIsNoPlaceForAResult) {
   write("victim", "old");
   fs::create_symlink("victim", directory_ / "link");
+  fs::create_symlink("nowhere", directory_ / "dangling");
   fs::create_directory(directory_ / "folder");
   ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
   const std::vector<std::pair<std::string, std::string>> cases = {
       {path("link"), "symbolic link to 'victim'"},
+      {path("dangling"), "symbolic link to 'nowhere'"},
       {path("folder"), "directory"},
       {path("folder/"), "directory"},
       {path("folder/.."), "directory"},
@@ -204,6 +206,7 @@ TEST_F(WholeFileTest, RefusesWhatIsNoPlaceForAResult) {
     EXPECT_NE(message.find(reason), std::string::npos) << message;
   }
   EXPECT_EQ(read("victim"), "old");
+  EXPECT_TRUE(fs::is_symlink(path("link")) && fs::is_symlink(path("dangling")) && fs::is_fifo(path("fifo")));
 }
 
 TEST_F(WholeFileTest, AWriteProtectedResultStays) {
