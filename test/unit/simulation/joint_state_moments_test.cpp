@@ -204,7 +204,8 @@ TEST(JointStateMoments, NoOrderOfArrivalMattersWithinMaxGap) {
     const std::array<std::int64_t, 3> periods = {10 * kMillisecond, 4 * kMillisecond, 7 * kMillisecond};
     for (int topic = 0; topic < 3; ++topic) {
       std::int64_t before = 0;
-      for (std::int64_t t = (3 - topic) % 3 * kMillisecond; t < 2 * length; t += periods[static_cast<std::size_t>(topic)]) {
+      for (std::int64_t t = (3 - topic) % 3 * kMillisecond; t < 2 * length;
+           t += periods[static_cast<std::size_t>(topic)]) {
         const std::int64_t stamp = kSecond + t % length;
         const std::int64_t delay = seed == 0 ? 0 : static_cast<std::int64_t>(random() % 40) * kMillisecond;
         before = std::max(before, t + delay);
