@@ -123,7 +123,7 @@ void ContactDetector::Implementation::detectPair(MovingSurface& surface, const T
                                                  double margin, std::vector<Contact>& contacts) {
   const Eigen::AlignedBox3d box = boxAround(*shape.distance, X_WS, margin + surface.halfThickness());
   if (!surface.box().intersects(box)) return;
-  surface.tree().overlapping(box, candidates);
+  surface.overlapping(box, candidates);
   if (candidates.empty()) return;
   narrow_phase.findContacts(*shape.distance, X_WS, surface, candidates, margin, found);
   for (const ShapeContact& one : found) {
@@ -250,7 +250,7 @@ double ContactDetector::Implementation::surfaceDistance(MovingSurface& surface, 
   const Matrix3 R_SW = X_WS.linear().transpose();
   const auto inShape = [&](int one) -> Vector3 { return R_SW * (surface.x(one) - X_WS.translation()); };
   double nearest = std::min(bound, distance.at(inShape(node)).distance);
-  surface.tree().overlapping(boxAround(distance, X_WS, std::max(nearest, 0.0)), candidates);
+  surface.overlapping(boxAround(distance, X_WS, std::max(nearest, 0.0)), candidates);
   ClosestPoint closest;
   for (const int triangle : candidates) {
     const Triangle& nodes = surface.triangles()[triangle];

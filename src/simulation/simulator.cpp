@@ -82,6 +82,8 @@ struct Simulator::Implementation {
   std::vector<Wrench> wrenches;    ///< per instrument
   LoadWatch load_watch;
   StepReport report;
+  std::optional<Residuals> residuals = Residuals();  ///< none: nobody has asked since the step
+  std::vector<NodalVectors> residual_scratch;
   long step_count = 0;
   double last_dt = 0.0;  ///< of the step before, s
   std::function<void()> observer;
@@ -122,12 +124,14 @@ void Simulator::Implementation::reset() {
   contacts.clear();
   wrenches.assign(instruments.size(), Wrench());
   report = StepReport();
+  residuals = Residuals();
   step_count = 0;
   last_dt = 0.0;
 }
 
 /// One implicit step: the rooms in order.
 void Simulator::Implementation::step(double dt) {
+  residuals.reset();
   restTissues();
   detectContacts(dt);
   wakeTouched();
@@ -193,7 +197,6 @@ void Simulator::Implementation::solve(double dt) {
     const SolverReport solver_report = solver->solve(problem, solution);
     report.iterations += solver_report.iterations;
     report.stop = solver_report.stop;
-    report.residuals = solver_report.residuals;
     if (!wakeHeld(dt, repeats)) return;
   }
 }
@@ -222,7 +225,7 @@ void Simulator::Implementation::moveTissues(double dt) {
   }
   report.discarded = true;
   report.stop = StopReason::kIterations;
-  report.residuals = Residuals();
+  residuals = Residuals();
   report.sleeping_nodes = 0;
   report.held_force_n = 0.0;
   for (MovingTissue& tissue : moving) tissue.stop();
@@ -338,6 +341,11 @@ const NodalVectors& Simulator::positions(int tissue) const { return implementati
 const NodalVectors& Simulator::velocities(int tissue) const { return implementation_->solution.v.at(tissue); }
 const std::vector<SolvedContact>& Simulator::contacts() const { return implementation_->contacts.solved(); }
 const StepReport& Simulator::report() const { return implementation_->report; }
+const Residuals& Simulator::residuals() const {
+  Implementation& all = *implementation_;
+  if (!all.residuals) all.residuals = computeResiduals(all.problem, all.solution, all.residual_scratch);
+  return *all.residuals;
+}
 long Simulator::stepCount() const { return implementation_->step_count; }
 void Simulator::lowerClosestApproach(Approach& closest) {
   implementation_->detector.lowerClosestApproach(implementation_->x, implementation_->motion.startPoses(), closest);

@@ -170,7 +170,7 @@ class Replay {
       const long steps = simulator_.stepCount() - (played->was_reset ? 0 : steps_before);
       note(*played, steps);
       if (played->verdict != Verdict::kAccepted) continue;
-      if (!isFinite(simulator_)) {
+      if (!isFinite(simulator_) || !isFinite(simulator_.residuals())) {
         throw std::runtime_error("the step ending at " + stampText(played->stamp_ns) + " s gave no finite answer");
       }
       if (!touched_) noteApproach(played->stamp_ns);
