@@ -179,7 +179,7 @@ ScenePlan robotPlan(const SceneOptions& options) {
   plan.steps_s = {0.005};
   if (!options.quick) {
     plan.steps_s = {0.0005, 0.001, 0.005};
-    plan.meshes = {{20, 18, 9}};
+    plan.meshes = {{22, 22, 9}};
   }
   plan.exact_rivals = !options.quick;
   plan.truth.table = truthTable("robot");
