@@ -224,6 +224,8 @@ def main():
     arguments = parser.parse_args()
     plan = PLANS[arguments.scene]
     bag = [arguments.bag] if plan.bag else []
+    if bag and not os.path.isfile(arguments.bag):
+        sys.exit("make_truth.py: no recording '%s'; give the dVRK PSM's with --bag FILE" % arguments.bag)
     folder = os.path.join(arguments.runs, arguments.scene)
     os.makedirs(folder, exist_ok=True)
     build = subprocess.run([os.path.join(PACKAGE, "scripts", "build"), "--where"], stdout=subprocess.PIPE, text=True,
