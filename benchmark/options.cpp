@@ -26,6 +26,9 @@ void requireTogether(const CommandLine& line) {
     throw std::invalid_argument("--only '" + only + "' is unknown; " + suggestion(only, kScenes) +
                                 "there are: " + joined(kScenes));
   }
+  if (!only.empty() && only != "robot" && line.has("--robot-bag")) {
+    throw std::invalid_argument("--robot-bag does not go with --only " + only + ", which plays no recording");
+  }
   if (only == "robot" && !line.has("--robot-bag")) {
     throw std::invalid_argument("--only robot needs --robot-bag FILE, the recording of a dVRK PSM");
   }
