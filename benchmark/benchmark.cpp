@@ -14,6 +14,7 @@
 #include "benchmark/table.h"
 #include "tissue_contact/core/read_file.h"
 #include "tissue_contact/core/whole_file.h"
+#include "tissue_contact/ros/environment.h"
 #include "validation/package_directory.h"
 
 namespace tissue_contact {
@@ -139,6 +140,9 @@ int runBenchmark(const std::vector<std::string>& arguments, std::ostream& out, s
     }
     requireWritten(out);
     return code;
+  } catch (const UnusedUrdf& error) {
+    messages << "tissue_contact_benchmark: " << error.what() << '\n';
+    return 2;
   } catch (const std::exception& error) {
     messages << "tissue_contact_benchmark: " << error.what() << '\n';
     return 1;

@@ -26,7 +26,11 @@ void requireTogether(const CommandLine& line) {
     throw std::invalid_argument("--only '" + only + "' is unknown; " + suggestion(only, kScenes) +
                                 "there are: " + joined(kScenes));
   }
-  if (only.rfind("robot", 0) == 0 && !line.has("--robot-bag")) {
+  const bool plays_recording = only.rfind("robot", 0) == 0;
+  if (!only.empty() && !plays_recording && line.has("--robot-bag")) {
+    throw std::invalid_argument("--robot-bag does not go with --only " + only + ", which plays no recording");
+  }
+  if (plays_recording && !line.has("--robot-bag")) {
     throw std::invalid_argument("--only " + only + " needs --robot-bag FILE, the recording of a dVRK PSM");
   }
 }

@@ -92,7 +92,7 @@ class Replay {
   explicit Replay(const ReplayOptions& options)
       : options_(options),
         scene_(loadReplayedScene(options)),
-        simulator_(scene_, bagEnvironment(options.bag_file, options.urdf_file, scene_.world_frame)),
+        simulator_(scene_, bagEnvironment(scene_, options.bag_file, options.urdf_file)),
         player_(simulator_) {
     requireModelsKept(options, simulator_);
     for (const std::string& line : simulator_.advice()) std::cerr << kPrefix << "advisor: " << line << "\n";

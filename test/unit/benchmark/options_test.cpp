@@ -40,13 +40,14 @@ TEST(BenchmarkOptionsTest, NumbersAreTheSameInAnyLocale) {
 
 TEST(BenchmarkOptionsTest, RefusesWhatMakesNoSense) {
   using Arguments = std::vector<std::string>;
-  for (const Arguments& wrong : {Arguments{"--oops"}, Arguments{"--only", "all"}, Arguments{"--only", "robot"},
-                                 Arguments{"--only", "robot-sweep"}, Arguments{"--scene", "s"}, Arguments{"--bag", "b"},
-                                 Arguments{"--from", "1"}, Arguments{"--scene", "s", "--bag", "b", "--quick"},
-                                 Arguments{"--scene", "s", "--bag", "b", "--duration", "0"},
-                                 Arguments{"--scene", "s", "--bag", "b", "--duration", "nan"},
-                                 Arguments{"--scene", "s", "--bag", "b", "--from", "-1"},
-                                 Arguments{"--scene", "s", "--bag", "b", "--from", "1s"}}) {
+  for (const Arguments& wrong :
+       {Arguments{"--oops"}, Arguments{"--only", "all"}, Arguments{"--only", "robot"},
+        Arguments{"--only", "robot-sweep"}, Arguments{"--only", "grasp", "--robot-bag", "b"}, Arguments{"--scene", "s"},
+        Arguments{"--bag", "b"}, Arguments{"--from", "1"}, Arguments{"--scene", "s", "--bag", "b", "--quick"},
+        Arguments{"--scene", "s", "--bag", "b", "--duration", "0"},
+        Arguments{"--scene", "s", "--bag", "b", "--duration", "nan"},
+        Arguments{"--scene", "s", "--bag", "b", "--from", "-1"},
+        Arguments{"--scene", "s", "--bag", "b", "--from", "1s"}}) {
     EXPECT_THROW(parseBenchmarkOptions(wrong), std::invalid_argument) << wrong.back();
   }
 }
