@@ -15,6 +15,7 @@ namespace {
 template <typename Named>
 std::string listNames(const std::vector<Named>& named) {
   std::vector<std::string> names;
+  names.reserve(named.size());
   for (const Named& one : named) names.push_back(one.name);
   return names.empty() ? "none" : listOf(names, 20);
 }

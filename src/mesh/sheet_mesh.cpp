@@ -44,13 +44,14 @@ void checkEdges(const std::vector<Triangle>& triangles, const std::string& sourc
   for (const EdgeTable::Edge& edge : table) {
     const EdgeTable::Uses uses = table.usesOf(edge);
     if (uses.size() == 1) continue;
-    const std::string which =
-        "the edge of nodes " + std::to_string(edge.nodes[0]) + " and " + std::to_string(edge.nodes[1]) + " belongs to ";
+    std::string which = "the edge of nodes " + std::to_string(edge.nodes[0]);
+    which.append(" and ").append(std::to_string(edge.nodes[1])).append(" belongs to ");
     const std::string both = indexed("triangles", uses[0].triangle) + indexed(" and", uses[1].triangle);
     if (uses.size() > 2) {
-      refuseMesh(source, which + std::to_string(uses.size()) + " triangles, among them " + both +
-                             indexed(" and", uses[2].triangle) +
-                             "; at most 2 may share it: repair the mesh, or model the parts as tissues of their own");
+      which.append(std::to_string(uses.size())).append(" triangles, among them ").append(both);
+      which.append(indexed(" and", uses[2].triangle));
+      refuseMesh(source,
+                 which + "; at most 2 may share it: repair the mesh, or model the parts as tissues of their own");
     }
     if (uses[0].forward != uses[1].forward) continue;
     refuseMesh(source, which + both +

@@ -1,6 +1,8 @@
 #include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/eventhandler.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <sstream>
 #include <stdexcept>
 
@@ -63,16 +65,28 @@ class ValueCount : public YAML::EventHandler {
   int values_ = 0;
 };
 
+/// Within brackets yaml-cpp before 0.7 takes a colon right before "]" or the end of the text for an empty scalar, again and again until
+/// memory ends (its issues 499 and 793); hence also the blank that ends what it is given. Refused with every version, so that a scene is the same scene everywhere.
+void checkColons(const std::string& yaml, const std::string& file) {
+  const std::size_t at = yaml.find(":]");
+  if (at == std::string::npos) return;
+  const auto line = std::count(yaml.begin(), yaml.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+  throw std::invalid_argument(file + ":" + std::to_string(line + 1) +
+                              ": (YAML syntax): \":]\" is not allowed; write a value or a blank after the colon");
+}
+
 /// The only document of the text; null if there is none.
 /// YAML::LoadAll is not used: after a text such as ",|<" yaml-cpp 0.7 finds one more empty document for ever.
 YAML::Node parseDocument(const std::string& yaml, const std::string& file) {
   try {
     ValueCount count;
-    std::istringstream text(yaml);
+    checkColons(yaml, file);
+    const std::string ended = yaml + " ";
+    std::istringstream text(ended);
     YAML::Parser parser(text);
     while (parser.HandleNextDocument(count)) {
     }
-    return YAML::Load(yaml);
+    return YAML::Load(ended);
   } catch (const YAML::DeepRecursion& error) {
     throw std::invalid_argument(file + ":" + std::to_string(error.mark.line + 1) +
                                 ": (YAML syntax): lists or maps are nested too deeply; at most " +
