@@ -111,7 +111,7 @@ YamlCursor parseYaml(const std::string& yaml, const std::string& file) {
     throw std::invalid_argument(name + ":1: scene: is empty; it must have at least the key \"tissues\"");
   }
   const int line = document.Mark().is_null() ? 1 : document.Mark().line + 1;
-  const YamlCursor root(document, name, "", line);
+  YamlCursor root(document, name, "", line);
   int values_left = kMaxValues;
   checkSize(document, 0, values_left, root);
   return root;
