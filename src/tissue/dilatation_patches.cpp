@@ -63,7 +63,7 @@ DilatationPatches::DilatationPatches(const std::vector<Tetrahedron>& tetrahedra,
     first += patch.nodes.size();
     most_nodes = std::max(most_nodes, patch.nodes.size());
     for (const int a : patch.nodes) {
-      for (const int b : patch.nodes) patch.slots.push_back(slotOf(tets.pattern, fixed, a, b));
+      for (const int b : patch.nodes) patch.slots.push_back(slotOf(*tets.pattern, fixed, a, b));
     }
   }
 }
@@ -117,8 +117,6 @@ void DilatationPatches::addStiffness(const Patch& patch, const Vector3* b, const
       if (b != nullptr) block = (scale * b[i]) * b[j].transpose();
       if (old != nullptr) block -= (scale * old[i]) * old[j].transpose();
       addBlock(i == j, slot, block, patch.damping_s, state.stiffness, state.damping);
-      if (i == j) continue;
-      addBlock(false, patch.slots[j * count + i], block.transpose(), patch.damping_s, state.stiffness, state.damping);
     }
   }
 }

@@ -22,7 +22,7 @@ MeanDilatation::MeanDilatation(const NodalVectors& rest, const std::vector<Tetra
     : TetElasticity(materials.materials.at(0).model == ElasticModel::kCorotational,
                     std::make_unique<TetElements>(
                         rest, tetrahedra, fixed, materials, deviatoricParameters,
-                        BlockMatrix::forElements(DilatationPatches::nodesOf(tetrahedra, patch_of), fixed))),
+                        BlockPattern::forElements(DilatationPatches::nodesOf(tetrahedra, patch_of), fixed))),
       corotational_(materials.materials.at(0).model == ElasticModel::kCorotational),
       averaged_(tetrahedra, fixed, materials, patch_of, tets()) {}
 

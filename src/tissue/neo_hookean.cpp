@@ -103,7 +103,7 @@ void addStiffness(const TetElement& element, const Matrix3& F, const InPatch& pa
         inner(j, i) = tangent.stretch(i, j) * b(j, n) * b(i, m) + tangent.crossed(i, j) * b(i, n) * b(j, m);
       }
       const Matrix3 block = volume * tangent.U * inner * tangent.U.transpose();
-      addBlock(element.slots, n, m, block, element.damping_s, state.stiffness, state.damping);
+      addBlock(n == m, element.slots[n][m], block, element.damping_s, state.stiffness, state.damping);
     }
   }
 }
@@ -145,7 +145,7 @@ NeoHookean::NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>&
     tets_ = std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, modelParameters);
     return;
   }
-  BlockMatrix couplings = BlockMatrix::forElements(DilatationPatches::nodesOf(tetrahedra, patch_of), fixed);
+  auto couplings = BlockPattern::forElements(DilatationPatches::nodesOf(tetrahedra, patch_of), fixed);
   tets_ = std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, shapeParameters, std::move(couplings));
   patches_ = std::make_unique<DilatationPatches>(tetrahedra, fixed, materials, patch_of, *tets_);
 }

@@ -105,7 +105,7 @@ void TetElasticity::addStiffness(const TetElement& element, const Quaternion& ro
       if (element.slots[i][j] < 0) continue;
       Matrix3 block = (lambda * c.col(i)) * c.col(j).transpose() + (mu * c.col(j)) * c.col(i).transpose();
       block.diagonal().array() += mu * c.col(i).dot(c.col(j));
-      addBlock(element.slots, i, j, block, element.damping_s, state.stiffness, state.damping);
+      addBlock(i == j, element.slots[i][j], block, element.damping_s, state.stiffness, state.damping);
     }
   }
 }

@@ -36,7 +36,7 @@ std::vector<BatchMaterial> makeBatchMaterials(const std::vector<TetElement>& ele
 
 TetElements::TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
                          const std::vector<bool>& fixed, const ElementMaterials& materials, Lame lame,
-                         BlockMatrix couplings)
+                         std::shared_ptr<const BlockPattern> couplings)
     : damps(!materials.damping_s.empty()), pattern(std::move(couplings)) {
   for (const MaterialDescription& description : materials.materials) checkMaterial(description, "");
   elements.reserve(tetrahedra.size());
@@ -44,7 +44,7 @@ TetElements::TetElements(const NodalVectors& rest, const std::vector<Tetrahedron
   for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
     const Matrix3 D = edgeMatrix(rest, tetrahedra[e]);
     elements.push_back({tetrahedra[e], D.inverse(), D.determinant() / 6.0, lame(materials.of(e)),
-                        materials.dampingOf(e), findSlots(pattern, tetrahedra[e], fixed)});
+                        materials.dampingOf(e), findSlots(*pattern, tetrahedra[e], fixed)});
     const LameParameters& first = elements.front().lame;
     same = same && elements.back().lame.lambda == first.lambda && elements.back().lame.mu == first.mu;
   }
@@ -52,7 +52,6 @@ TetElements::TetElements(const NodalVectors& rest, const std::vector<Tetrahedron
   material =
       elements.empty() ? LameParameters{} : LameParameters{elements.front().lame.lambda, elements.front().lame.mu};
   if (!same) batch_materials = makeBatchMaterials(elements);
-  pattern.values = std::vector<Matrix3>();  // where blocks lie is all that is asked of it
 }
 
 void TetElements::split(const std::vector<bool>& still, Held& held) const {
@@ -74,12 +73,8 @@ void TetElements::split(const std::vector<bool>& still, Held& held) const {
 }
 
 void TetElements::prepare(Elasticity::State& state) const {
-  const auto zero = [&](BlockMatrix& matrix) {
-    matrix = pattern;
-    matrix.values.assign(matrix.columns.size(), Matrix3::Zero());
-  };
-  zero(state.stiffness);
-  if (damps) zero(state.damping);
+  state.stiffness = BlockMatrix(pattern);
+  if (damps) state.damping = BlockMatrix(pattern);
 }
 
 Eigen::Matrix<double, 3, 4> shapeGradients(const Matrix3& rest_inverse) {

@@ -3,6 +3,7 @@
 /// their stiffness goes, and the same in batches for the force kernels.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "tissue/block_slots.h"
@@ -27,13 +28,13 @@ struct TetElements {
   using Lame = LameParameters (*)(const MaterialDescription&);
 
   /// @param lame the model's elastic parameters from a material.
-  /// @param couplings zero matrix with at least the blocks of the tetrahedra.
+  /// @param couplings at least the blocks of the tetrahedra.
   /// @throws std::invalid_argument for a material out of range.
   TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
-              const ElementMaterials& materials, Lame lame, BlockMatrix couplings);
+              const ElementMaterials& materials, Lame lame, std::shared_ptr<const BlockPattern> couplings);
   TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
               const ElementMaterials& materials, Lame lame)
-      : TetElements(rest, tetrahedra, fixed, materials, lame, BlockMatrix::forTetrahedra(tetrahedra, fixed)) {}
+      : TetElements(rest, tetrahedra, fixed, materials, lame, BlockPattern::forElements(tetrahedra, fixed)) {}
 
   /// Zero matrices of the right pattern.
   void prepare(Elasticity::State& state) const;
@@ -58,11 +59,11 @@ struct TetElements {
   void split(const std::vector<bool>& still, Held& held) const;
 
   std::vector<TetElement> elements;
-  std::vector<ElementBatch> batches;           ///< the same elements, laid out for the force kernels
-  LameParameters material;                     ///< of all elements, if batch_materials is empty
-  std::vector<BatchMaterial> batch_materials;  ///< where materials differ
-  bool damps = false;                          ///< there is a State::damping
-  BlockMatrix pattern;                         ///< without values
+  std::vector<ElementBatch> batches;            ///< the same elements, laid out for the force kernels
+  LameParameters material;                      ///< of all elements, if batch_materials is empty
+  std::vector<BatchMaterial> batch_materials;   ///< where materials differ
+  bool damps = false;                           ///< there is a State::damping
+  std::shared_ptr<const BlockPattern> pattern;  ///< of the stiffness
 };
 
 /// Gradients of the four shape functions, columns, 1/m.
