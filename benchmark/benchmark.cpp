@@ -14,6 +14,7 @@
 #include "benchmark/table.h"
 #include "tissue_contact/core/read_file.h"
 #include "tissue_contact/core/whole_file.h"
+#include "tissue_contact/ros/environment.h"
 #include "validation/package_directory.h"
 
 namespace tissue_contact {
@@ -23,15 +24,15 @@ constexpr const char* kUsage =
     "usage: tissue_contact_benchmark [--out DIR] [--only SCENE] [--quick] [--robot-bag FILE] [--no-plot]\n"
     "       tissue_contact_benchmark --scene SCENE.yaml --bag IN.bag [--urdf ROBOT.urdf] [--from S] [--duration S]\n"
     "\n"
-    "The first runs press-drag, grasp, partial-slip and robot over solvers, relaxations, iterations, steps and meshes "
-    "on\n"
-    "one core, and writes a CSV file and a picture per scene: time per step against solver error (same scene, solved "
-    "to\n"
-    "convergence) and against total error (stored truth, or finer mesh).\n"
+    "The first runs press-drag, grasp, partial-slip, robot and robot-sweep over solvers, relaxations, iterations, "
+    "steps\n"
+    "and meshes on one core, and writes a CSV file and a picture per scene: time per step against solver error (same\n"
+    "scene, solved to convergence) and against total error (stored truth, or finer mesh).\n"
     "  --out DIR         where to (default: benchmark)\n"
-    "  --only SCENE      press-drag, grasp, partial-slip or robot\n"
+    "  --only SCENE      press-drag, grasp, partial-slip, robot or robot-sweep\n"
     "  --quick           a coarse grid, about a minute\n"
-    "  --robot-bag FILE  recorded joint states of a dVRK PSM for config/psm_dvrk.yaml; without it no robot scene\n"
+    "  --robot-bag FILE  recorded joint states of a dVRK PSM for config/psm_palpation.yaml (robot) and\n"
+    "                    config/psm_dvrk.yaml (robot-sweep); without it neither of these\n"
     "  --no-plot         no pictures\n"
     "The second tells the wrench error of your own scene on your own recording, what dominates it (solver, step or "
     "mesh)\n"
@@ -46,13 +47,12 @@ std::vector<ScenePlan> plansFor(const BenchmarkOptions& options, std::ostream& o
   if (wanted("press-drag")) plans.push_back(pressDragPlan(options.scenes));
   if (wanted("grasp")) plans.push_back(graspPlan(options.scenes));
   if (wanted("partial-slip")) plans.push_back(partialSlipPlan(options.scenes));
-  if (wanted("robot")) {
-    if (options.scenes.robot_bag.empty()) {
-      out << "robot: skipped, since no recording is given (--robot-bag FILE)\n";
-    } else {
-      plans.push_back(robotPlan(options.scenes));
-    }
+  if (options.scenes.robot_bag.empty()) {
+    if (options.only.empty()) out << "robot, robot-sweep: skipped, since no recording is given (--robot-bag FILE)\n";
+    return plans;
   }
+  if (wanted("robot")) plans.push_back(robotPlan(options.scenes));
+  if (wanted("robot-sweep")) plans.push_back(robotSweepPlan(options.scenes));
   return plans;
 }
 
@@ -140,6 +140,9 @@ int runBenchmark(const std::vector<std::string>& arguments, std::ostream& out, s
     }
     requireWritten(out);
     return code;
+  } catch (const UnusedUrdf& error) {
+    messages << "tissue_contact_benchmark: " << error.what() << '\n';
+    return 2;
   } catch (const std::exception& error) {
     messages << "tissue_contact_benchmark: " << error.what() << '\n';
     return 1;

@@ -10,7 +10,7 @@
 namespace tissue_contact {
 namespace {
 
-const std::vector<std::string> kScenes = {"press-drag", "grasp", "partial-slip", "robot"};
+const std::vector<std::string> kScenes = {"press-drag", "grasp", "partial-slip", "robot", "robot-sweep"};
 
 void requireTogether(const CommandLine& line) {
   const bool own = line.has("--scene");
@@ -26,8 +26,12 @@ void requireTogether(const CommandLine& line) {
     throw std::invalid_argument("--only '" + only + "' is unknown; " + suggestion(only, kScenes) +
                                 "there are: " + joined(kScenes));
   }
-  if (only == "robot" && !line.has("--robot-bag")) {
-    throw std::invalid_argument("--only robot needs --robot-bag FILE, the recording of a dVRK PSM");
+  const bool plays_recording = only.rfind("robot", 0) == 0;
+  if (!only.empty() && !plays_recording && line.has("--robot-bag")) {
+    throw std::invalid_argument("--robot-bag does not go with --only " + only + ", which plays no recording");
+  }
+  if (plays_recording && !line.has("--robot-bag")) {
+    throw std::invalid_argument("--only " + only + " needs --robot-bag FILE, the recording of a dVRK PSM");
   }
 }
 

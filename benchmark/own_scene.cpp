@@ -33,7 +33,7 @@ class OwnScene {
     requireRegularFile(options.bag_file, "bag");
     scene_.scene = loadScene(options.scene_file, packagePath);
     scene_.scene.solver.time_budget_s = 0.0;  // its answers would depend on the machine
-    scene_.environment = bagEnvironment(options.bag_file, options.urdf_file, scene_.scene.world_frame);
+    scene_.environment = bagEnvironment(scene_.scene, options.bag_file, options.urdf_file);
     Recording recording = readRecording(options.bag_file, scene_.scene, options.window);
     for (const std::string& topic : recording.missing_topics) {
       out_ << "warning: the bag has no message on " << topic << "; its joints stay where the scene puts them\n";

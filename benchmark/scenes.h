@@ -33,7 +33,7 @@ struct ScenePlan {
 
 struct SceneOptions {
   bool quick = false;
-  std::string robot_bag;  ///< empty: no robot scene
+  std::string robot_bag;  ///< empty: no robot scenes
 };
 
 /// Press and drag, for the peer as well: one coefficient of friction, a sphere of 5 mm, 4 mm deep at 20 mm/s, dragged at
@@ -57,7 +57,9 @@ Vector3 pressDragBase();  ///< of the probe, m
 ScenePlan pressDragPlan(const SceneOptions& options);
 ScenePlan graspPlan(const SceneOptions& options);
 ScenePlan partialSlipPlan(const SceneOptions& options);
-/// @throws std::runtime_error when the bag cannot be used.
+/// A recorded arm touches a pad with the end of one jaw. @throws std::runtime_error when the bag cannot be used.
 ScenePlan robotPlan(const SceneOptions& options);
+/// The same arm sweeps its jaws through a slab. @throws std::runtime_error when the bag cannot be used.
+ScenePlan robotSweepPlan(const SceneOptions& options);
 
 }  // namespace tissue_contact

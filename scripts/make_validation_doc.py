@@ -29,7 +29,8 @@ SCENES = {
     "press-drag": "Press and drag",
     "grasp": "Grasp with PSM jaws",
     "partial-slip": "Partial slip under a sphere",
-    "robot": "Recorded dVRK PSM over a slab",
+    "robot": "Recorded dVRK PSM touches a pad",
+    "robot-sweep": "Recorded dVRK PSM sweeps through a slab",
 }
 
 

@@ -24,12 +24,13 @@ import matplotlib.pyplot as plt  # noqa: E402
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
 from whole_file import whole_file  # noqa: E402
 
-SCENES = ["press-drag", "grasp", "partial-slip", "robot"]
+SCENES = ["press-drag", "grasp", "partial-slip", "robot", "robot-sweep"]
 TITLES = {
     "press-drag": "Press and drag",
     "grasp": "Grasp with PSM jaws",
     "partial-slip": "Partial slip under a sphere",
-    "robot": "Recorded dVRK PSM over a slab",
+    "robot": "Recorded dVRK PSM touches a pad",
+    "robot-sweep": "Recorded dVRK PSM sweeps through a slab",
 }
 # Colour-blind safe (Okabe and Ito), ours in the strong ones.
 COLOURS = {

@@ -158,10 +158,10 @@ class Grasp {
     double squared = 0.0;
     for (const Vector3& impulse : solution.impulses) squared += impulse.squaredNorm();
     double& defect = squared > 0.0 ? stability_.defect : stability_.free_defect;
-    const double left = simulator_.report().residuals.momentum_defect_n_s;
+    const double left = simulator_.residuals().momentum_defect_n_s;
     const double share = left == 0.0 ? 0.0 : left / (loadScale(problem) + std::sqrt(squared));
     if (!(share <= defect)) defect = share;  // NaN stays visible
-    stability_.penetration_m = std::max(stability_.penetration_m, simulator_.report().residuals.penetration_m);
+    stability_.penetration_m = std::max(stability_.penetration_m, simulator_.residuals().penetration_m);
   }
 
   Simulator simulator_;

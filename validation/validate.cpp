@@ -50,6 +50,8 @@ Options parseOptions(const std::vector<std::string>& arguments) {
   options.help = line.help();
   options.list = line.has("--list");
   options.json = line.value("--json");
+  if (options.list && line.has("--json"))
+    throw std::invalid_argument("--json does not go with --list, which runs no case");
   for (const std::string& name : line.all("--case")) options.cases.push_back(caseByName(name));
   if (options.cases.empty()) {
     for (const ValidationCase& one : validationCases()) options.cases.push_back(&one);

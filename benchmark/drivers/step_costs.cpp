@@ -1,7 +1,8 @@
 /// Prints what an implicit step costs: press and drag (a 5 mm ball, 4 mm deep, 20 mm/s) on a block or on a Gmsh mesh of the
 /// same block, with the median and the 99th percentile of the processor time of a step in contact. `--trace FILE` writes
 /// every step: why was this one slow?
-/// usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--tolerance T] [--relaxation NAME] [--step S] [--drag M] [--trace FILE]
+/// usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--tolerance T] [--relaxation NAME] [--iterations N]
+/// [--step S] [--drag M] [--youngs-modulus PA] [--poissons-ratio NU] [--trace FILE]
 #include <time.h>
 
 #include <algorithm>
@@ -27,11 +28,10 @@ constexpr double kDown = 0.0041;  // m, of which .1 mm through air
 
 struct Arguments {
   std::string mesh;
-  std::map<std::string, std::string> values = {{"--tolerance", "0.001"},
-                                               {"--relaxation", "gauss_seidel"},
-                                               {"--step", "0.001"},
-                                               {"--drag", "0.01"},
-                                               {"--trace", ""}};
+  std::map<std::string, std::string> values = {{"--tolerance", "0.001"},     {"--relaxation", "gauss_seidel"},
+                                               {"--iterations", "30"},       {"--youngs-modulus", "5000"},
+                                               {"--poissons-ratio", "0.45"}, {"--step", "0.001"},
+                                               {"--drag", "0.01"},           {"--trace", ""}};
 };
 
 bool parse(int argc, char** argv, Arguments& arguments) {
@@ -51,7 +51,9 @@ Simulator makeScene(const Arguments& arguments) {
                                     : "block: {size_m: [0.10, 0.10, 0.04], cells: [" + arguments.mesh + "]}\n";
   const std::string yaml =
       "tissues:\n  - name: block\n    " + geometry +
-      "    material: {model: corotational, youngs_modulus_pa: 5000, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n"
+      "    material: {model: corotational, youngs_modulus_pa: " + arguments.values.at("--youngs-modulus") +
+      ", poissons_ratio: " + arguments.values.at("--poissons-ratio") +
+      ", density_kg_per_m3: 1000}\n"
       "    damping: {stiffness_s: 0.003}\n"
       "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
       "instruments:\n  - name: probe\n    urdf: package://tissue_contact/urdf/probe.urdf\n    tip_link: tip\n"
@@ -59,7 +61,7 @@ Simulator makeScene(const Arguments& arguments) {
       "    contact_links: [tip]\n"
       "step: {max_step_s: " +
       arguments.values.at("--step") + "}\nsolver: {relaxation: " + arguments.values.at("--relaxation") +
-      ", tolerance: " + arguments.values.at("--tolerance") +
+      ", tolerance: " + arguments.values.at("--tolerance") + ", iterations: " + arguments.values.at("--iterations") +
       "}\nfriction: [{instrument: probe, tissue: block, static: 0.5}]\n";
   SceneEnvironment environment;
   environment.package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
@@ -119,9 +121,10 @@ void run(Simulator& simulator, const Arguments& arguments) {
 int main(int argc, char** argv) {
   Arguments arguments;
   if (!parse(argc, argv, arguments)) {
-    std::fprintf(stderr,
-                 "usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--tolerance T] [--relaxation NAME] [--step S] "
-                 "[--drag M] [--trace FILE]\n");
+    std::fprintf(
+        stderr,
+        "usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--tolerance T] [--relaxation NAME] [--iterations N] "
+        "[--step S] [--drag M] [--youngs-modulus PA] [--poissons-ratio NU] [--trace FILE]\n");
     return 2;
   }
   try {

@@ -3,10 +3,11 @@
 contact, extrapolated to no mesh size, no growth of the cells away from the contact and no step.
 
 usage, after scripts/build and `make -C "$(scripts/build --where)" truth_run`:
-  make_truth.py SCENE --runs DIR [--out FILE]      (Debian: gmsh, python3-numpy)
-  SCENE       press-drag, partial-slip or grasp
+  make_truth.py SCENE --runs DIR [--bag FILE] [--out FILE]      (Debian: gmsh, python3-numpy)
+  SCENE       press-drag, partial-slip, grasp or robot
   --runs DIR  meshes and runs; what is there is not run again, unless geometry, motion, tolerance or program are others. All of
               press-drag takes a quarter of an hour of one processor
+  --bag FILE  of robot: its recording (default: dvrk/psm2_classic_motion.bag of the folder TISSUE_CONTACT_SHARED_DATA)
   --out FILE  the table (default: beside this script)
 
 A tetrahedron of edge s misses forces by s^2 times something that depends on the place alone. Edges here are h within `reach` of the
@@ -40,11 +41,12 @@ class Run:
 
 class Plan:
     """`runs` for mesh and far field, all of one step; `steps` for dF/d(step), `bends` to see that it is straight; `none`: the
-    components of the force that are 0 by symmetry; `files` of the package that hold the scene, where the program does not."""
+    components of the force that are 0 by symmetry; `files` of the package that hold the scene, where the program does not; `bag`:
+    its motion is recorded."""
 
-    def __init__(self, table, size_m, path_m, reach_mm, tolerance, runs, steps, bends, none=(1,), files=()):
+    def __init__(self, table, size_m, path_m, reach_mm, tolerance, runs, steps, bends, none=(1,), files=(), bag=False):
         self.table, self.size_m, self.path_m, self.reach_mm, self.tolerance = table, size_m, path_m, reach_mm, tolerance
-        self.runs, self.steps, self.bends, self.none, self.files = runs, steps, bends, none, files
+        self.runs, self.steps, self.bends, self.none, self.files, self.bag = runs, steps, bends, none, files, bag
 
 
 def program(*command, output=None):
@@ -86,8 +88,8 @@ def box_geometry(size_m, path, run, reach_m):
     return "\n".join(text) + "\n"
 
 
-def forces(scene, plan, run, folder, truth_run, version):
-    """Times and forces (samples x 3) of a run. version: of the programs that make it."""
+def forces(scene, plan, run, folder, truth_run, version, bag):
+    """Times and forces (samples x 3) of a run. version: of the programs and files that make it; bag: [] or its recording."""
     path = (plan.path_m[0], plan.path_m[1] if run.path_end is None else run.path_end)
     geometry = box_geometry(plan.size_m, path, run, 1e-3 * plan.reach_mm)
     mesh = os.path.join(folder, "h%g_g%g_%s" % (run.h, run.g, key(geometry, version)))
@@ -99,7 +101,7 @@ def forces(scene, plan, run, folder, truth_run, version):
     arguments = ["%g" % run.step_s, "%g" % plan.tolerance, "%g" % run.seconds]
     result = "%s_%s.csv" % (mesh, "_".join(arguments))
     if not os.path.exists(result):
-        print(os.path.basename(result), program(truth_run, scene, mesh + ".msh", *arguments, output=result).strip(), flush=True)
+        print(os.path.basename(result), program(truth_run, scene, mesh + ".msh", *arguments, *bag, output=result).strip(), flush=True)
     with open(result, newline="", encoding="utf-8") as stream:
         rows = np.array([[float(v) for v in row] for row in list(csv.reader(stream))[1:]])
     return rows[:, 0], rows[:, 1:]
@@ -179,6 +181,15 @@ PLANS = {
          Run(0.25, 0.3, 4, 0.002), Run(0.25, 0.15, 2, 0.002)],
         [Run(0.5, 0.3, 4, step) for step in (0.002, 0.001)], [Run(0.7, 0.3, 4, step) for step in (0.002, 0.001, 0.0005)], (0, 1),
         ("config/grasp.yaml", "config/grasp_path.csv", "urdf/psm_classic.urdf")),
+    # Joint states come every 10 ms, 10.3 at most: 2.1 ms is five steps each, 1.05 and 0.525 ms are ten and twenty.
+    "robot": Plan(
+        "robot", (0.03, 0.026, 0.012), (-0.0015, 0.0016), 2.5, 1e-5,
+        [Run(0.7, 0.3, 3, 0.0021), Run(0.7, 0.15, 2, 0.0021), Run(0.5, 0.3, 3, 0.0021), Run(0.5, 0.15, 2, 0.0021),
+         Run(0.35, 0.3, 3, 0.0021), Run(0.35, 0.15, 2, 0.0021), Run(0.35, 0.1, 1.5, 0.0021), Run(0.25, 0.3, 3, 0.0021),
+         Run(0.25, 0.15, 2, 0.0021), Run(0.25, 0.1, 1.5, 0.0021), Run(0.18, 0.3, 3, 0.0021), Run(0.18, 0.15, 2, 0.0021)],
+        [Run(0.35, 0.3, 3, step) for step in (0.0021, 0.00105)],
+        [Run(0.5, 0.3, 3, step) for step in (0.0021, 0.00105, 0.000525)], (),
+        ("config/psm_palpation.yaml", "urdf/psm_classic.urdf"), True),
 }
 
 
@@ -207,9 +218,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("scene", choices=sorted(PLANS))
     parser.add_argument("--runs", required=True)
+    data = os.environ.get("TISSUE_CONTACT_SHARED_DATA") or os.path.join(PACKAGE, "..", "shared", "data")
+    parser.add_argument("--bag", default=os.path.join(data, "dvrk", "psm2_classic_motion.bag"))
     parser.add_argument("--out")
     arguments = parser.parse_args()
     plan = PLANS[arguments.scene]
+    bag = [arguments.bag] if plan.bag else []
+    if bag and not os.path.isfile(arguments.bag):
+        sys.exit("make_truth.py: no recording '%s'; give the dVRK PSM's with --bag FILE" % arguments.bag)
     folder = os.path.join(arguments.runs, arguments.scene)
     os.makedirs(folder, exist_ok=True)
     build = subprocess.run([os.path.join(PACKAGE, "scripts", "build"), "--where"], stdout=subprocess.PIPE, text=True,
@@ -217,10 +233,10 @@ def main():
     truth_run = os.path.join(build, "benchmark", "drivers", "truth_run")
     libraries = re.findall(re.escape(build) + r"\S+", subprocess.run(["ldd", truth_run], stdout=subprocess.PIPE, text=True,
                                                                      check=True).stdout)
-    version = key(program("gmsh", "--version"), *map(content, [truth_run] + libraries + [os.path.join(PACKAGE, file) for file in plan.files]))
+    version = key(program("gmsh", "--version"), *map(content, [truth_run] + libraries + bag + [os.path.join(PACKAGE, file) for file in plan.files]))
 
     def of(runs):
-        return [(run,) + forces(arguments.scene, plan, run, folder, truth_run, version) for run in runs]
+        return [(run,) + forces(arguments.scene, plan, run, folder, truth_run, version, bag) for run in runs]
 
     bent = step_slope(of(plan.bends))[1]
     slope = step_slope(of(plan.steps))[0]

@@ -38,12 +38,10 @@ class DelassusStepSolver : public ContactSolver {
     for (Eigen::Index c = 0; c < count; ++c) solution.impulses[c] = answer.r.segment<3>(3 * c);
     solution.states = answer.states;
     system.recoverVelocities(answer.r, solution.v);
-    report.residuals = computeResiduals(problem, solution, scratch_);
     return report;
   }
 
   SolverDescription description_;
-  std::vector<NodalVectors> scratch_;
 };
 
 }  // namespace

@@ -35,18 +35,16 @@ class ImpulseFriction : public IterativePredictorCorrector {
   SolverReport solve(const ContactProblem& problem, ContactSolution& solution) override {
     frictionless_ = problem;
     for (ContactRow& row : frictionless_.contacts) row.law = CoulombLaw();
-    SolverReport report = IterativePredictorCorrector::solve(frictionless_, solution);
+    const SolverReport report = IterativePredictorCorrector::solve(frictionless_, solution);
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
       if (!(solution.impulses[c][0] > 0.0)) continue;
       applyFriction(problem, problem.contacts[c], solution.impulses[c], solution.states[c], solution.v);
     }
-    report.residuals = computeResiduals(problem, solution, scratch_);
     return report;
   }
 
  private:
   ContactProblem frictionless_;
-  std::vector<NodalVectors> scratch_;
 };
 
 }  // namespace

@@ -36,6 +36,13 @@ struct Options {
   bool help = false;
 };
 
+/// @throws std::invalid_argument where the cone of the chosen solver has no sides.
+void requireSides(SolverMethod method) {
+  if (method == SolverMethod::kPolyhedral || method == SolverMethod::kCondensedLcp) return;
+  throw std::invalid_argument("--sides does not go with --solver " + std::string(solverMethodName(method)) +
+                              "; only polyhedral and condensed_lcp have cones with sides");
+}
+
 Options parseArguments(const std::vector<std::string>& arguments) {
   const CommandLine line(arguments, {{"--solver", "--tolerance", "--iterations", "--sides"}, {"--json"}, {}, true});
   Options options;
@@ -47,6 +54,7 @@ Options parseArguments(const std::vector<std::string>& arguments) {
   options.solver.iterations = static_cast<int>(line.integer("--iterations", 10000, 1, std::numeric_limits<int>::max()));
   options.solver.cone_sides =
       static_cast<int>(line.integer("--sides", options.solver.cone_sides, kMinConeSides, kMaxConeSides));
+  if (line.has("--sides")) requireSides(options.solver.method);
   if (line.words().size() > 1) {
     throw std::invalid_argument("more than one problem file: '" + line.words()[0] + "' and '" +
                                 printable(line.words()[1]) + "'");

@@ -93,9 +93,17 @@ ContactDetector& ContactDetector::operator=(ContactDetector&&) noexcept = defaul
 
 void ContactDetector::detect(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL,
                              double margin_m, std::vector<Contact>& contacts) {
+  detect(positions, X_WL, std::vector<double>(implementation_->surfaces->size(), margin_m), contacts);
+}
+
+void ContactDetector::detect(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL,
+                             const std::vector<double>& margins_m, std::vector<Contact>& contacts) {
   Implementation& self = *implementation_;
-  if (!(margin_m >= 0.0 && std::isfinite(margin_m)))
-    requireNonNegative("contact detection: margin", margin_m, "m");  // no string else
+  requireCount("margins of tissues", margins_m.size(), self.surfaces->size());
+  for (const double margin_m : margins_m) {
+    if (!(margin_m >= 0.0 && std::isfinite(margin_m)))
+      requireNonNegative("contact detection: margin", margin_m, "m");  // no string else
+  }
   requireCount("link poses of instruments", X_WL.size(), self.link_counts.size());
   for (std::size_t i = 0; i < X_WL.size(); ++i) {
     requireCount("link poses of an instrument", X_WL[i].size(), self.link_counts[i]);
@@ -104,6 +112,7 @@ void ContactDetector::detect(const std::vector<NodalVectors>& positions, const s
   contacts.clear();
   self.pinched = 0;
   for (MovingSurface& surface : *self.surfaces) {
+    const double margin_m = margins_m[surface.tissue()];
     for (const TouchingShape& shape : self.shapes) {
       const auto first = static_cast<std::ptrdiff_t>(contacts.size());
       const double groove = self.deepestGroove(shape, X_WL[shape.instrument]);
@@ -123,7 +132,7 @@ void ContactDetector::Implementation::detectPair(MovingSurface& surface, const T
                                                  double margin, std::vector<Contact>& contacts) {
   const Eigen::AlignedBox3d box = boxAround(*shape.distance, X_WS, margin + surface.halfThickness());
   if (!surface.box().intersects(box)) return;
-  surface.tree().overlapping(box, candidates);
+  surface.overlapping(box, candidates);
   if (candidates.empty()) return;
   narrow_phase.findContacts(*shape.distance, X_WS, surface, candidates, margin, found);
   for (const ShapeContact& one : found) {
@@ -250,7 +259,7 @@ double ContactDetector::Implementation::surfaceDistance(MovingSurface& surface, 
   const Matrix3 R_SW = X_WS.linear().transpose();
   const auto inShape = [&](int one) -> Vector3 { return R_SW * (surface.x(one) - X_WS.translation()); };
   double nearest = std::min(bound, distance.at(inShape(node)).distance);
-  surface.tree().overlapping(boxAround(distance, X_WS, std::max(nearest, 0.0)), candidates);
+  surface.overlapping(boxAround(distance, X_WS, std::max(nearest, 0.0)), candidates);
   ClosestPoint closest;
   for (const int triangle : candidates) {
     const Triangle& nodes = surface.triangles()[triangle];

@@ -54,16 +54,24 @@ TissuePairDetector::TissuePairDetector(TissuePairDetector&&) noexcept = default;
 TissuePairDetector& TissuePairDetector::operator=(TissuePairDetector&&) noexcept = default;
 
 void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, double margin_m,
+                                std::vector<Contact>& contacts) {
+  detect(positions, std::vector<double>(implementation_->pairs.size(), margin_m), {}, contacts);
+}
+
+void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, const std::vector<double>& margins_m,
                                 const std::vector<bool>& apart, std::vector<Contact>& contacts) {
   Implementation& self = *implementation_;
-  if (!(margin_m >= 0.0 && std::isfinite(margin_m)))
-    requireNonNegative("tissue pairs: margin", margin_m, "m");  // no string else
+  if (margins_m.size() != self.pairs.size()) refuse("one margin is needed for each pair");
+  for (const double margin_m : margins_m) {
+    if (!(margin_m >= 0.0 && std::isfinite(margin_m)))
+      requireNonNegative("tissue pairs: margin", margin_m, "m");  // no string else
+  }
   std::vector<MovingSurface>& surfaces = *self.surfaces;
   placeAll(surfaces, positions);
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(contacts.size());
   for (std::size_t p = 0; p < self.pairs.size(); ++p) {
     if (!apart.empty() && apart[p]) continue;
-    self.detectPair({surfaces[self.pairs[p].tissue], surfaces[self.pairs[p].other], margin_m}, contacts);
+    self.detectPair({surfaces[self.pairs[p].tissue], surfaces[self.pairs[p].other], margins_m[p]}, contacts);
   }
   const auto order = [](const Contact& a, const Contact& b) {
     return std::tie(a.key, a.gap_m) < std::tie(b.key, b.gap_m);

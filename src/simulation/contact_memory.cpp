@@ -42,7 +42,7 @@ void ContactMemory::remember(const std::vector<SolvedContact>& contacts) {
 }
 
 void ContactMemory::addKeptPoints(const ContactDetector& detector, const std::vector<NodalVectors>& positions,
-                                  const std::vector<std::vector<Pose>>& X_WL, double margin_m,
+                                  const std::vector<std::vector<Pose>>& X_WL, const std::vector<double>& margins_m,
                                   std::vector<Contact>& contacts) {
   kept_.clear();
   for (std::size_t first = 0, end = 0; first < remembered_.size(); first = end) {
@@ -55,7 +55,7 @@ void ContactMemory::addKeptPoints(const ContactDetector& detector, const std::ve
     for (std::size_t old = first; old < end; ++old) {
       if (isOpen(remembered_[old]) || remembered_[old].contact.key.slot == 0) continue;
       Contact contact = remembered_[old].contact;
-      if (detector.measure(positions, X_WL, margin_m, contact)) kept_.push_back(contact);
+      if (detector.measure(positions, X_WL, margins_m[contact.key.tissue], contact)) kept_.push_back(contact);
     }
   }
   contacts.insert(contacts.end(), kept_.begin(), kept_.end());

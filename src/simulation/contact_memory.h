@@ -27,8 +27,10 @@ class ContactMemory {
 
   /// Adds to the freshly detected contacts (sorted by key, slot 0) the remembered points that carried force and that no
   /// fresh contact of the same feature is near to; keeps the order. At most kKeptPoints per feature.
+  /// @param margins_m per tissue: points with a larger gap are let go.
   void addKeptPoints(const ContactDetector& detector, const std::vector<NodalVectors>& positions,
-                     const std::vector<std::vector<Pose>>& X_WL, double margin_m, std::vector<Contact>& contacts);
+                     const std::vector<std::vector<Pose>>& X_WL, const std::vector<double>& margins_m,
+                     std::vector<Contact>& contacts);
 
   /// Finds for each contact the one it continues: the same key, else the nearest contact of the same shape and tissue
   /// that no other contact continues, if it is no farther than its `reach_m` (a contact sliding onto the next triangle).

@@ -17,9 +17,10 @@ FoldWatch::FoldWatch(const std::vector<TouchingTissues>& pairs, const std::vecto
   apart_.assign(bodies_.size(), false);
 }
 
-const std::vector<bool>& FoldWatch::apart(const std::vector<NodalVectors>& positions, double travel_m) {
+const std::vector<bool>& FoldWatch::apart(const std::vector<NodalVectors>& positions,
+                                          const std::vector<double>& travels_m) {
   for (std::size_t p = 0; p < bodies_.size(); ++p) {
-    apart_[p] = bodies_[p].has_value() && bodies_[p]->cannotFold(positions[tissue_[p]], travel_m);
+    apart_[p] = bodies_[p].has_value() && bodies_[p]->cannotFold(positions[tissue_[p]], travels_m[tissue_[p]]);
   }
   return apart_;
 }

@@ -20,8 +20,8 @@ class FoldWatch {
   FoldWatch(const std::vector<TouchingTissues>& pairs, const std::vector<Tissue>& tissues);
 
   /// Per pair, whether it can be left out; empty if none ever can. No allocation.
-  /// @param travel_m the way any node may go in the coming step.
-  const std::vector<bool>& apart(const std::vector<NodalVectors>& positions, double travel_m);
+  /// @param travels_m per tissue: the way any node of it may go in the coming step.
+  const std::vector<bool>& apart(const std::vector<NodalVectors>& positions, const std::vector<double>& travels_m);
 
   bool watches(std::size_t pair) const { return !bodies_.empty() && bodies_[pair].has_value(); }
 

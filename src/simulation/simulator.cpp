@@ -8,6 +8,7 @@
 
 #include "simulation/advisor.h"
 #include "simulation/build_scene.h"
+#include "simulation/detection_margins.h"
 #include "simulation/fold_watch.h"
 #include "simulation/friction_table.h"
 #include "simulation/instrument_motion.h"
@@ -21,13 +22,6 @@
 
 namespace tissue_contact {
 namespace {
-
-/// Contacts are looked for this much beyond what present speeds can close in the step: speeds change within a step.
-constexpr double kMarginFactor = 1.5;
-constexpr double kMarginPerEdge = 0.01;
-
-/// Tissues are looked for this many edges from each other at most: pairs of features grow with the square of it.
-constexpr double kMostPairEdges = 2.0;
 
 std::vector<TissueSurface> surfacesOf(const std::vector<Tissue>& tissues) {
   std::vector<TissueSurface> surfaces;
@@ -65,13 +59,14 @@ struct Simulator::Implementation {
   const std::vector<Instrument> instruments;
   const std::vector<Tissue> tissues;
   const FrictionTable friction;
-  const double mean_edge;  ///< of all tissue surfaces, m
+  const SurfaceEdges edges;
 
   InstrumentMotion motion;
   std::vector<NodalVectors> x;  ///< per tissue, m
   ContactProblem problem;
   ContactSolution solution;         ///< v is the tissues' velocity
   std::deque<MovingTissue> moving;  ///< per tissue, each with its own of the three above; they never change their place
+  DetectionMargins margins;
   ContactDetector detector;
   std::optional<TissuePairDetector> pair_detector;  ///< only where tissues touch each other
   FoldWatch folds;
@@ -82,6 +77,8 @@ struct Simulator::Implementation {
   std::vector<Wrench> wrenches;    ///< per instrument
   LoadWatch load_watch;
   StepReport report;
+  std::optional<Residuals> residuals = Residuals();  ///< none: nobody has asked since the step
+  std::vector<NodalVectors> residual_scratch;
   long step_count = 0;
   double last_dt = 0.0;  ///< of the step before, s
   std::function<void()> observer;
@@ -92,11 +89,12 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       instruments(buildInstruments(scene, environment)),
       tissues(buildTissues(scene, environment)),
       friction(scene, instruments, tissues),
-      mean_edge(meanSurfaceEdge(tissues.data(), tissues.size())),
+      edges(tissues),
       motion(instruments),
       x(tissues.size()),
+      margins(edges, tissues.size(), buildTissuePairs(scene)),
       detector(instruments, shareSurfaces(surfacesOf(tissues), restPositionsOf(tissues)), environment.meshes),
-      contacts(tissues, motion, friction),
+      contacts(tissues, motion, friction, edges),
       solver(atEntry("solver", [&] { return makeContactSolver(scene.solver, environment.clock); })),
       wrenches(instruments.size()),
       load_watch(scene, tissues) {
@@ -122,12 +120,14 @@ void Simulator::Implementation::reset() {
   contacts.clear();
   wrenches.assign(instruments.size(), Wrench());
   report = StepReport();
+  residuals = Residuals();
   step_count = 0;
   last_dt = 0.0;
 }
 
 /// One implicit step: the rooms in order.
 void Simulator::Implementation::step(double dt) {
+  residuals.reset();
   restTissues();
   detectContacts(dt);
   wakeTouched();
@@ -153,22 +153,16 @@ void Simulator::Implementation::restTissues() {
 }
 
 void Simulator::Implementation::detectContacts(double dt) {
-  double fastest_squared = 0.0;
-  for (const NodalVectors& v : solution.v)
-    fastest_squared = std::max(fastest_squared, v.colwise().squaredNorm().maxCoeff());
-  const double tissue_travel = dt * (std::sqrt(fastest_squared) + dt * scene.gravity_m_per_s2.norm());
-  double margin = kMarginFactor * (motion.longestTravel() + tissue_travel) + kMarginPerEdge * mean_edge;
-  // Beyond so many elements nothing touches in one step; the bound also keeps an overflow of the speeds out.
-  constexpr double kMostEdges = 1e6;
-  margin = std::min(margin, kMostEdges * mean_edge);
-  detector.detect(x, motion.startPoses(), margin, found);
+  margins.begin(solution.v, scene.gravity_m_per_s2, dt, motion.longestTravel());
+  detector.detect(x, motion.startPoses(), margins.ofTissues(), found);
   report.pinched_contacts = detector.pinchedContacts();
   if (pair_detector) {
-    const double pair_margin = std::min(margin + kMarginFactor * tissue_travel, kMostPairEdges * mean_edge);
-    pair_detector->detect(x, pair_margin, folds.apart(x, margin), found);
+    pair_detector->detect(x, margins.ofPairs(), folds.apart(x, margins.ofTissues()), found);
     std::sort(found.begin(), found.end(), [](const Contact& a, const Contact& b) { return a.key < b.key; });
   }
-  contacts.begin(detector, x, margin, found);
+  const auto is_far = [&](const Contact& contact) { return contact.gap_m > margins.at(contact); };
+  found.erase(std::remove_if(found.begin(), found.end(), is_far), found.end());
+  contacts.begin(detector, x, margins.ofTissues(), found);
 }
 
 /// Nodes that contacts act on wake before anything is computed with them.
@@ -193,7 +187,6 @@ void Simulator::Implementation::solve(double dt) {
     const SolverReport solver_report = solver->solve(problem, solution);
     report.iterations += solver_report.iterations;
     report.stop = solver_report.stop;
-    report.residuals = solver_report.residuals;
     if (!wakeHeld(dt, repeats)) return;
   }
 }
@@ -222,7 +215,7 @@ void Simulator::Implementation::moveTissues(double dt) {
   }
   report.discarded = true;
   report.stop = StopReason::kIterations;
-  report.residuals = Residuals();
+  residuals = Residuals();
   report.sleeping_nodes = 0;
   report.held_force_n = 0.0;
   for (MovingTissue& tissue : moving) tissue.stop();
@@ -338,6 +331,11 @@ const NodalVectors& Simulator::positions(int tissue) const { return implementati
 const NodalVectors& Simulator::velocities(int tissue) const { return implementation_->solution.v.at(tissue); }
 const std::vector<SolvedContact>& Simulator::contacts() const { return implementation_->contacts.solved(); }
 const StepReport& Simulator::report() const { return implementation_->report; }
+const Residuals& Simulator::residuals() const {
+  Implementation& all = *implementation_;
+  if (!all.residuals) all.residuals = computeResiduals(all.problem, all.solution, all.residual_scratch);
+  return *all.residuals;
+}
 long Simulator::stepCount() const { return implementation_->step_count; }
 void Simulator::lowerClosestApproach(Approach& closest) {
   implementation_->detector.lowerClosestApproach(implementation_->x, implementation_->motion.startPoses(), closest);

@@ -26,28 +26,6 @@ double shareBeforeTouch(const ContactRow& row, const std::vector<NodalVectors>& 
   return way > row.gap_m ? row.gap_m / way : 1.0;
 }
 
-/// Mean length at rest of the sides of the surface's triangles at each node, m; 0 for nodes inside.
-std::vector<VectorX> edgesAtNodes(const std::vector<Tissue>& tissues) {
-  std::vector<VectorX> edges;
-  for (const Tissue& tissue : tissues) {
-    const NodalVectors& rest = tissue.restPositions();
-    VectorX sums = VectorX::Zero(rest.cols());
-    VectorX counts = VectorX::Zero(rest.cols());
-    for (const Triangle& triangle : tissue.surface()) {
-      for (int side = 0; side < 3; ++side) {
-        const int ends[] = {triangle[side], triangle[(side + 1) % 3]};
-        const double length = (rest.col(ends[0]) - rest.col(ends[1])).norm();
-        for (const int node : ends) {
-          sums[node] += length;
-          counts[node] += 1.0;
-        }
-      }
-    }
-    edges.push_back(sums.cwiseQuotient(counts.cwiseMax(1.0)));
-  }
-  return edges;
-}
-
 }  // namespace
 
 void sumImpulsesOn(int tissue, const std::vector<SolvedContact>& contacts, const std::vector<Vector3>& impulses,
@@ -73,8 +51,8 @@ void sumImpulsesOn(int tissue, const std::vector<SolvedContact>& contacts, const
 }
 
 StepContacts::StepContacts(const std::vector<Tissue>& tissues, const InstrumentMotion& motion,
-                           const FrictionTable& friction)
-    : tissues_(tissues), motion_(motion), friction_(friction), edges_(edgesAtNodes(tissues)) {
+                           const FrictionTable& friction, const SurfaceEdges& edges)
+    : tissues_(tissues), motion_(motion), friction_(friction), edges_(edges) {
   if (friction.dependsOnPressure()) pressure_.emplace(tissues);
 }
 
@@ -84,25 +62,12 @@ void StepContacts::clear() {
   contacts_.clear();
 }
 
-void StepContacts::begin(const ContactDetector& detector, const std::vector<NodalVectors>& x, double margin_m,
-                         std::vector<Contact>& found) {
-  memory_.addKeptPoints(detector, x, motion_.startPoses(), margin_m, found);
+void StepContacts::begin(const ContactDetector& detector, const std::vector<NodalVectors>& x,
+                         const std::vector<double>& margins_m, std::vector<Contact>& found) {
+  memory_.addKeptPoints(detector, x, motion_.startPoses(), margins_m, found);
   reaches_m_.resize(found.size());
-  for (std::size_t c = 0; c < found.size(); ++c) reaches_m_[c] = motion_.longestTravel() + edgeAt(found[c]);
+  for (std::size_t c = 0; c < found.size(); ++c) reaches_m_[c] = motion_.longestTravel() + edges_.finer(found[c]);
   memory_.recall(found, reaches_m_, contacts_);
-}
-
-/// How long edges are where a contact is, m; of two surfaces those of the finer one.
-double StepContacts::edgeAt(const Contact& contact) const {
-  const auto at = [&](int tissue, const std::array<int, 3>& nodes, const Vector3& weights) {
-    double edge = 0.0;
-    for (int i = 0; i < 3; ++i) edge += weights[i] == 0.0 ? 0.0 : weights[i] * edges_[tissue][nodes[i]];
-    return edge;
-  };
-  const ContactKey& key = contact.key;
-  const double own = at(key.tissue, contact.nodes, contact.weights);
-  if (key.other_tissue < 0) return own;
-  return std::min(own, at(key.other_tissue, contact.other_nodes, contact.other_weights));
 }
 
 void StepContacts::touchedNodes(int tissue, std::vector<int>& nodes) const {
@@ -202,7 +167,7 @@ void StepContacts::placeRow(const Contact& contact, double dt, ContactRow& row) 
       row.nodes[row.node_count++] = {key.other_tissue, contact.other_nodes[i], -contact.other_weights[i]};
     }
     row.u_tool.setZero();
-    half_extent = edgeAt(contact);
+    half_extent = edges_.finer(contact);
   }
   row.required_u_n = std::min(-contact.gap_m / dt, half_extent / kRecoveryTime_s);
 }
@@ -242,7 +207,7 @@ Vector3 StepContacts::slipOf(std::size_t c, const ContactProblem& problem, const
   Vector3 slip = problem.dt_s * (tangents * u_t);
   if (!held) return slip;
   if (before == ContactState::kStatic) slip -= tangents * u_besides_[c] * back_time_s_;
-  const double most = kMostSlipPerEdge * edgeAt(contacts_[c].contact);
+  const double most = kMostSlipPerEdge * edges_.finer(contacts_[c].contact);
   return slip.norm() > most ? Vector3(slip * (most / slip.norm())) : slip;
 }
 

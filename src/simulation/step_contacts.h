@@ -9,6 +9,7 @@
 
 #include "simulation/contact_memory.h"
 #include "simulation/contact_pressure.h"
+#include "simulation/detection_margins.h"
 #include "simulation/friction_table.h"
 #include "simulation/instrument_motion.h"
 #include "tissue_contact/contact/contact_detector.h"
@@ -36,14 +37,16 @@ void sumImpulsesOn(int tissue, const std::vector<SolvedContact>& contacts, const
 class StepContacts {
  public:
   /// The arguments must outlive this.
-  StepContacts(const std::vector<Tissue>& tissues, const InstrumentMotion& motion, const FrictionTable& friction);
+  StepContacts(const std::vector<Tissue>& tissues, const InstrumentMotion& motion, const FrictionTable& friction,
+               const SurfaceEdges& edges);
 
   void clear();  ///< no contacts and no history
 
   /// Begins a step with the contacts that `detector` has found (sorted by key): adds the points that are kept and lets
   /// each contact inherit.
   /// @param x per tissue, m.
-  void begin(const ContactDetector& detector, const std::vector<NodalVectors>& x, double margin_m,
+  /// @param margins_m per tissue: points kept from the step before are let go beyond it.
+  void begin(const ContactDetector& detector, const std::vector<NodalVectors>& x, const std::vector<double>& margins_m,
              std::vector<Contact>& found);
 
   /// The nodes of a tissue that contacts act on, some more than once; overwrites `nodes`.
@@ -76,13 +79,12 @@ class StepContacts {
   ContactBefore beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x, double last_dt) const;
   void land(const std::vector<NodalVectors>& v, double dt, std::vector<ContactRow>& rows);
   double& firstTouch(const ContactKey& key);
-  double edgeAt(const Contact& contact) const;
   Vector3 slipOf(std::size_t contact, const ContactProblem& problem, const ContactSolution& solution) const;
 
   const std::vector<Tissue>& tissues_;
   const InstrumentMotion& motion_;
   const FrictionTable& friction_;
-  const std::vector<VectorX> edges_;  ///< per tissue and node: mean length at rest of the surface's edges there, m
+  const SurfaceEdges& edges_;
   ContactMemory memory_;
   std::optional<ContactPressure> pressure_;  ///< only where friction depends on it
   std::vector<SolvedContact> contacts_;      ///< before the solve with what they inherit, after it with what was found

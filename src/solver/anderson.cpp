@@ -10,42 +10,47 @@ AndersonMixing::AndersonMixing(int depth) : depth_(depth), products_(depth, dept
   assert(1 <= depth && depth <= kMostSteps);
 }
 
-const VectorX& AndersonMixing::next(const VectorX& x, const VectorX& g) {
-  residual_ = g - x;
-  const double size = residual_.norm();
+AndersonMixing::View AndersonMixing::next(const Eigen::Ref<const VectorX>& x, const Eigen::Ref<const VectorX>& g) {
+  if (steps_ == 0) resize(x.size());
+  residual() = g - x;
+  const double size = residual().norm();
   if (steps_ > 0 && !(size <= least_)) steps_ = 0;
   if (steps_ == 0) {
-    residual_changes_.resize(x.size(), depth_);
-    g_changes_.resize(x.size(), depth_);
     least_ = size;
   } else {
     remember(g);
     least_ = std::min(least_, size);
   }
-  next_ = g;
-  mix(std::min(steps_, depth_));
+  View next = vector(2 * depth_ + 3);
+  next = g;
+  mix(std::min(steps_, depth_), next);
   ++steps_;
-  last_residual_.swap(residual_);
-  last_g_ = g;
-  return next_;
+  lastResidual() = residual();
+  lastG() = g;
+  return next;
 }
 
-void AndersonMixing::remember(const VectorX& g) {
+void AndersonMixing::resize(Eigen::Index size) {
+  size_ = size;
+  store_.resize(static_cast<std::size_t>(size * (2 * depth_ + 4)));
+}
+
+void AndersonMixing::remember(const Eigen::Ref<const VectorX>& g) {
   const int column = (steps_ - 1) % depth_;
-  residual_changes_.col(column) = residual_ - last_residual_;
-  g_changes_.col(column) = g - last_g_;
+  residualChange(column) = residual() - lastResidual();
+  gChange(column) = g - lastG();
   for (int other = 0; other < std::min(steps_, depth_); ++other) {
-    const double product = residual_changes_.col(column).dot(residual_changes_.col(other));
+    const double product = residualChange(column).dot(residualChange(other));
     products_(column, other) = products_(other, column) = product;
   }
 }
 
-void AndersonMixing::mix(int known) {
+void AndersonMixing::mix(int known, View& next) {
   if (known == 0) return;
   Weights along(known);
-  for (int k = 0; k < known; ++k) along[k] = residual_changes_.col(k).dot(residual_);
+  for (int k = 0; k < known; ++k) along[k] = residualChange(k).dot(residual());
   const Weights weights = products_.topLeftCorner(known, known).colPivHouseholderQr().solve(along);
-  for (int k = 0; k < known; ++k) next_ -= weights[k] * g_changes_.col(k);
+  for (int k = 0; k < known; ++k) next -= weights[k] * gChange(k);
 }
 
 }  // namespace tissue_contact

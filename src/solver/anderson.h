@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "tissue_contact/core/types.h"
 
@@ -21,11 +22,13 @@ class AndersonMixing {
   /// @param depth steps that are mixed, 1 to kMostSteps.
   explicit AndersonMixing(int depth);
 
-  /// Allocates only when x has another size than at the restart before. Between restarts it keeps its size.
+  using View = Eigen::Map<VectorX>;
+
+  /// Allocates only when x is larger than ever before. Between restarts it keeps its size.
   /// @param x where the map was evaluated.
   /// @param g what it gave.
   /// @return where to go on, valid until the next call; g itself at first and after the residual has grown.
-  const VectorX& next(const VectorX& x, const VectorX& g);
+  View next(const Eigen::Ref<const VectorX>& x, const Eigen::Ref<const VectorX>& g);
 
   /// Begins anew, with another map.
   void restart() { steps_ = 0; }
@@ -34,19 +37,23 @@ class AndersonMixing {
   using Products = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostSteps, kMostSteps>;
   using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostSteps, 1>;
 
-  void remember(const VectorX& g);
-  void mix(int known);
+  void resize(Eigen::Index size);
+  void remember(const Eigen::Ref<const VectorX>& g);
+  void mix(int known, View& next);
+
+  View vector(int k) { return {store_.data() + k * size_, size_}; }
+  View residualChange(int k) { return vector(k); }  ///< rings of `depth`
+  View gChange(int k) { return vector(depth_ + k); }
+  View residual() { return vector(2 * depth_); }  ///< g - x
+  View lastResidual() { return vector(2 * depth_ + 1); }
+  View lastG() { return vector(2 * depth_ + 2); }
 
   int depth_;
-  int steps_ = 0;                     ///< since they were forgotten
-  double least_ = 0.0;                ///< smallest residual since then
-  Eigen::MatrixXd residual_changes_;  ///< ring of `depth` columns
-  Eigen::MatrixXd g_changes_;
-  Products products_;  ///< of each two columns of residual_changes_
-  VectorX residual_;   ///< g - x
-  VectorX last_residual_;
-  VectorX last_g_;
-  VectorX next_;
+  int steps_ = 0;              ///< since they were forgotten
+  double least_ = 0.0;         ///< smallest residual since then
+  Products products_;          ///< of each two changes of the residual
+  std::vector<double> store_;  ///< all vectors, one after the other: a matrix gives memory back when it shrinks
+  Eigen::Index size_ = 0;      ///< of x
 };
 
 }  // namespace tissue_contact

@@ -24,7 +24,7 @@ class FactoredBody {
 
   /// Begins the contacts of a step: forgets touched nodes where they have become too many.
   void beginTouching();
-  /// Index of a node in S, added if it is new (three back-substitutions); -1 for a fixed node.
+  /// Index of a node in S, added if it is new (three back-substitutions in one); -1 for a fixed node.
   int touch(int node);
   /// Block between two nodes of S, 1/kg.
   Matrix3 compliance(int a, int b) const { return C_.block<3, 3>(3 * Eigen::Index{a}, 3 * Eigen::Index{b}); }
@@ -36,6 +36,7 @@ class FactoredBody {
  private:
   void forget();
   void solve();
+  void solveForNode(int row);
 
   SparseSystem system_;
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;
@@ -48,6 +49,7 @@ class FactoredBody {
   VectorX right_;
   VectorX permuted_;
   VectorX left_;
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> columns_;
   std::vector<int> index_of_;  ///< per node: index into touched_, else -1
   std::vector<int> touched_;   ///< S
   std::size_t touched_before_ = 0;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "solver/anderson.h"
@@ -16,15 +17,20 @@ static_assert(kPlainIterations % 2 == 0, "pairs of sweeps are mixed: forth and b
 /// Pairs of sweeps mixed. With 3 a grasp keeps twice the momentum defect, with 7 no scene gets faster.
 constexpr int kMixedPairs = 5;
 
-/// Of the bodies awake, one after the other.
-void gather(const ContactProblem& problem, const std::vector<NodalVectors>& v, VectorX& all) {
-  Eigen::Index at = 0;
-  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    if (problem.bodies[k].asleep) continue;
-    all.segment(at, v[k].size()) = Eigen::Map<const VectorX>(v[k].data(), v[k].size());
-    at += v[k].size();
-  }
+/// Bodies awake whose velocities are mixed with the same weights.
+struct Mixture {
+  std::vector<int> bodies;
+  AndersonMixing mixing{kMixedPairs};
+  std::vector<double> begun;    ///< velocities where a pair of sweeps began, one body after the other, m/s
+  std::vector<double> reached;  ///< and where it led
+};
+
+void gather(const Mixture& mixture, const std::vector<NodalVectors>& v, std::vector<double>& all) {
+  all.clear();
+  for (const int k : mixture.bodies) all.insert(all.end(), v[k].data(), v[k].data() + v[k].size());
 }
+
+AndersonMixing::View viewOf(std::vector<double>& all) { return {all.data(), static_cast<Eigen::Index>(all.size())}; }
 
 class GaussSeidelRelaxation : public Relaxation {
  public:
@@ -43,8 +49,10 @@ class GaussSeidelRelaxation : public Relaxation {
   bool project(const ContactProblem& problem, int contact, ContactCorrector& corrector, ContactSolution& solution);
   double correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution);
   void apply(const ContactRow& row, const Vector3& impulse_W, std::vector<NodalVectors>& v);
+  void groupBodies(const ContactProblem& problem);
+  int& groupOf(int body);
   void beginMixing(const ContactProblem& problem, const std::vector<NodalVectors>& v);
-  void mix(const ContactProblem& problem, std::vector<NodalVectors>& v);
+  void mix(std::vector<NodalVectors>& v);
 
   std::vector<BodySweep> bodies_;
   struct Touched {
@@ -57,9 +65,8 @@ class GaussSeidelRelaxation : public Relaxation {
   std::vector<std::vector<int>> node_contact_;  ///< per body and node: the contact that alone holds it, else -1
   bool holding_ = false;                        ///< some node_contact_ is a contact
   std::vector<int> held_;                       ///< scratch: the lanes of a body's nodes with such a contact, ascending
-  AndersonMixing mixing_{kMixedPairs};
-  VectorX begun_;    ///< velocities where a pair of sweeps began, of the bodies awake, m/s
-  VectorX reached_;  ///< and where it led
+  std::vector<int> partner_;                    ///< per body: one of its group that comes earlier; itself: the first
+  std::vector<Mixture> mixtures_;               ///< per body; only the first of a group has bodies
 };
 
 void GaussSeidelRelaxation::prepare(const ContactProblem& problem, ContactSolution& solution) {
@@ -175,7 +182,7 @@ double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration
                                     ContactSolution& solution) {
   const bool forward = iteration % 2 == 0;
   if (iteration == kPlainIterations) beginMixing(problem, solution.v);
-  if (forward && iteration > kPlainIterations) mix(problem, solution.v);
+  if (forward && iteration > kPlainIterations) mix(solution.v);
   if (!forward) followTouched(problem, solution.v);
   double change = 0.0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
@@ -190,26 +197,52 @@ double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration
   return std::sqrt(change);
 }
 
+/// Bodies that contacts of this step join share one map of velocities; those that nothing joins have maps of their own, with
+/// weights of their own (doc/method.md).
+void GaussSeidelRelaxation::groupBodies(const ContactProblem& problem) {
+  partner_.resize(problem.bodies.size());
+  std::iota(partner_.begin(), partner_.end(), 0);
+  for (const ContactRow& row : problem.contacts) {
+    for (int a = 1; a < row.node_count; ++a) {
+      int& one = groupOf(row.nodes[0].body);
+      int& other = groupOf(row.nodes[a].body);
+      one = other = std::min(one, other);
+    }
+  }
+}
+
+/// The first body of a body's group.
+int& GaussSeidelRelaxation::groupOf(int body) {
+  while (partner_[body] != body) body = partner_[body];
+  return partner_[body];
+}
+
 void GaussSeidelRelaxation::beginMixing(const ContactProblem& problem, const std::vector<NodalVectors>& v) {
-  Eigen::Index size = 0;
-  for (std::size_t k = 0; k < problem.bodies.size(); ++k) size += problem.bodies[k].asleep ? 0 : v[k].size();
-  begun_.resize(size);
-  reached_.resize(size);
-  mixing_.restart();
-  gather(problem, v, begun_);
+  groupBodies(problem);
+  mixtures_.resize(problem.bodies.size());
+  for (Mixture& mixture : mixtures_) mixture.bodies.clear();
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
+    if (!problem.bodies[k].asleep) mixtures_[groupOf(static_cast<int>(k))].bodies.push_back(static_cast<int>(k));
+  }
+  for (Mixture& mixture : mixtures_) {
+    mixture.mixing.restart();
+    gather(mixture, v, mixture.begun);
+  }
 }
 
 /// A sweep forth and one back, each with its passes over the contacts, are a map of velocities, nearly the same one
 /// throughout a step and nearly linear while no contact changes its state. The impulses are not mixed: the next passes
 /// bring them in line, and every answer lies in its cone.
-void GaussSeidelRelaxation::mix(const ContactProblem& problem, std::vector<NodalVectors>& v) {
-  gather(problem, v, reached_);
-  begun_ = mixing_.next(begun_, reached_);
-  Eigen::Index at = 0;
-  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    if (problem.bodies[k].asleep) continue;
-    Eigen::Map<VectorX>(v[k].data(), v[k].size()) = begun_.segment(at, v[k].size());
-    at += v[k].size();
+void GaussSeidelRelaxation::mix(std::vector<NodalVectors>& v) {
+  for (Mixture& mixture : mixtures_) {
+    if (mixture.bodies.empty()) continue;
+    gather(mixture, v, mixture.reached);
+    viewOf(mixture.begun) = mixture.mixing.next(viewOf(mixture.begun), viewOf(mixture.reached));
+    const double* from = mixture.begun.data();
+    for (const int k : mixture.bodies) {
+      std::copy_n(from, v[k].size(), v[k].data());
+      from += v[k].size();
+    }
   }
 }
 

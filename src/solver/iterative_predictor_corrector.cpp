@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tissue_contact/solver/residuals.h"
+
 namespace tissue_contact {
 namespace {
 
@@ -87,7 +89,6 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
     }
   }
   relaxation_->finish(problem, solution);
-  report.residuals = computeResiduals(problem, solution, scratch_);
   return report;
 }
 

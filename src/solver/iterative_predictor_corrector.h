@@ -53,7 +53,6 @@ class IterativePredictorCorrector : public ContactSolver {
   SecondsClock clock_;
   std::unique_ptr<Relaxation> relaxation_;
   ContactCorrector corrector_;
-  std::vector<NodalVectors> scratch_;
   double deadline_s_ = std::numeric_limits<double>::infinity();  ///< on clock_
   double prompt_s_ = std::numeric_limits<double>::infinity();    ///< on clock_
   double load_scale_ = 0.0;                                      ///< loadScale(), N s

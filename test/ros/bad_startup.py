@@ -89,13 +89,17 @@ class BadStartup(harness.TestCase):
     def test_parameter_like_none(self):
         self.assert_refused(["_scene:=" + harness.SCENE, "_gravity:=9.81"], "/tissue_contact/gravity", "tf_timeout_s")
 
+    def test_urdf_for_a_scene_that_names_its_own(self):
+        self.assert_refused(["_scene:=" + harness.SCENE, "_robot_description:=<robot/>"],
+                            "/tissue_contact/robot_description", "No instrument of the scene")
+
     def test_extra_argument(self):
         for extra in ["press.yaml", "--scene", "_scene=press.yaml", ""]:
             self.assert_refused(["_scene:=" + harness.SCENE, extra], "'" + extra + "'", "_scene:=")
 
     def test_parameters_of_others_are_a_warning(self):
         # Of a node below, of a scene that uses more URDFs, of an older version on a master that lives long.
-        others = ["camera/tf_timeout_s", "left/description", "gravity"]
+        others = ["camera/tf_timeout_s", "left/description", "gravity", "robot_description"]
         for name in others:
             rospy.set_param("/tissue_contact/" + name, "x")
         with harness.node(harness.SCENE) as node:
@@ -120,7 +124,7 @@ class BadStartup(harness.TestCase):
         with open(os.path.join(harness.PACKAGE, "urdf", "probe.urdf"), encoding="utf-8") as stream:
             rospy.set_param("/tissue_contact/arm/description", stream.read())
         rospy.set_param("/tissue_contact_of_another/sceen", "x")
-        for name, value in [("robot_description", "<unused/>"), ("diagnostic_period", 1.0), ("tf_timeout_s", 1.0),
+        for name, value in [("diagnostic_period", 1.0), ("tf_timeout_s", 1.0),
                             ("markers/force_arrow_m_per_n", 0.1), ("markers/displacement_full_scale_m", 0.01)]:
             rospy.set_param("/tissue_contact/" + name, value)
         arguments = ["__log:=" + self.path("log"), "chatter:=elsewhere", "/tissue_contact/status:=/s"]

@@ -76,6 +76,11 @@ class ReplayErrors(harness.TestCase):
         self.assertIn("none.urdf", errors)
         urdf = os.path.join(harness.PACKAGE, "urdf", "probe.urdf")
         self.replayed(scene, self.bag, self.csv, "--urdf", urdf)
+        for unused in [urdf, self.path("none.urdf")]:
+            code, errors = harness.replay(harness.SCENE, self.bag, self.path("unused.csv"), "--urdf", unused)
+            self.assertEqual(code, 1)
+            self.assertIn("--urdf would change nothing: no instrument of scene '%s'" % harness.SCENE, errors)
+            self.assertFalse(os.path.exists(self.path("unused.csv")))
         self.replayed(harness.SCENE, self.bag, self.path("direct.csv"))
         self.assertEqual(harness.read_csv(self.csv), harness.read_csv(self.path("direct.csv")))
 

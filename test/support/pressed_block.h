@@ -8,6 +8,7 @@
 
 #include "tissue_contact/mesh/tet_mesh.h"
 #include "tissue_contact/solver/contact_problem.h"
+#include "tissue_contact/solver/residuals.h"
 #include "tissue_contact/solver/solver_options.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
 
@@ -21,6 +22,13 @@ inline SolverOptions options(int iterations, int contact_passes, double toleranc
   chosen.contact_passes = contact_passes;
   chosen.tolerance = tolerance;
   return chosen;
+}
+
+/// @param scene has a `problem` and its `solution`.
+template <typename Scene>
+Residuals residualsOf(const Scene& scene) {
+  std::vector<NodalVectors> scratch;
+  return computeResiduals(scene.problem, scene.solution, scratch);
 }
 
 /// A block pressed and sheared through barycentric contacts on its upper face.

@@ -32,7 +32,7 @@ class GridTest(BenchmarkTest, unittest.TestCase):
         out = os.path.join(self.directory, "out")
         done = run("--quick", "--out", out)
         self.assertEqual(done.returncode, 0, done)
-        self.assertIn("robot: skipped", done.stdout)
+        self.assertIn("robot, robot-sweep: skipped", done.stdout)
         for scene in ["press-drag", "grasp", "partial-slip"]:
             with open(os.path.join(out, scene + ".csv"), newline="", encoding="ascii") as stream:
                 rows = list(csv.DictReader(stream))

@@ -323,7 +323,7 @@ class FilesTest(unittest.TestCase):
 
     def test_arguments_that_mean_nothing(self):
         for more, word in [(["_sceen:=x.yaml"], "'_sceen:=x.yaml'"), (["other.bag"], "'other.bag'"), (["--sceen=x"], "--sceen"),
-                           (["--timing", "--urdf"], "--timing"), (["--bag", self.bag], "twice")]:
+                           (["--timing", "--urdf"], "--timing"), (["--urdf", "x.urdf"], "--urdf would change nothing"), (["--bag", self.bag], "twice")]:
             with self.subTest(more=more):
                 self.assert_refused(self.replay(*more), word)
         self.assertEqual(os.listdir(self.directory), [])
@@ -331,6 +331,9 @@ class FilesTest(unittest.TestCase):
                 ([program("tissue_contact_validate"), "incline"], "'incline'"),
                 ([program("tissue_contact_validate"), "--json", "a", "--json", "b"], "twice"),
                 ([program("tissue_contact_validate"), "--json", "--list"], "--json"),
+                ([program("tissue_contact_validate"), "--json", "a", "--list"], "--json does not go with --list"),
+                ([program("tissue_contact_benchmark"), "--scene", os.path.join(SOURCE, "config", "press_drag.yaml"), "--bag",
+                  self.bag, "--urdf", "x.urdf"], "--urdf would change nothing"),
                 ([program("tissue_contact_solve"), "a", "_x:=3"], "'_x:=3'"),
                 ([program("tissue_contact_solve"), "a", "--tolerance", "1e-3", "--tolerance", "1e-4"], "twice"),
                 ([program("tissue_contact_benchmark"), "--quick", "x.bag"], "'x.bag'"),

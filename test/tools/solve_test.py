@@ -88,6 +88,8 @@ class SolveTest(unittest.TestCase):
             self.assert_refused([self.file, "--iterations", value], "iterations")
         for value in ("3", "5", "66"):
             self.assert_refused([self.file, "--solver", "polyhedral", "--sides", value], "sides", value)
+        for solver in ([], ["--solver", "reference"], ["--solver", "cone4"]):
+            self.assert_refused([self.file, "--sides", "16", *solver], "--sides does not go with --solver")
 
     def test_bad_files(self):
         self.assert_refused([self.file.parent / "absent.txt"], "absent.txt")

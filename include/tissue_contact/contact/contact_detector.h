@@ -36,14 +36,17 @@ class ContactDetector {
   ContactDetector(ContactDetector&&) noexcept;
   ContactDetector& operator=(ContactDetector&&) noexcept;
 
-  /// Every surface feature nearer than `margin_m` to a shape, at these positions and poses, sorted by key. Which of them
+  /// Every surface feature nearer to a shape than the margin of its tissue, at these positions and poses, sorted by key. Which of them
   /// count as contacts: src/contact/narrow_phase.h. Non-finite positions give no contact. Deterministic: depends on the
   /// arguments alone, not on earlier calls. Not thread-safe (moves the surfaces).
   /// @param positions one per tissue, m, world frame.
   /// @param X_WL per instrument, per link of its model.
-  /// @param margin_m >= 0.
+  /// @param margins_m one per tissue, >= 0.
   /// @param contacts overwritten; capacity is kept.
   /// @throws std::invalid_argument for sizes that differ from the construction's and a margin not finite or < 0.
+  void detect(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL,
+              const std::vector<double>& margins_m, std::vector<Contact>& contacts);
+  /// The same margin for all.
   void detect(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL, double margin_m,
               std::vector<Contact>& contacts);
 

@@ -27,18 +27,18 @@ class TissuePairDetector {
   TissuePairDetector(TissuePairDetector&&) noexcept;
   TissuePairDetector& operator=(TissuePairDetector&&) noexcept;
 
-  /// Appends every vertex-face and edge-edge pair nearer than `margin_m`: `tissue` and `nodes` hold one point, the
+  /// Appends every vertex-face and edge-edge pair nearer than the margin of the tissues: `tissue` and `nodes` hold one point, the
   /// `other_*` members the point in the instrument's place, n from it into `tissue`. At most 4 nodes have a weight.
   /// What is appended is sorted by key. Deterministic: depends on the arguments alone. No allocation once vectors have
   /// grown. Not thread-safe. Non-finite positions give no contact. Which pairs count: src/contact/pair/vertex_face.h and
   /// edge_edge.h.
+  /// @param margins_m per pair of tissues.
   /// @param apart per pair: known not to touch and left out; empty: none is.
   /// @throws std::invalid_argument for sizes that differ from the construction's and a margin not finite or < 0.
-  void detect(const std::vector<NodalVectors>& positions, double margin_m, const std::vector<bool>& apart,
-              std::vector<Contact>& contacts);
-  void detect(const std::vector<NodalVectors>& positions, double margin_m, std::vector<Contact>& contacts) {
-    detect(positions, margin_m, {}, contacts);
-  }
+  void detect(const std::vector<NodalVectors>& positions, const std::vector<double>& margins_m,
+              const std::vector<bool>& apart, std::vector<Contact>& contacts);
+  /// All pairs, with the same margin.
+  void detect(const std::vector<NodalVectors>& positions, double margin_m, std::vector<Contact>& contacts);
 
  private:
   struct Implementation;

@@ -4,6 +4,7 @@
 
 #include <ros/node_handle.h>
 
+#include <stdexcept>
 #include <string>
 
 #include "tissue_contact/simulation/simulator.h"
@@ -26,11 +27,18 @@ std::string packagePath(const std::string& package);
 /// @throws std::invalid_argument when ~tf_timeout_s is no number from 0 to 1e6; the members throw it, naming what they tried.
 SceneEnvironment nodeEnvironment(const ros::NodeHandle& private_node, const std::string& world_frame);
 
+/// A URDF file is given that would change nothing: an argument is wrong, not a file.
+class UnusedUrdf : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
 /// For offline replay: packages through rospack, URDF text from a file, frames from the bag's /tf_static and /tf, each
 /// at the earliest moment it is known. Needs no roscore.
+/// @param scene that is to be built.
 /// @param bag_file bag to take frames from, opened when the first frame is wanted.
 /// @param urdf_file text to use for every URDF parameter; empty: a scene that wants one is refused.
-SceneEnvironment bagEnvironment(const std::string& bag_file, const std::string& urdf_file,
-                                const std::string& world_frame);
+/// @throws UnusedUrdf when there is a `urdf_file` and no instrument of the scene takes its URDF from a parameter.
+SceneEnvironment bagEnvironment(const Scene& scene, const std::string& bag_file, const std::string& urdf_file);
 
 }  // namespace tissue_contact

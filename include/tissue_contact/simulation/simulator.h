@@ -17,6 +17,7 @@
 #include "tissue_contact/simulation/scene_environment.h"
 #include "tissue_contact/simulation/solved_contact.h"
 #include "tissue_contact/solver/contact_solver.h"
+#include "tissue_contact/solver/residuals.h"
 #include "tissue_contact/tissue/tissue.h"
 
 namespace tissue_contact {
@@ -52,7 +53,6 @@ struct StepReport {
   bool discarded = false;  ///< a step gave no finite answer: tissues were stopped where they were
   int iterations = 0;      ///< solver iterations of its last step
   StopReason stop = StopReason::kTolerance;
-  Residuals residuals;        ///< of its last step, computed after the last sweep
   int sleeping_nodes = 0;     ///< left out of the last step, since they are at rest (see tissue_sleep.h)
   double held_force_n = 0.0;  ///< sum of the forces that holding them still takes, N: bounds the error it makes
   int open_contacts = 0;
@@ -124,6 +124,9 @@ class Simulator {
   const NodalVectors& velocities(int tissue) const;    ///< m/s, world frame
   const std::vector<SolvedContact>& contacts() const;  ///< of the last step, sorted by key; those of lastProblem()
   const StepReport& report() const;
+  /// Of the last step: how far its answer is from its contact problem. Computed when first asked for, at the price of about half a
+  /// sweep forth and back; zeros before the first step, and where the step had no finite answer.
+  const Residuals& residuals() const;
   long stepCount() const;  ///< implicit steps since the last reset
 
   /// Lowers `closest` to where an instrument is nearest to a tissue's surface now, if that is nearer than what it

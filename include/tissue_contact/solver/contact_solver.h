@@ -4,7 +4,6 @@
 #pragma once
 
 #include "tissue_contact/solver/contact_problem.h"
-#include "tissue_contact/solver/residuals.h"
 
 namespace tissue_contact {
 
@@ -14,7 +13,6 @@ enum class StopReason { kTolerance, kIterations, kTimeBudget };
 struct SolverReport {
   int iterations = 0;
   StopReason stop = StopReason::kIterations;
-  Residuals residuals;  ///< after the last sweep
 
   bool converged() const { return stop == StopReason::kTolerance; }
 };

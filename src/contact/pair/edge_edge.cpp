@@ -94,7 +94,7 @@ void EdgeEdge::collectNear(const SurfacePair& pair, MovingSurface& surface, cons
   const Vector3 b = surface.x(edge.nodes[1]);
   const Eigen::AlignedBox3d box(Vector3(a.cwiseMin(b) - around), Vector3(a.cwiseMax(b) + around));
   if (!box.intersects(among.box()) || !maybeSharp(surface, edge)) return;
-  among.tree().overlapping(box, triangles_);
+  among.overlapping(box, triangles_);
   for (const int t : triangles_) {
     for (const int i : among.edges().edgesOf(t)) {
       const Edge& near = among.edges()[i];

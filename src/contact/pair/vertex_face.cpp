@@ -119,7 +119,7 @@ const VertexFace::Foot* VertexFace::wayOut(const SurfacePair& pair, int node, bo
 void VertexFace::findFeet(const SurfacePair& pair, int node, double reach) {
   const Vector3 p = pair.own.x(node);
   const Vector3 around = Vector3::Constant(reach);
-  pair.other.tree().overlapping({Vector3(p - around), Vector3(p + around)}, candidates_);
+  pair.other.overlapping({Vector3(p - around), Vector3(p + around)}, candidates_);
   feet_.clear();
   for (const int t : candidates_) {
     const Triangle& nodes = pair.other.triangles()[t];

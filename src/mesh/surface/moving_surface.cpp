@@ -55,7 +55,7 @@ MovingSurface::MovingSurface(int tissue, TissueSurface surface, const NodalVecto
   findFans();
   measureAtRest();
   place(rest);
-  refitted_ = placed_;
+  fit();
 }
 
 void MovingSurface::findFans() {
@@ -124,10 +124,42 @@ void MovingSurface::place(const NodalVectors& positions) {
   for (const int node : nodes_) box_.extend(x(node));
 }
 
-const TriangleTree& MovingSurface::tree() {
-  if (refitted_ != placed_) tree_.refit(x_);
-  refitted_ = placed_;
-  return tree_;
+void MovingSurface::fit() {
+  tree_.refit(x_);
+  fitted_.clear();
+  for (const int node : nodes_) fitted_.push_back(x(node));
+  moved_ = 0.0;
+  asked_ = placed_;
+}
+
+double MovingSurface::farthestMove() const {
+  Vector3 farthest = Vector3::Zero();
+  for (std::size_t k = 0; k < nodes_.size(); ++k) {
+    farthest = farthest.cwiseMax((x_.col(nodes_[k]) - fitted_[k]).cwiseAbs());
+  }
+  return farthest.maxCoeff();
+}
+
+/// A tree that has come a little out of date still serves: it is asked for a box that is larger by what the nodes have moved
+/// since, and what does not overlap where it is now is left out.
+void MovingSurface::overlapping(const Eigen::AlignedBox3d& box, std::vector<int>& triangles) {
+  constexpr double kMostMoved = 0.1;  // edges: then boxes overlap needlessly often
+  if (asked_ != placed_) {
+    asked_ = placed_;
+    moved_ = farthestMove();
+    if (!(moved_ <= kMostMoved * mean_edge_)) fit();
+  }
+  constexpr double kRoundOff = 1e-12;  // of coordinates: the answer must not depend on when the tree was fitted
+  const Vector3 moved =
+      Vector3::Constant(moved_) + kRoundOff * (box.min().cwiseAbs() + box.max().cwiseAbs() + Vector3::Constant(moved_));
+  tree_.overlapping({box.min() - moved, box.max() + moved}, triangles);
+  if (moved_ == 0.0) return;
+  const auto isAway = [&](int triangle) {
+    Eigen::AlignedBox3d around;
+    for (const int node : triangles_[triangle]) around.extend(x(node));
+    return !around.intersects(box);
+  };
+  triangles.erase(std::remove_if(triangles.begin(), triangles.end(), isAway), triangles.end());
 }
 
 const Vector3& MovingSurface::normal(int triangle) {

@@ -63,7 +63,8 @@ class MovingSurface {
   const NodalVectors& positions() const { return x_; }
   Vector3 x(int node) const { return x_.col(node); }
   const Eigen::AlignedBox3d& box() const { return box_; }  ///< around the nodes that triangles use
-  const TriangleTree& tree();
+  /// Triangles whose bounding boxes overlap `box`, ascending.
+  void overlapping(const Eigen::AlignedBox3d& box, std::vector<int>& triangles);
   const Vector3& normal(int triangle);  ///< unit, or zero for a degenerate triangle
   /// Pseudonormal (Baerentzen and Aanaes 2005): its sign against the offset of a point tells inside from outside.
   Vector3 featureNormal(const SurfaceFeature& feature);
@@ -74,6 +75,8 @@ class MovingSurface {
     Vector3 normal = Vector3::Zero();
   };
   void findFans();
+  void fit();
+  double farthestMove() const;
   void measureAtRest();
   bool contains(int triangle, const SurfaceFeature& feature) const;
 
@@ -91,9 +94,11 @@ class MovingSurface {
   double smallest_extent_ = std::numeric_limits<double>::infinity();
 
   NodalVectors x_;
-  std::int64_t placed_ = 0;    ///< how often it has moved
-  std::int64_t refitted_ = 0;  ///< `placed_` when the tree was brought up to date
+  std::int64_t placed_ = 0;  ///< how often it has moved
   TriangleTree tree_;
+  std::vector<Vector3> fitted_;  ///< of `nodes_`: where they were when the tree was fitted, m
+  std::int64_t asked_ = 0;       ///< `placed_` when the tree was last asked
+  double moved_ = 0.0;           ///< the farthest a node has come since in one coordinate, then, m
   Eigen::AlignedBox3d box_;
   std::vector<NormalCache> normals_;
 };

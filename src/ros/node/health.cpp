@@ -162,9 +162,10 @@ bool Health::noteSteps(const PlayedSample& played, int steps, bool finite) {
     ++figures_.not_converged;
     if (report.stop == StopReason::kTimeBudget) ++figures_.out_of_time;
     std::ostringstream text;
-    text << toTime(played.stamp_ns) << " s: momentum " << report.residuals.momentum << ", penetration "
-         << report.residuals.penetration_m << " m, cone " << report.residuals.cone_violation_n << " N after "
-         << report.iterations << " iterations";
+    const Residuals& residuals = simulator_.residuals();
+    text << toTime(played.stamp_ns) << " s: momentum " << residuals.momentum << ", penetration "
+         << residuals.penetration_m << " m, cone " << residuals.cone_violation_n << " N after " << report.iterations
+         << " iterations";
     figures_.last_not_converged = text.str();
   }
   if (!report.discarded && finite) return false;

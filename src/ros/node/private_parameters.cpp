@@ -22,14 +22,20 @@ bool contains(const std::vector<std::string>& all, const std::string& one) {
   return std::find(all.begin(), all.end(), one) != all.end();
 }
 
+/// What an instrument reads that names neither a URDF nor another parameter.
+constexpr const char* kRobotDescription = "robot_description";
+
 /// Relative to the private namespace. diagnostic_period is diagnostic_updater's; roscpp, rosconsole and tf2_ros read none.
 const std::vector<std::string> kOwnNames = {"diagnostic_period", "markers/displacement_full_scale_m",
                                             "markers/force_arrow_m_per_n", "scene", "tf_timeout_s"};
 
+/// @param scene null: none is known yet.
 std::vector<std::string> knownNames(const Scene* scene) {
   std::vector<std::string> names = kOwnNames;
-  names.emplace_back("robot_description");
-  if (scene == nullptr) return names;
+  if (scene == nullptr) {
+    names.emplace_back(kRobotDescription);
+    return names;
+  }
   for (const InstrumentDescription& instrument : scene->instruments) {
     const std::string& name = instrument.robot_description_parameter;
     if (!name.empty() && !contains(names, name)) names.push_back(name);
@@ -42,7 +48,9 @@ std::string refusalText(const std::string& refused, const std::string& own, cons
   const std::string relative = refused.substr(own.size() + 1);
   const std::string nearest = nearestWord(relative, names);
   return "parameter '" + printable(refused, kMaxName) + "' is none that this node reads; " +
-         (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") + "It reads " + joined(names) + ". " +
+         (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") +
+         (relative == kRobotDescription ? "No instrument of the scene takes its URDF from it. " : "") + "It reads " +
+         joined(names) + ". " +
          (contains(arguments, relative)
               ? "It was given as _" + printable(relative, kMaxName) + ":=..."
               : "Correct it where it is set (a launch file?), or remove it: rosparam delete " +
@@ -109,7 +117,8 @@ void refuseUnknownParameters(const ros::NodeHandle& private_node, const Scene* s
     (is_argument || !misspelt(relative).empty() ? refused : ignored).push_back(name);
   }
   if (!refused.empty()) throw std::invalid_argument(refusalText(refused.front(), own, names, arguments));
-  ROS_WARN_STREAM("parameters that this node does not read: " << listOf(ignored) << "; it reads " << joined(names));
+  ROS_WARN_STREAM("parameters that this node does not read with this scene: " << listOf(ignored) << "; it reads "
+                                                                              << joined(names));
 }
 
 }  // namespace tissue_contact

@@ -114,7 +114,7 @@ void Outputs::publishState(const PlayedSample& played, int substeps, double step
 void Outputs::publishSnapshot(std::int64_t stamp_ns, int substeps, double step_time_s) {
   const bool mesh = mesh_rate_.due(stamp_ns) && bulky_.meshIsWanted();
   const bool contacts = contacts_rate_.due(stamp_ns) && bulky_.contactsAreWanted();
-  const bool status = status_rate_.due(stamp_ns) && bulky_.statusIsWanted();
+  const bool status = status_rate_.due(stamp_ns) && bulky_.statusIsWanted() && isFinite(simulator_.residuals());
   const bool markers = markers_rate_.due(stamp_ns) && bulky_.markersAreWanted();
   if (!mesh && !contacts && !status && !markers) return;
   std::unique_ptr<SceneSnapshot> snapshot = bulky_.queue().buffer();

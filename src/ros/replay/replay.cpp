@@ -92,7 +92,7 @@ class Replay {
   explicit Replay(const ReplayOptions& options)
       : options_(options),
         scene_(loadReplayedScene(options)),
-        simulator_(scene_, bagEnvironment(options.bag_file, options.urdf_file, scene_.world_frame)),
+        simulator_(scene_, bagEnvironment(scene_, options.bag_file, options.urdf_file)),
         player_(simulator_) {
     requireModelsKept(options, simulator_);
     for (const std::string& line : simulator_.advice()) std::cerr << kPrefix << "advisor: " << line << "\n";
@@ -170,7 +170,7 @@ class Replay {
       const long steps = simulator_.stepCount() - (played->was_reset ? 0 : steps_before);
       note(*played, steps);
       if (played->verdict != Verdict::kAccepted) continue;
-      if (!isFinite(simulator_)) {
+      if (!isFinite(simulator_) || !isFinite(simulator_.residuals())) {
         throw std::runtime_error("the step ending at " + stampText(played->stamp_ns) + " s gave no finite answer");
       }
       if (!touched_) noteApproach(played->stamp_ns);

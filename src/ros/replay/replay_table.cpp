@@ -35,7 +35,7 @@ ReplayTable::ReplayTable(const std::string& file) : WholeFile(file) {
 
 void ReplayTable::add(const Simulator& simulator, const PlayedSample& played, long steps) {
   const StepReport& report = simulator.report();
-  const Residuals& residuals = report.residuals;
+  const Residuals& residuals = simulator.residuals();
   std::ostream& out = stream();
   for (const int instrument : played.instruments) {
     out << stampText(played.stamp_ns) << ',';

@@ -41,7 +41,8 @@ TEST(BenchmarkOptionsTest, NumbersAreTheSameInAnyLocale) {
 TEST(BenchmarkOptionsTest, RefusesWhatMakesNoSense) {
   using Arguments = std::vector<std::string>;
   for (const Arguments& wrong :
-       {Arguments{"--oops"}, Arguments{"--only", "all"}, Arguments{"--only", "robot"}, Arguments{"--scene", "s"},
+       {Arguments{"--oops"}, Arguments{"--only", "all"}, Arguments{"--only", "robot"},
+        Arguments{"--only", "robot-sweep"}, Arguments{"--only", "grasp", "--robot-bag", "b"}, Arguments{"--scene", "s"},
         Arguments{"--bag", "b"}, Arguments{"--from", "1"}, Arguments{"--scene", "s", "--bag", "b", "--quick"},
         Arguments{"--scene", "s", "--bag", "b", "--duration", "0"},
         Arguments{"--scene", "s", "--bag", "b", "--duration", "nan"},

@@ -24,7 +24,7 @@ void waitFor(const ShutdownGuard& guard) {
 
 class ShutdownGuardTest : public testing::Test {
  protected:
-  void SetUp() override { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
+  void SetUp() override { ::testing::GTEST_FLAG(death_test_style) = "threadsafe"; }
 };
 
 TEST_F(ShutdownGuardTest, ASignalOnlyAsks) {

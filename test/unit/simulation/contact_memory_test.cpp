@@ -135,7 +135,7 @@ class KeptPoints : public ::testing::Test {
     instruments[0].linkPoses(Vector3(x, -0.3, 1.0), X_WL[0]);
     std::vector<Contact> contacts;
     detector->detect(positions, X_WL, 0.1, contacts);
-    memory.addKeptPoints(*detector, positions, X_WL, 0.1, contacts);
+    memory.addKeptPoints(*detector, positions, X_WL, {0.1}, contacts);
     return contacts;
   }
 

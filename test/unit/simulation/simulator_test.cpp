@@ -114,10 +114,28 @@ TEST(Simulator, MomentumResidualOfTissueThatCreepsBackToRestIsSmall) {
     simulator.advance(0.01, {Vector3(0.0, 0.0, -0.006 * down)});
     const StepReport& report = simulator.report();
     if (i < 110 || report.static_contacts + report.kinetic_contacts > 0) continue;
-    largest = std::max(largest, report.residuals.momentum);
+    largest = std::max(largest, simulator.residuals().momentum);
   }
   EXPECT_LT(largest, 1e-2);  // a hundredth of the weight; 1.2e-3 measured
   EXPECT_GT(largest, 0.0);
+}
+
+TEST(Simulator, ResidualsAreThoseOfTheLastStepWheneverAskedFor) {
+  Simulator simulator = makeScene();
+  EXPECT_EQ(simulator.residuals().momentum_defect_n_s, 0.0);
+  std::vector<NodalVectors> scratch;
+  for (int k = 1; k <= 30; ++k) {
+    simulator.advance(0.005, {Vector3(0.0, 0.0, -1e-4 * k)});
+    if (k % 10 != 0) continue;  // nobody asks after the other steps
+    const Residuals expected = computeResiduals(simulator.lastProblem(), simulator.lastSolution(), scratch);
+    EXPECT_GT(expected.momentum, 0.0);
+    for (int asked = 0; asked < 2; ++asked) {
+      EXPECT_EQ(simulator.residuals().momentum, expected.momentum);
+      EXPECT_EQ(simulator.residuals().cone_violation_n, expected.cone_violation_n);
+    }
+  }
+  simulator.reset();
+  EXPECT_EQ(simulator.residuals().momentum_defect_n_s, 0.0);
 }
 
 TEST(Simulator, RefusesBadTargetsAndKeepsItsState) {
@@ -228,7 +246,7 @@ TEST(Simulator, StepWithoutFiniteAnswerIsDiscardedAndSaidSo) {
   EXPECT_NE(simulator.report().stop, StopReason::kTolerance);
   EXPECT_EQ(simulator.positions(0), simulator.tissues()[0].restPositions());
   EXPECT_EQ(simulator.wrench(0).force, Vector3::Zero());
-  EXPECT_EQ(simulator.report().residuals.momentum, 0.0);
+  EXPECT_EQ(simulator.residuals().momentum, 0.0);
 }
 
 TEST(Simulator, FrictionDragsAgainstTheMotion) {

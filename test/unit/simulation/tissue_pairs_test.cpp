@@ -53,7 +53,7 @@ TEST(TissuePairs, ABlockRestsOnAnotherWithItsWeight) {
   const Vector3 force = forceOnBed(simulator);
   EXPECT_NEAR(force.z(), -weight, 1e-3 * weight);  // vibrations have died by exp(-1.5 s / 0.1 s) or faster
   EXPECT_LE(force.head<2>().norm(), 1e-3 * weight);
-  EXPECT_LE(simulator.report().residuals.penetration_m, 1e-5);
+  EXPECT_LE(simulator.residuals().penetration_m, 1e-5);
 }
 
 TEST(TissuePairs, FrictionHoldsBelowItsAngleAndNotAbove) {

@@ -48,7 +48,7 @@ TEST(IterativePredictorCorrector, FormASticks) {
   EXPECT_EQ(scene.solution.states[0], ContactState::kStatic);
   EXPECT_LE((scene.solution.impulses[0] - Vector3(2.0, -0.4, -0.2)).norm(), 1e-14);
   EXPECT_LE(scene.solution.v[0].norm(), 1e-14);
-  EXPECT_LE(report.residuals.momentum, 1e-14);
+  EXPECT_LE(residualsOf(scene).momentum, 1e-14);
 }
 
 TEST(IterativePredictorCorrector, FormASlides) {
@@ -84,7 +84,7 @@ TEST_P(Relaxations, ConvergeToTheWholeContactProblem) {
     IterativePredictorCorrector solver(options(5000, 2, 1e-13, GetParam()));
     const SolverReport report = solver.solve(scene.problem, scene.solution);
     EXPECT_TRUE(report.converged()) << "mu " << mu;
-    EXPECT_LE(report.residuals.momentum, 1e-11) << "mu " << mu;
+    EXPECT_LE(residualsOf(scene).momentum, 1e-11) << "mu " << mu;
     double normal = 0.0;
     int touching = 0;
     for (std::size_t c = 0; c < scene.problem.contacts.size(); ++c) {
@@ -93,12 +93,12 @@ TEST_P(Relaxations, ConvergeToTheWholeContactProblem) {
     }
     EXPECT_GT(touching, 10);
     // Relative to the total normal force; speeds are of order 0.1 m/s.
-    EXPECT_LE(report.residuals.adhesion_n, 0.0);
-    EXPECT_LE(report.residuals.penetration_m, 1e-12);
-    EXPECT_LE(report.residuals.complementarity_w, 1e-10 * normal);
-    EXPECT_LE(report.residuals.cone_violation_n, 1e-12 * normal);
-    EXPECT_LE(report.residuals.static_slip_m_per_s, 1e-11);
-    EXPECT_LE(report.residuals.kinetic_angle_rad, 1e-6);
+    EXPECT_LE(residualsOf(scene).adhesion_n, 0.0);
+    EXPECT_LE(residualsOf(scene).penetration_m, 1e-12);
+    EXPECT_LE(residualsOf(scene).complementarity_w, 1e-10 * normal);
+    EXPECT_LE(residualsOf(scene).cone_violation_n, 1e-12 * normal);
+    EXPECT_LE(residualsOf(scene).static_slip_m_per_s, 1e-11);
+    EXPECT_LE(residualsOf(scene).kinetic_angle_rad, 1e-6);
   }
 }
 
@@ -156,8 +156,8 @@ TEST_P(Relaxations, TwoBodiesFeelOppositeImpulses) {
   scene.solution.impulses.resize(1);
   scene.solution.states.resize(1);
   IterativePredictorCorrector solver(options(5000, 2, 1e-14, GetParam()));
-  const SolverReport report = solver.solve(scene.problem, scene.solution);
-  EXPECT_LE(report.residuals.momentum, 1e-11);
+  solver.solve(scene.problem, scene.solution);
+  EXPECT_LE(residualsOf(scene).momentum, 1e-11);
   EXPECT_GT(scene.solution.impulses[0][0], 0.0);
   EXPECT_NEAR(relativeVelocity(row, scene.solution.v)[0], 0.01, 1e-12);
   EXPECT_LE((scene.solution.v[0] + scene.solution.v[1]).norm(), 1e-10 * scene.solution.v[0].norm());
@@ -180,7 +180,7 @@ TEST(LaggedCholesky, GivesTheAnswerOfGaussSeidelWithAFactorOfAnotherStep) {
   const SolverReport report = lagged.solve(scene.problem, scene.solution);
   IterativePredictorCorrector(options(20000, 2, 1e-14)).solve(same.problem, same.solution);
   EXPECT_TRUE(report.converged());
-  EXPECT_LE(report.residuals.momentum, 1e-9);
+  EXPECT_LE(residualsOf(scene).momentum, 1e-9);
   EXPECT_LE((scene.solution.v[0] - same.solution.v[0]).norm(), 1e-9 * same.solution.v[0].norm());
 }
 
@@ -201,7 +201,7 @@ TEST(LaggedCholesky, RenewsAFactorThatDrivesTheAnswerApart) {
   scene.solution.v[0].setZero();
   const SolverReport report = solver.solve(scene.problem, scene.solution);
   EXPECT_TRUE(report.converged());
-  EXPECT_LE(report.residuals.momentum, 1e-11);
+  EXPECT_LE(residualsOf(scene).momentum, 1e-11);
   EXPECT_NEAR(scene.solution.v[0](2, 0), 1e-4, 1e-10);
 }
 
@@ -224,7 +224,7 @@ TEST(IterativePredictorCorrector, StopsWhenTheTimeBudgetIsSpentAndSaysSo) {
   const SolverReport report = IterativePredictorCorrector(timed, clock).solve(scene.problem, scene.solution);
   EXPECT_EQ(report.stop, StopReason::kTimeBudget);
   EXPECT_EQ(report.iterations, 3);
-  EXPECT_GT(report.residuals.momentum, 0.0);
+  EXPECT_GT(residualsOf(scene).momentum, 0.0);
   EXPECT_THROW(IterativePredictorCorrector{timed}, std::invalid_argument);  // no clock
 }
 
@@ -249,7 +249,7 @@ TEST(IterativePredictorCorrector, HeldNodesMoveWithTheTool) {
   scene.solution.states.assign(rows.size(), ContactState::kOpen);
   const SolverReport report = IterativePredictorCorrector(options(5000, 2, 1e-13)).solve(scene.problem, scene.solution);
   EXPECT_TRUE(report.converged());
-  EXPECT_LE(report.residuals.momentum, 1e-11);
+  EXPECT_LE(residualsOf(scene).momentum, 1e-11);
   int held = 0;
   for (std::size_t c = 0; c < rows.size(); ++c) {
     if (scene.solution.states[c] != ContactState::kStatic) continue;
@@ -259,20 +259,19 @@ TEST(IterativePredictorCorrector, HeldNodesMoveWithTheTool) {
   EXPECT_GT(held, 10);
 }
 
-TEST(IterativePredictorCorrector, FewIterationsReportTheirTrueMomentumResidual) {
+TEST(IterativePredictorCorrector, FewIterationsLeaveAMomentumResidual) {
   PressedBlock scene(0.5, 1e-2);
   IterativePredictorCorrector solver(options(1, 1, 1e-13));
   const SolverReport report = solver.solve(scene.problem, scene.solution);
   EXPECT_FALSE(report.converged());
-  EXPECT_GT(report.residuals.momentum, 1e-3);
+  EXPECT_GT(residualsOf(scene).momentum, 1e-3);
 }
 
 TEST(Residuals, NotANumberIsNeverTakenForZero) {
   OneNode scene(Vector3(-1.0, 0.2, 0.1), {0.5, 0.5});
   scene.solution.states = {ContactState::kStatic};
   scene.solution.v[0].setConstant(std::numeric_limits<double>::quiet_NaN());
-  std::vector<NodalVectors> scratch;
-  const Residuals residuals = computeResiduals(scene.problem, scene.solution, scratch);
+  const Residuals residuals = residualsOf(scene);
   EXPECT_TRUE(std::isnan(residuals.momentum));
   EXPECT_TRUE(std::isnan(residuals.penetration_m));
   EXPECT_TRUE(std::isnan(residuals.complementarity_w));
