@@ -83,7 +83,11 @@ void addEntries(const Neighbours& neighbours, const std::vector<int>& slice, Blo
 /// Places of the blocks below the diagonal, with the slices made.
 void findLower(const Neighbours& neighbours, BlockPattern& pattern) {
   std::vector<int> next(neighbours.size(), 0);  // per node: its blocks beyond the diagonal that have been seen
-  pattern.lower_first = {0};
+  std::size_t blocks = 0;
+  for (const std::vector<int>& row : neighbours) blocks += row.size();
+  pattern.lower.reserve(blocks / 2);
+  pattern.lower_first.reserve(neighbours.size() + 1);
+  pattern.lower_first.push_back(0);
   for (std::size_t i = 0; i < neighbours.size(); ++i) {
     for (const int column : neighbours[i]) {
       if (column > static_cast<int>(i)) break;
@@ -112,6 +116,9 @@ std::shared_ptr<const BlockPattern> BlockPattern::fromNeighbours(std::vector<std
     addEntries(neighbours, slice, *pattern);
   }
   findLower(neighbours, *pattern);
+  pattern->columns.shrink_to_fit();
+  pattern->rows.shrink_to_fit();
+  pattern->first.shrink_to_fit();
   return pattern;
 }
 
