@@ -10,9 +10,19 @@
 
 namespace tissue_contact {
 
-/// Slot (i, j) of an element's nodes i and j: BlockPattern::find(), the node if i = j; -1: not stored.
+/// Where an element's blocks lie. Slot (i, j), i <= j, of its nodes i and j: BlockPattern::find(), the node if i = j; -1: not
+/// stored.
 template <std::size_t N>
-using BlockSlots = std::array<std::array<int, N>, N>;
+class BlockSlots {
+ public:
+  int& operator()(std::size_t i, std::size_t j) { return at_[placeOf(i, j)]; }
+  int operator()(std::size_t i, std::size_t j) const { return at_[placeOf(i, j)]; }
+
+ private:
+  static std::size_t placeOf(std::size_t i, std::size_t j) { return i * (2 * N - i - 1) / 2 + j; }
+
+  std::array<int, N*(N + 1) / 2> at_;  ///< row by row
+};
 
 /// Of the block of nodes a and b.
 inline int slotOf(const BlockPattern& pattern, const std::vector<bool>& fixed, int a, int b) {
@@ -23,7 +33,7 @@ template <std::size_t N>
 BlockSlots<N> findSlots(const BlockPattern& pattern, const std::array<int, N>& nodes, const std::vector<bool>& fixed) {
   BlockSlots<N> slots;
   for (std::size_t i = 0; i < N; ++i) {
-    for (std::size_t j = 0; j < N; ++j) slots[i][j] = slotOf(pattern, fixed, nodes[i], nodes[j]);
+    for (std::size_t j = i; j < N; ++j) slots(i, j) = slotOf(pattern, fixed, nodes[i], nodes[j]);
   }
   return slots;
 }

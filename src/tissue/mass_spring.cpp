@@ -11,10 +11,10 @@ namespace {
 void addSpring(const Spring& spring, const Matrix3& unit_block, double scale, BlockMatrix& K) {
   const Matrix3 block = scale * unit_block;
   for (std::size_t i = 0; i < 2; ++i) {
-    if (spring.slots[i][i] >= 0) K.diagonal[spring.slots[i][i]] += block;
+    if (spring.slots(i, i) >= 0) K.diagonal[spring.slots(i, i)] += block;
   }
-  if (spring.slots[0][1] < 0) return;
-  K.add(spring.slots[0][1], -block);
+  if (spring.slots(0, 1) < 0) return;
+  K.add(spring.slots(0, 1), -block);
 }
 
 }  // namespace

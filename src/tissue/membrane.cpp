@@ -102,10 +102,10 @@ void addStiffness(const MembraneTriangle& triangle, const Stretch& stretch, Elas
   const Matrix3 tension = V * triangle.gradients.transpose() * tensionAcross(stretch) * triangle.gradients;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = i; j < 3; ++j) {
-      if (triangle.slots[i][j] < 0) continue;
+      if (triangle.slots(i, j) < 0) continue;
       const Matrix3 block = (lambda * c.col(i)) * c.col(j).transpose() + (crossed * c.col(j)) * c.col(i).transpose() +
                             straight * c.col(i).dot(c.col(j)) * in_plane + tension(i, j) * across;
-      addBlock(i == j, triangle.slots[i][j], block, triangle.damping_s, state.stiffness, state.damping);
+      addBlock(i == j, triangle.slots(i, j), block, triangle.damping_s, state.stiffness, state.damping);
     }
   }
 }

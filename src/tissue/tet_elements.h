@@ -15,12 +15,12 @@
 
 namespace tissue_contact {
 
+/// What of a tetrahedron the force kernels do not need, or not one by one.
 struct TetElement {
   Tetrahedron nodes;
-  Matrix3 rest_inverse;  ///< D_rest^-1, 1/m; its rows are grad N_1..N_3
-  double volume;         ///< m^3
-  LameParameters lame;   ///< Pa; for some models their own parameters in the place of Lame's
-  double damping_s;      ///< what of its stiffness goes into State::damping
+  double volume;        ///< m^3
+  LameParameters lame;  ///< Pa; for some models their own parameters in the place of Lame's
+  double damping_s;     ///< what of its stiffness goes into State::damping
   BlockSlots<4> slots;
 };
 
@@ -58,17 +58,20 @@ struct TetElements {
   /// Sorts the batches by whether all nodes of their elements are in `still`; `forces` are left to the model.
   void split(const std::vector<bool>& still, Held& held) const;
 
+  /// Gradients of the four shape functions of an element, columns, 1/m.
+  Eigen::Matrix<double, 3, 4> shapeGradients(std::size_t element) const;
+
+  Matrix3 deformationGradient(std::size_t element, const NodalVectors& x) const;
+
   std::vector<TetElement> elements;
   std::vector<ElementBatch> batches;            ///< the same elements, laid out for the force kernels
   LameParameters material;                      ///< of all elements, if batch_materials is empty
   std::vector<BatchMaterial> batch_materials;   ///< where materials differ
   bool damps = false;                           ///< there is a State::damping
   std::shared_ptr<const BlockPattern> pattern;  ///< of the stiffness
+
+ private:
+  Matrix3 restInverse(std::size_t element) const;  ///< D_rest^-1, 1/m; its rows are grad N_1..N_3
 };
-
-/// Gradients of the four shape functions, columns, 1/m.
-Eigen::Matrix<double, 3, 4> shapeGradients(const Matrix3& rest_inverse);
-
-Matrix3 deformationGradient(const TetElement& element, const NodalVectors& x);
 
 }  // namespace tissue_contact
