@@ -21,8 +21,9 @@ std::vector<int> chainsAfter(const Neighbours& neighbours) {
   return length;
 }
 
-/// Nodes whose earlier neighbours all lie in slices that are finished, in the order in which they are to be taken: the longest chain first, and
-/// of equal ones those with equally many blocks together, for a slice is as long as its longest row.
+/// Nodes whose earlier neighbours all lie in slices that are finished, in the order in which they are to be taken: the
+/// longest chain first, and of equal ones those with equally many blocks together, for a slice is as long as its
+/// longest row.
 class ReadyNodes {
  public:
   explicit ReadyNodes(const Neighbours& neighbours) : neighbours_(neighbours), chain_(chainsAfter(neighbours)) {

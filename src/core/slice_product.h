@@ -1,6 +1,7 @@
 /// @file
-/// Room `core`, private: products with four rows of a BlockMatrix at a time, one row per lane, for loops that are built for several vector
-/// widths. Every lane does what the plain product does in the same order, so the bits are the same.
+/// Room `core`, private: products with four rows of a BlockMatrix at a time, one row per lane, for loops that are built
+/// for several vector widths. Every lane does what the plain product does in the same order, so the bits do not depend
+/// on the width.
 #pragma once
 
 #include <array>

@@ -1,9 +1,10 @@
 /// @file
-/// Room `solver`, private: Gauss-Seidel sweeps over the nodes of one body, four at a time, with the impulses of contacts held.
+/// Room `solver`, private: Gauss-Seidel sweeps over the nodes of one body, four at a time, with the impulses of
+/// contacts held.
 ///
-/// A sweep visits the slices of the body's BlockPattern in their order, which gives what visiting node after node gives. A sweep forth leaves
-/// sum_{j<i} A_ij v_j of every node, which the sweep back then need not compute (Conrad & Wallach, "Alternating Methods for Sets of Linear
-/// Equations", Numer. Math. 32 (1979) 105-108).
+/// A sweep visits the slices of the body's BlockPattern in their order, which gives what visiting node after node
+/// gives. A sweep forth leaves sum_{j<i} A_ij v_j of every node, which the sweep back then need not compute (Conrad &
+/// Wallach, "Alternating Methods for Sets of Linear Equations", Numer. Math. 32 (1979) 105-108).
 #pragma once
 
 #include <array>

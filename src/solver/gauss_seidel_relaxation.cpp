@@ -197,8 +197,8 @@ double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration
   return std::sqrt(change);
 }
 
-/// Bodies that contacts of this step join share one map of velocities; those that nothing joins have maps of their own, with
-/// weights of their own (doc/method.md).
+/// Bodies that contacts of this step join share one map of velocities; those that nothing joins have maps of their own,
+/// with weights of their own (doc/method.md).
 void GaussSeidelRelaxation::groupBodies(const ContactProblem& problem) {
   partner_.resize(problem.bodies.size());
   std::iota(partner_.begin(), partner_.end(), 0);

@@ -1,10 +1,11 @@
 /// @file
-/// Room `core`: sparse symmetric matrix of 3x3 blocks over the nodes of a mesh. Of each pair of blocks that mirror each other one is stored,
-/// four rows side by side, so that products go through it with four rows at a time.
+/// Room `core`: sparse symmetric matrix of 3x3 blocks over the nodes of a mesh. Of each pair of blocks that mirror each
+/// other one is stored, four rows side by side, so that products go through it with four rows at a time.
 ///
-/// Sliced storage: Monakov, Lokhmotov & Avetisyan, "Automatically Tuning Sparse Matrix-Vector Multiplication for GPU Architectures", HiPEAC
-/// 2010. Which rows lie side by side: those that a Gauss-Seidel sweep in the order of the nodes may visit together (level scheduling: Saad,
-/// "Iterative Methods for Sparse Linear Systems", 2nd ed., section 11.6), so that such a sweep gives what it gives row by row.
+/// Sliced storage: Monakov, Lokhmotov & Avetisyan, "Automatically Tuning Sparse Matrix-Vector Multiplication for GPU
+/// Architectures", HiPEAC 2010. Which rows lie side by side: those that a Gauss-Seidel sweep in the order of the nodes
+/// may visit together (level scheduling: Saad, "Iterative Methods for Sparse Linear Systems", 2nd ed., section 11.6),
+/// so that such a sweep gives what it gives row by row.
 #pragma once
 
 #include <array>
@@ -27,18 +28,19 @@ struct BlockPattern {
   };
 
   int nodes = 0;
-  /// kRows nodes per slice; one that would have fewer repeats its first row, with blocks of zero. No row has a block with another one of its slice,
-  /// and blocks (i, j) with i < j have i in an earlier slice than j.
+  /// kRows nodes per slice; one that would have fewer repeats its first row, with blocks of zero. No row has a block
+  /// with another one of its slice, and blocks (i, j) with i < j have i in an earlier slice than j.
   std::vector<int> rows;
   std::vector<int> first;  ///< slices + 1 offsets of entries: one block for each row of the slice
-  /// kRows per entry: 3 * column, where its coordinates begin. Ascending in each lane, beyond the row; 3 * the row itself where there is no
-  /// block.
+  /// kRows per entry: 3 * column, where its coordinates begin. Ascending in each lane, beyond the row; 3 * the row
+  /// itself where there is no block.
   std::vector<int> columns;
   std::vector<int> lane_of;      ///< per node: kRows * slice + lane
   std::vector<int> lower_first;  ///< nodes + 1 offsets into `lower`
   std::vector<Lower> lower;      ///< columns ascending within a row
 
-  /// A block for every pair of free nodes that share an element (a range of node indices). Fixed nodes get none off the diagonal.
+  /// A block for every pair of free nodes that share an element (a range of node indices). Fixed nodes get none off the
+  /// diagonal.
   template <typename Elements>
   static std::shared_ptr<const BlockPattern> forElements(const Elements& elements, const std::vector<bool>& fixed) {
     std::vector<std::vector<int>> neighbours(fixed.size());
