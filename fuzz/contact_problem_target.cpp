@@ -14,7 +14,7 @@ constexpr int kMostContactsSolved = 3;
 constexpr int kIterations = 20;
 
 void checkRead(const DelassusProblem& problem) {
-  const Eigen::Index size = 3 * problem.contacts();
+  const Eigen::Index size = 3 * static_cast<Eigen::Index>(problem.contacts());
   fuzz::require(problem.contacts() > 0, "a problem has contacts");
   fuzz::require(problem.W.rows() == size && problem.W.cols() == size && problem.q.size() == size, "sizes that match");
   fuzz::require(problem.W.allFinite() && problem.q.allFinite(), "finite numbers");

@@ -3,7 +3,7 @@
 table of what the model advisor leaves out.
 
 usage, after scripts/build:   . scripts/env.bash; scripts/make_validation_doc.py [--robot-bag FILE] [--out DIR] [--quick] [--reuse]
-  --robot-bag FILE  recorded dVRK joint states for config/psm_dvrk.yaml (default: dvrk/psm2_classic_motion.bag of
+  --robot-bag FILE  recorded dVRK joint states for psm_dvrk.yaml and psm_palpation.yaml (default: dvrk/psm2_classic_motion.bag of
                     TISSUE_CONTACT_SHARED_DATA or ../shared/data, where it is there)
   --out DIR         where raw results go (default: validation, in the build directory)
   --quick           the coarse grid of tissue_contact_benchmark: a minute instead of half an hour

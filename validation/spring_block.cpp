@@ -174,7 +174,7 @@ double shareLeft(double dt, const std::string& region_damping) {
   std::vector<double> turns;
   double before = 0.0;
   double last = 0.0;
-  while (turns.size() < 5 && simulator.stepCount() * dt < 3.0) {
+  while (turns.size() < 5 && static_cast<double>(simulator.stepCount()) * dt < 3.0) {
     simulator.advance(dt, {});
     const double now = displacement(simulator);
     if ((last - before) * (now - last) < 0.0) turns.push_back(last + kStart);

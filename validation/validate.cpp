@@ -39,6 +39,7 @@ const ValidationCase* caseByName(const std::string& name) {
   const auto found = std::find_if(all.begin(), all.end(), [&](const ValidationCase& one) { return name == one.name; });
   if (found != all.end()) return &*found;
   std::vector<std::string> names;
+  names.reserve(all.size());
   for (const ValidationCase& one : all) names.emplace_back(one.name);
   throw std::invalid_argument("--case '" + name + "' is unknown; " + suggestion(name, names) +
                               "there are: " + joined(names));

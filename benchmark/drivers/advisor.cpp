@@ -71,7 +71,7 @@ Run alongPath(Scene scene, const std::string& file, double dt_s, double end_s) {
     column.push_back(at == path.joints.end() ? -1 : static_cast<int>(at - path.joints.begin()) + 1);
   }
   const Simulator start(scene, ownEnvironment());
-  const VectorX initial = start.jointPositions(0);
+  const VectorX& initial = start.jointPositions(0);
   Run run{std::move(scene), static_cast<int>(std::lround(end_s / dt_s)), dt_s, {}};
   run.joints = [path, column, initial, dt_s](int step) {
     const double time = std::min(dt_s * step, path.rows.back()[0]);

@@ -152,7 +152,8 @@ void printCones() {
   law.mu_static = law.mu_kinetic = 0.5;
   std::printf("cone,angle_deg,direction_error_deg,drag_error_percent,held_error_percent\n");
   for (const Cone& cone : kCones) {
-    for (double degrees = 0.0; degrees <= 90.0; degrees += 0.5) {
+    for (int half_degrees = 0; half_degrees <= 180; ++half_degrees) {
+      const double degrees = 0.5 * half_degrees;
       Vector3 q(-1.0, 0.0, 0.0);
       q.tail<2>() = 1e6 * direction(degrees);
       const Vector2 previous = cone.follows ? direction(degrees - 5.0) : Vector2(Vector2::Zero());

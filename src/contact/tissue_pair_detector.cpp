@@ -10,6 +10,7 @@
 
 #include "contact/pair/edge_edge.h"
 #include "contact/pair/vertex_face.h"
+#include "mesh/mesh_checks.h"
 #include "tissue_contact/core/check.h"
 
 namespace tissue_contact {
@@ -61,7 +62,7 @@ void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, doub
 void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, const std::vector<double>& margins_m,
                                 const std::vector<bool>& apart, std::vector<Contact>& contacts) {
   Implementation& self = *implementation_;
-  if (margins_m.size() != self.pairs.size()) refuse("one margin is needed for each pair");
+  requireCount("margins of pairs of tissues", margins_m.size(), self.pairs.size());
   for (const double margin_m : margins_m) {
     if (!(margin_m >= 0.0 && std::isfinite(margin_m)))
       requireNonNegative("tissue pairs: margin", margin_m, "m");  // no string else

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace tissue_contact {
@@ -37,6 +38,16 @@ VectorX edgesAtNodes(const Tissue& tissue) {
     }
   }
   return sums.cwiseQuotient(counts.cwiseMax(1.0));
+}
+
+/// Of each tissue one that stands for all that pairs join it to.
+std::vector<std::size_t> groupsOf(const std::vector<TouchingTissues>& pairs, std::size_t tissues) {
+  std::vector<std::size_t> group(tissues);
+  std::iota(group.begin(), group.end(), 0);
+  for (const TouchingTissues& pair : pairs) {
+    std::replace(group.begin(), group.end(), std::size_t{group[pair.other]}, std::size_t{group[pair.tissue]});
+  }
+  return group;
 }
 
 }  // namespace
@@ -77,6 +88,8 @@ double SurfaceEdges::coarserScale(const Contact& contact) const {
 DetectionMargins::DetectionMargins(const SurfaceEdges& edges, std::size_t tissues, std::vector<TouchingTissues> pairs)
     : edges_(edges),
       pairs_(std::move(pairs)),
+      group_(groupsOf(pairs_, tissues)),
+      ways_m_(tissues, 0.0),
       travels_m_(tissues, 0.0),
       of_tissues_(tissues, 0.0),
       of_pairs_(pairs_.size(), 0.0) {}
@@ -84,8 +97,14 @@ DetectionMargins::DetectionMargins(const SurfaceEdges& edges, std::size_t tissue
 void DetectionMargins::begin(const std::vector<NodalVectors>& v, const Vector3& gravity, double dt,
                              double instruments_m) {
   instruments_m_ = instruments_m;
+  for (std::size_t t = 0; t < ways_m_.size(); ++t) {
+    ways_m_[t] = dt * (std::sqrt(v[t].colwise().squaredNorm().maxCoeff()) + dt * gravity.norm());
+  }
   for (std::size_t t = 0; t < travels_m_.size(); ++t) {
-    travels_m_[t] = dt * (std::sqrt(v[t].colwise().squaredNorm().maxCoeff()) + dt * gravity.norm());
+    travels_m_[t] = 0.0;
+    for (std::size_t other = 0; other < ways_m_.size(); ++other) {
+      if (group_[other] == group_[t]) travels_m_[t] = std::max(travels_m_[t], ways_m_[other]);
+    }
     of_tissues_[t] = alone(static_cast<int>(t), edges_.largestScale(static_cast<int>(t)));
   }
   for (std::size_t p = 0; p < pairs_.size(); ++p) {

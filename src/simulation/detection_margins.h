@@ -35,8 +35,8 @@ class SurfaceEdges {
 };
 
 /// Contacts are looked for as far as present speeds can close in the step, and half as much again, since speeds change
-/// within it; besides that a hundredth of an edge. All of it is that of the tissue and place looked at: neither a faster nor
-/// a coarser one elsewhere counts.
+/// within it; besides that a hundredth of an edge of the place looked at. What a fast tissue strikes gets its speed within the
+/// step and hands it on, so the speed is that of the fastest of the tissues that pairs join, directly or through others.
 class DetectionMargins {
  public:
   /// @param edges must outlive this.
@@ -60,7 +60,9 @@ class DetectionMargins {
   const SurfaceEdges& edges_;
   std::vector<TouchingTissues> pairs_;
   double instruments_m_ = 0.0;
-  std::vector<double> travels_m_;  ///< per tissue: the way of its fastest node in the step
+  std::vector<std::size_t> group_;  ///< per tissue: one of those that pairs join it to
+  std::vector<double> ways_m_;      ///< per tissue: of its fastest node in the step
+  std::vector<double> travels_m_;   ///< per tissue: the longest of those in its group
   std::vector<double> of_tissues_;
   std::vector<double> of_pairs_;
 };

@@ -160,9 +160,7 @@ void Simulator::Implementation::detectContacts(double dt) {
     pair_detector->detect(x, margins.ofPairs(), folds.apart(x, margins.ofTissues()), found);
     std::sort(found.begin(), found.end(), [](const Contact& a, const Contact& b) { return a.key < b.key; });
   }
-  const auto is_far = [&](const Contact& contact) { return contact.gap_m > margins.at(contact); };
-  found.erase(std::remove_if(found.begin(), found.end(), is_far), found.end());
-  contacts.begin(detector, x, margins.ofTissues(), found);
+  contacts.begin(detector, x, margins, found);
 }
 
 /// Nodes that contacts act on wake before anything is computed with them.

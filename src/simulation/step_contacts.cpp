@@ -63,8 +63,12 @@ void StepContacts::clear() {
 }
 
 void StepContacts::begin(const ContactDetector& detector, const std::vector<NodalVectors>& x,
-                         const std::vector<double>& margins_m, std::vector<Contact>& found) {
-  memory_.addKeptPoints(detector, x, motion_.startPoses(), margins_m, found);
+                         const DetectionMargins& margins, std::vector<Contact>& found) {
+  const auto is_far = [&](const Contact& contact) { return contact.gap_m > margins.at(contact); };
+  const auto drop_far = [&] { found.erase(std::remove_if(found.begin(), found.end(), is_far), found.end()); };
+  drop_far();
+  memory_.addKeptPoints(detector, x, motion_.startPoses(), margins.ofTissues(), found);
+  drop_far();
   reaches_m_.resize(found.size());
   for (std::size_t c = 0; c < found.size(); ++c) reaches_m_[c] = motion_.longestTravel() + edges_.finer(found[c]);
   memory_.recall(found, reaches_m_, contacts_);

@@ -45,8 +45,8 @@ class StepContacts {
   /// Begins a step with the contacts that `detector` has found (sorted by key): adds the points that are kept and lets
   /// each contact inherit.
   /// @param x per tissue, m.
-  /// @param margins_m per tissue: points kept from the step before are let go beyond it.
-  void begin(const ContactDetector& detector, const std::vector<NodalVectors>& x, const std::vector<double>& margins_m,
+  /// @param margins of this step: contacts and kept points are let go beyond that of their place.
+  void begin(const ContactDetector& detector, const std::vector<NodalVectors>& x, const DetectionMargins& margins,
              std::vector<Contact>& found);
 
   /// The nodes of a tissue that contacts act on, some more than once; overwrites `nodes`.

@@ -100,8 +100,8 @@ void addStiffness(const MembraneTriangle& triangle, const Stretch& stretch, Elas
   const Matrix3 across = stretch.normal * stretch.normal.transpose();
   const Matrix3 in_plane = Matrix3::Identity() - across;
   const Matrix3 tension = V * triangle.gradients.transpose() * tensionAcross(stretch) * triangle.gradients;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = i; j < 3; ++j) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) {
       if (triangle.slots(i, j) < 0) continue;
       const Matrix3 block = (lambda * c.col(i)) * c.col(j).transpose() + (crossed * c.col(j)) * c.col(i).transpose() +
                             straight * c.col(i).dot(c.col(j)) * in_plane + tension(i, j) * across;

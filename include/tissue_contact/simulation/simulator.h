@@ -125,7 +125,7 @@ class Simulator {
   const std::vector<SolvedContact>& contacts() const;  ///< of the last step, sorted by key; those of lastProblem()
   const StepReport& report() const;
   /// Of the last step: how far its answer is from its contact problem. Computed when first asked for, at the price of about half a
-  /// sweep forth and back; zeros before the first step, and where the step had no finite answer.
+  /// sweep forth and back; zeros before the first step, and where the step had no finite answer. Two threads may not ask at once.
   const Residuals& residuals() const;
   long stepCount() const;  ///< implicit steps since the last reset
 

@@ -133,11 +133,13 @@ void MovingSurface::fit() {
 }
 
 double MovingSurface::farthestMove() const {
-  Vector3 farthest = Vector3::Zero();
+  double farthest = 0.0;
   for (std::size_t k = 0; k < nodes_.size(); ++k) {
-    farthest = farthest.cwiseMax((x_.col(nodes_[k]) - fitted_[k]).cwiseAbs());
+    const Vector3 moved = (x_.col(nodes_[k]) - fitted_[k]).cwiseAbs();
+    if (!moved.allFinite()) return std::numeric_limits<double>::infinity();
+    farthest = std::max(farthest, moved.maxCoeff());
   }
-  return farthest.maxCoeff();
+  return farthest;
 }
 
 /// A tree that has come a little out of date still serves: it is asked for a box that is larger by what the nodes have moved
@@ -153,7 +155,6 @@ void MovingSurface::overlapping(const Eigen::AlignedBox3d& box, std::vector<int>
   const Vector3 moved =
       Vector3::Constant(moved_) + kRoundOff * (box.min().cwiseAbs() + box.max().cwiseAbs() + Vector3::Constant(moved_));
   tree_.overlapping({box.min() - moved, box.max() + moved}, triangles);
-  if (moved_ == 0.0) return;
   const auto isAway = [&](int triangle) {
     Eigen::AlignedBox3d around;
     for (const int node : triangles_[triangle]) around.extend(x(node));

@@ -78,6 +78,7 @@ bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
   warn(played, steps);
   const bool accepted = played.verdict == Verdict::kAccepted;
   const bool finite = accepted && isFinite(simulator_);
+  const std::string not_converged = accepted && steps > 0 ? notConvergedText(played) : std::string();
   std::unique_lock<std::mutex> lock(mutex_);
   for (int v = 0; v < kVerdictCount; ++v) {
     figures_.by_verdict[static_cast<std::size_t>(v)] = player_.count(static_cast<Verdict>(v));
@@ -91,6 +92,7 @@ bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
   if (!accepted) return false;
   if (played.was_reset) figures_.broken = false;
   played_stamp_ns_ = played.stamp_ns;
+  if (!not_converged.empty()) figures_.last_not_converged = not_converged;
   const bool is_newly_broken = steps > 0 && noteSteps(played, steps, finite);
   lock.unlock();  // a log that blocks must not hold up those who ask for the figures
   if (is_newly_broken) tellBroken(played, finite);
@@ -134,6 +136,19 @@ void Health::warn(const PlayedSample& played, int steps) {
   }
 }
 
+/// What is left of an interval that missed its tolerance; empty where none did, and mostly where many do: the residuals are computed
+/// before the wrench goes out, in just the steps that are late already.
+std::string Health::notConvergedText(const PlayedSample& played) {
+  const StepReport& report = simulator_.report();
+  if (report.stop == StopReason::kTolerance || !not_converged_.pass()) return {};
+  const Residuals& residuals = simulator_.residuals();
+  std::ostringstream text;
+  text << toTime(played.stamp_ns) << " s: momentum " << residuals.momentum << ", penetration "
+       << residuals.penetration_m << " m, cone " << residuals.cone_violation_n << " N after " << report.iterations
+       << " iterations";
+  return text.str();
+}
+
 /// What an interval with steps in it did to the figures. The lock is held.
 /// @return whether an answer was not finite for the first time since the last reset.
 bool Health::noteSteps(const PlayedSample& played, int steps, bool finite) {
@@ -161,12 +176,6 @@ bool Health::noteSteps(const PlayedSample& played, int steps, bool finite) {
   if (report.stop != StopReason::kTolerance) {
     ++figures_.not_converged;
     if (report.stop == StopReason::kTimeBudget) ++figures_.out_of_time;
-    std::ostringstream text;
-    const Residuals& residuals = simulator_.residuals();
-    text << toTime(played.stamp_ns) << " s: momentum " << residuals.momentum << ", penetration "
-         << residuals.penetration_m << " m, cone " << residuals.cone_violation_n << " N after " << report.iterations
-         << " iterations";
-    figures_.last_not_converged = text.str();
   }
   if (!report.discarded && finite) return false;
   ++figures_.not_finite;

@@ -82,6 +82,7 @@ class Health {
   };
 
   void warn(const PlayedSample& played, int steps);
+  std::string notConvergedText(const PlayedSample& played);
   bool noteSteps(const PlayedSample& played, int steps, bool finite);
   static void tellBroken(const PlayedSample& played, bool finite);
   double worstLag(const LiveFigures& figures);
@@ -99,6 +100,7 @@ class Health {
   Throttle resumptions_;
   Throttle jumps_;
   Throttle implausible_loads_;
+  Throttle not_converged_{5};
   LawAlarm law_alarm_;
 
   mutable std::mutex mutex_;  ///< guards the six below

@@ -193,6 +193,10 @@ TEST(ContactDetector, RefusesWhatDoesNotFit) {
          {-1e-3, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
       EXPECT_THROW(detector.detect(scene.positions, scene.X_WL, margin, contacts), std::invalid_argument);
     }
+    EXPECT_THROW(detector.detect(scene.positions, scene.X_WL, std::vector<double>{1e-3}, contacts),
+                 std::invalid_argument);
+    EXPECT_THROW(detector.detect(scene.positions, scene.X_WL, std::vector<double>{1e-3, -1e-3}, contacts),
+                 std::invalid_argument);
     EXPECT_THROW(detector.detect({scene.positions[0]}, scene.X_WL, 1e-3, contacts), std::invalid_argument);
     EXPECT_THROW(detector.detect(scene.positions, {scene.X_WL[0]}, 1e-3, contacts), std::invalid_argument);
     EXPECT_THROW(detector.detect(scene.positions, {{Pose::Identity()}, {Pose::Identity()}}, 1e-3, contacts),

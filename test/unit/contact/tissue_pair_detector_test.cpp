@@ -282,6 +282,8 @@ TEST(TissuePairDetector, NoPairFarApartOrNotFiniteGivesNothing) {
     contacts.clear();
     detector.detect(x, 1e-3, contacts);
     EXPECT_TRUE(contacts.empty());
+    detector.detect(positionsOf(tissues), 1e-3, contacts);
+    EXPECT_EQ(contacts.size(), pairContacts(tissues, {{0, 1}, {0, 0}}, 1e-3).size()) << "good positions again";
   }
 }
 
@@ -303,13 +305,17 @@ TEST(TissuePairDetector, RefusesWhatDoesNotFit) {
   bad = good;
   bad[0].fixed = {true};
   EXPECT_THROW(build(kBoth, bad), std::invalid_argument);
+  TissuePairDetector detector = build(kBoth, good);
+  std::vector<Contact> contacts;
+  for (const std::vector<double>& margins :
+       {std::vector<double>(kBoth.size() + 1, 1e-3), std::vector<double>{}, std::vector<double>(kBoth.size(), -1e-3)}) {
+    EXPECT_THROW(detector.detect(positionsOf(good), margins, {}, contacts), std::invalid_argument);
+  }
   for (const double thickness : {-1e-3, std::numeric_limits<double>::quiet_NaN(), HUGE_VAL}) {
     bad = good;
     bad[0].thickness = thickness;
     EXPECT_THROW(build(kBoth, bad), std::invalid_argument);
   }
-  TissuePairDetector detector = build(kBoth, good);
-  std::vector<Contact> contacts;
   for (const double margin : {-1e-3, std::numeric_limits<double>::quiet_NaN(), HUGE_VAL}) {
     EXPECT_THROW(detector.detect(positionsOf(good), margin, contacts), std::invalid_argument);
   }

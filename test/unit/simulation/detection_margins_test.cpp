@@ -77,8 +77,8 @@ TEST(DetectionMargins, OfAGradedMeshAreThoseOfThePlace) {
   EXPECT_GT(contactsAt(1.2e-4, graded, 0.03), 0u);
 }
 
-/// A slow tissue is not looked at farther because another one falls.
-TEST(DetectionMargins, FollowTheSpeedOfTheirOwnTissue) {
+/// A slow tissue is not looked at farther because one that cannot reach it falls.
+TEST(DetectionMargins, FollowTheSpeedOfWhatPairsJoin) {
   Simulator simulator = makeFallingBlock(true);
   const SurfaceEdges edges(simulator.tissues());
   DetectionMargins margins(edges, 3, {{0, 1}, {0, 0}});
@@ -86,16 +86,28 @@ TEST(DetectionMargins, FollowTheSpeedOfTheirOwnTissue) {
   for (int tissue : {0, 1, 2}) v.emplace_back(NodalVectors::Zero(3, simulator.positions(tissue).cols()));
   v[1].row(2).setConstant(-2.0);
   margins.begin(v, Vector3::Zero(), 0.001, 0.0);
-  EXPECT_DOUBLE_EQ(margins.ofTissues()[0], 0.01 * edges.largestScale(0));
+  EXPECT_DOUBLE_EQ(margins.ofTissues()[0], 0.003 + 0.01 * edges.largestScale(0));
   EXPECT_DOUBLE_EQ(margins.ofTissues()[1], 0.003 + 0.01 * edges.largestScale(1));
   EXPECT_DOUBLE_EQ(margins.ofTissues()[2], 0.01 * edges.largestScale(2));
   EXPECT_GT(edges.largestScale(0), 10.0 * edges.largestScale(2));
-  EXPECT_NEAR(margins.ofPairs()[0], 0.003 + 0.01 * edges.largestScale(0), 1e-4);
-  EXPECT_DOUBLE_EQ(margins.ofPairs()[1], 0.01 * edges.largestScale(0));
+  EXPECT_NEAR(margins.ofPairs()[0], 0.006 + 0.01 * edges.largestScale(0), 1e-4);
   v[1].setConstant(1e200);  // its square overflows
   margins.begin(v, Vector3::Zero(), 0.001, 0.0);
   EXPECT_TRUE(std::isfinite(margins.ofTissues()[1]));
   EXPECT_DOUBLE_EQ(margins.ofPairs()[0], 2.0 * std::max(edges.largestScale(0), edges.largestScale(1)));
+}
+
+/// What falls on the first strikes the last through the one between, in the same step.
+TEST(DetectionMargins, WhatIsStruckHandsTheSpeedOn) {
+  const Simulator simulator = makeFallingBlock(true);
+  const SurfaceEdges edges(simulator.tissues());
+  std::vector<NodalVectors> v;
+  for (int tissue : {0, 1, 2}) v.emplace_back(NodalVectors::Zero(3, simulator.positions(tissue).cols()));
+  v[0].row(2).setConstant(-1.0);
+  DetectionMargins joined(edges, 3, {{2, 1}, {0, 1}});
+  joined.begin(v, Vector3::Zero(), 0.001, 0.0);
+  EXPECT_GE(joined.ofPairs()[0], 0.0015);
+  EXPECT_GE(joined.ofTissues()[2], 0.0015);
 }
 
 }  // namespace
