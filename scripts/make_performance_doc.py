@@ -47,7 +47,7 @@ COUNTED = [("605 uniform, 1e-3", "10,10,4"), ("refined, h 1.4 mm, 1e-3", "0.0014
 COUNTED_DRAG = 0.0005
 COUNTED_STEPS = round((0.0041 + COUNTED_DRAG) / 2e-5)
 PARTS = [
-    ("sweeps", r"sweepForth|sweepBack|upperProduct|lowerProduct|GaussSeidelRelaxation::relax"),
+    ("sweeps", r"sweepForth|sweepBack|runForth|runBack|runRelax|runCarry|GaussSeidelRelaxation::relax"),
     ("elastic forces", r"addCorotationalForces"),
     ("averaged dilatation, its forces", r"addPressureForces|MeanDilatation::addForces"),
     ("refreshing the stiffness", r"::addStiffness|addGradients|shapeGradients|refreshStiffness"),

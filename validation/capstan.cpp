@@ -45,8 +45,7 @@ Chain pullChain(int k, const SolverDescription& description) {
     K.diagonal[i] += stiffness;
     K.diagonal[i + 1] += stiffness;
     if (i == 0) continue;
-    K.values[K.find(i, i + 1)] = -stiffness;
-    K.values[K.find(i + 1, i)] = -stiffness;
+    K.add(K.pattern->find(i, i + 1), -stiffness);
   }
   ContactProblem problem;
   problem.dt_s = 1.0;

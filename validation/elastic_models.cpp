@@ -248,13 +248,10 @@ double creep(const Tissue& tissue, const std::vector<bool>& prescribed, double l
     tissue.elasticity().update(x, *state, f);
     state->elapsed_s = dt;
     BlockMatrix A = state->stiffness;
-    for (std::size_t i = 0; i < A.values.size(); ++i) {
-      A.values[i] *= dt * (dt + tissue.damping().stiffness_s);
-      if (state->damping.rows() > 0) A.values[i] += dt * state->damping.values[i];
-    }
+    const double scale = dt * (dt + tissue.damping().stiffness_s);
+    const bool damps = state->damping.rows() > 0;
+    A.setSum(scale, state->stiffness, damps ? dt : 0.0, damps ? state->damping : state->stiffness);
     for (std::size_t i = 0; i < A.diagonal.size(); ++i) {
-      A.diagonal[i] *= dt * (dt + tissue.damping().stiffness_s);
-      if (state->damping.rows() > 0) A.diagonal[i] += dt * state->damping.diagonal[i];
       A.diagonal[i].diagonal().array() += tissue.nodeMasses()[static_cast<Eigen::Index>(i)];
     }
     const NodalVectors b = v * tissue.nodeMasses().asDiagonal() + dt * (f + loads);

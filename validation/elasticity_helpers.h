@@ -15,7 +15,7 @@ inline Eigen::MatrixXd dense(const BlockMatrix& K) {
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(3 * K.rows(), 3 * K.rows());
   for (int i = 0; i < K.rows(); ++i) {
     A.block<3, 3>(3 * i, 3 * i) = K.diagonal[i];
-    for (int k = K.row_start[i]; k < K.row_start[i + 1]; ++k) A.block<3, 3>(3 * i, 3 * K.columns[k]) = K.values[k];
+    K.pattern->forRow(i, [&](int j, int place) { A.block<3, 3>(3 * i, 3 * j) = K.block(place); });
   }
   return A;
 }
@@ -59,7 +59,7 @@ inline void solveStatic(const BlockMatrix& K, const std::vector<bool>& prescribe
       if (unknown[3 * i + r] >= 0) rhs[unknown[3 * i + r]] += loads(r, i);
     }
     add(i, i, K.diagonal[i]);
-    for (int k = K.row_start[i]; k < K.row_start[i + 1]; ++k) add(i, K.columns[k], K.values[k]);
+    K.pattern->forRow(i, [&](int j, int place) { add(i, j, K.block(place)); });
   }
   Eigen::SparseMatrix<double> A(count, count);
   A.setFromTriplets(triplets.begin(), triplets.end());

@@ -43,8 +43,7 @@ void TissueSleep::wakeAll() {
 
 void TissueSleep::wakeRing(int node) {
   wake(node);
-  const BlockMatrix& K = *body_.K;
-  for (int k = K.row_start[node]; k < K.row_start[node + 1]; ++k) wake(K.columns[k]);
+  body_.K->pattern->forRow(node, [this](int other, int /*place*/) { wake(other); });
 }
 
 void TissueSleep::touch(int node) {
@@ -91,15 +90,15 @@ bool TissueSleep::wakeHeld(const NodalVectors& loads, const NodalVectors& v, dou
 }
 
 void TissueSleep::listSleepers() {
-  const BlockMatrix& K = *body_.K;
   sleepers_.clear();
   beside_awake_.clear();
   for (std::size_t i = 0; i < fixed_.size(); ++i) {
     if (fixed_[i] || !still_[i]) continue;
     sleepers_.push_back(static_cast<int>(i));
-    const auto begin = K.columns.begin() + K.row_start[i];
-    const auto end = K.columns.begin() + K.row_start[i + 1];
-    beside_awake_.push_back(std::any_of(begin, end, [this](int other) { return !still_[other]; }));
+    bool beside_awake = false;
+    body_.K->pattern->forRow(sleepers_.back(),
+                             [&](int other, int /*place*/) { beside_awake = beside_awake || !still_[other]; });
+    beside_awake_.push_back(beside_awake);
   }
 }
 
@@ -147,11 +146,10 @@ void TissueSleep::countStillTime(const NodalVectors& x) {
 
 /// The nodes that may fall asleep.
 void TissueSleep::findReady(const NodalVectors& loads, double allowed_n, const std::vector<int>& touched) {
-  const BlockMatrix& K = *body_.K;
   std::fill(near_.begin(), near_.end(), false);
   for (const int node : touched) {
     near_[node] = true;
-    for (int k = K.row_start[node]; k < K.row_start[node + 1]; ++k) near_[K.columns[k]] = true;
+    body_.K->pattern->forRow(node, [this](int other, int /*place*/) { near_[other] = true; });
   }
   constexpr double kChecks = kStillTime / kCheckTime;
   const double share = touched.empty() ? allowed_n : kMargin * allowed_n / free_nodes_;

@@ -1,11 +1,10 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
-#include "core/row_product.h"
 #include "solver/anderson.h"
+#include "solver/body_sweep.h"
 #include "solver/relaxation.h"
 
 namespace tissue_contact {
@@ -46,7 +45,7 @@ class GaussSeidelRelaxation : public Relaxation {
   void findNodeContacts(const ContactProblem& problem);
   void findTouched(const ContactProblem& problem);
   void followTouched(const ContactProblem& problem, const std::vector<NodalVectors>& v);
-  void findHeld(int body, bool forward);
+  void findHeld(const ContactProblem& problem, int body);
   bool project(const ContactProblem& problem, int contact, ContactCorrector& corrector, ContactSolution& solution);
   double correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution);
   void apply(const ContactRow& row, const Vector3& impulse_W, std::vector<NodalVectors>& v);
@@ -55,9 +54,7 @@ class GaussSeidelRelaxation : public Relaxation {
   void beginMixing(const ContactProblem& problem, const std::vector<NodalVectors>& v);
   void mix(std::vector<NodalVectors>& v);
 
-  std::vector<std::vector<Matrix3>> block_inverse_;  ///< P_i^-1 per body and node; 0 for fixed nodes
-  std::vector<NodalVectors> contact_impulses_;       ///< J'lambda per body
-  std::vector<NodalVectors> lower_;                  ///< per body: sum_{j<i} A_ij v_j after the sweep forth, N s
+  std::vector<BodySweep> bodies_;
   struct Touched {
     int body;
     int node;
@@ -67,9 +64,9 @@ class GaussSeidelRelaxation : public Relaxation {
   std::vector<Matrix3> W_;                      ///< W_P per contact, contact frame, 1/kg; W(0, 0) = 0: it cannot move
   std::vector<std::vector<int>> node_contact_;  ///< per body and node: the contact that alone holds it, else -1
   bool holding_ = false;                        ///< some node_contact_ is a contact
-  std::vector<int> held_;          ///< scratch: nodes of a body with such a contact, in the order of a sweep
-  std::vector<int> partner_;       ///< per body: one of its group that comes earlier; itself: the first
-  std::vector<Mixture> mixtures_;  ///< per body; only the first of a group has bodies
+  std::vector<int> held_;                       ///< scratch: the lanes of a body's nodes with such a contact, ascending
+  std::vector<int> partner_;                    ///< per body: one of its group that comes earlier; itself: the first
+  std::vector<Mixture> mixtures_;               ///< per body; only the first of a group has bodies
 };
 
 void GaussSeidelRelaxation::prepare(const ContactProblem& problem, ContactSolution& solution) {
@@ -80,26 +77,9 @@ void GaussSeidelRelaxation::prepare(const ContactProblem& problem, ContactSoluti
 }
 
 void GaussSeidelRelaxation::prepareBodies(const ContactProblem& problem) {
-  block_inverse_.resize(problem.bodies.size());
-  contact_impulses_.resize(problem.bodies.size());
-  lower_.resize(problem.bodies.size());
+  bodies_.resize(problem.bodies.size());
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    const BodySystem& body = problem.bodies[k];
-    if (body.asleep) continue;
-    const int nodes = body.K->rows();
-    block_inverse_[k].resize(nodes);
-    for (int i = 0; i < nodes; ++i) {
-      if ((*body.fixed)[i]) {
-        block_inverse_[k][i].setZero();
-        continue;
-      }
-      Matrix3 block = body.stiffness_scale * body.K->diagonal[i];
-      if (body.D != nullptr) block += body.damping_scale * body.D->diagonal[i];
-      block.diagonal().array() += body.mass[i];
-      block_inverse_[k][i] = block.inverse();
-    }
-    contact_impulses_[k].setZero(3, nodes);
-    lower_[k].resize(3, nodes);
+    if (!problem.bodies[k].asleep) bodies_[k].prepare(problem.bodies[k]);
   }
 }
 
@@ -110,7 +90,7 @@ void GaussSeidelRelaxation::prepareContacts(const ContactProblem& problem, Conta
     Matrix3 W_W = Matrix3::Zero();  // in world axes
     for (int a = 0; a < row.node_count; ++a) {
       const RowNode& at = row.nodes[a];
-      W_W += (at.weight * at.weight) * block_inverse_[at.body][at.node];
+      W_W += (at.weight * at.weight) * bodies_[at.body].inverse(at.node);
     }
     if (isFrictionless(row.law)) {
       const Vector3 n = row.R_WC.col(0);
@@ -126,7 +106,11 @@ void GaussSeidelRelaxation::prepareContacts(const ContactProblem& problem, Conta
       solution.states[c] = ContactState::kOpen;
       continue;
     }
-    addImpulse(row, row.R_WC * solution.impulses[c], contact_impulses_);
+    const Vector3 impulse_W = row.R_WC * solution.impulses[c];
+    for (int a = 0; a < row.node_count; ++a) {
+      const RowNode& at = row.nodes[a];
+      bodies_[at.body].addImpulse(at.node, at.weight * impulse_W);
+    }
   }
 }
 
@@ -164,93 +148,12 @@ void GaussSeidelRelaxation::findTouched(const ContactProblem& problem) {
   touched_.erase(std::unique(touched_.begin(), touched_.end(), same), touched_.end());
 }
 
-/// Brings lower_ in line with what contacts have changed since the sweep forth.
+/// Tells the sweep back what contacts have changed since the sweep forth.
 void GaussSeidelRelaxation::followTouched(const ContactProblem& problem, const std::vector<NodalVectors>& v) {
   for (const Touched& at : touched_) {
-    const BodySystem& body = problem.bodies[at.body];
     const Vector3 change = v[at.body].col(at.node) - at.v;
-    if (body.asleep || change.isZero(0.0)) continue;
-    const auto add = [&](const BlockMatrix& matrix, double scale) {
-      const Vector3 scaled = scale * change;
-      for (int k = matrix.row_middle[at.node]; k < matrix.row_start[at.node + 1]; ++k) {
-        lower_[at.body].col(matrix.columns[k]) += matrix.values[k].transpose() * scaled;  // A is symmetric
-      }
-    };
-    add(*body.K, body.stiffness_scale);
-    if (body.D != nullptr) add(*body.D, body.damping_scale);
+    if (!problem.bodies[at.body].asleep && !change.isZero(0.0)) bodies_[at.body].follow(at.node, change);
   }
-}
-
-/// Of one body.
-struct Sweep {
-  const BodySystem& body;
-  const std::vector<Matrix3>& block_inverse;
-  const NodalVectors& impulses;
-  NodalVectors& lower;
-  NodalVectors& v;
-};
-
-/// Gauss-Seidel step of the free nodes from `first` to before `end`, with the impulses held. A sweep forth leaves sum_{j<i}
-/// A_ij v_j of every node in `lower`, which the sweep back then need not compute (Conrad & Wallach, "Alternating Methods for
-/// Sets of Linear Equations", Numer. Math. 32 (1979) 105-108).
-/// @return change + |defects met|^2, (N s)^2.
-template <bool kDamped, bool kForward>
-TISSUE_CONTACT_INLINE double sweepNodes(const Sweep& all, int first, int end, double change) {
-  const BodySystem& body = all.body;
-  const BlockMatrix& K = *body.K;
-  const BlockMatrix& D = kDamped ? *body.D : K;
-  for (int i = first; i != end; i += kForward ? 1 : -1) {
-    if ((*body.fixed)[i]) continue;
-    const Vector3 v_i = all.v.col(i);
-    if (kForward) {
-      Vector3 sum = body.stiffness_scale * rowProduct(K, K.row_start[i], K.row_middle[i], all.v);
-      if (kDamped) sum += body.damping_scale * rowProduct(D, D.row_start[i], D.row_middle[i], all.v);
-      all.lower.col(i) = sum;
-    }
-    const Vector3 elastic =
-        rowProduct(K, K.row_middle[i], K.row_start[i + 1], all.v) + blockProduct(K.diagonal[i], v_i);
-    Vector3 defect =
-        body.b.col(i) + all.impulses.col(i) - all.lower.col(i) - body.mass[i] * v_i - body.stiffness_scale * elastic;
-    if (kDamped) {
-      defect -= body.damping_scale *
-                (rowProduct(D, D.row_middle[i], D.row_start[i + 1], all.v) + blockProduct(D.diagonal[i], v_i));
-    }
-    all.v.col(i) = v_i + blockProduct(all.block_inverse[i], defect);
-    change += defect.squaredNorm();
-  }
-  return change;
-}
-
-TISSUE_CONTACT_CLONES
-double sweepForth(const Sweep& all, int first, int end, double change) {
-  return all.body.D != nullptr ? sweepNodes<true, true>(all, first, end, change)
-                               : sweepNodes<false, true>(all, first, end, change);
-}
-
-TISSUE_CONTACT_CLONES
-double sweepBack(const Sweep& all, int first, int end, double change) {
-  return all.body.D != nullptr ? sweepNodes<true, false>(all, first, end, change)
-                               : sweepNodes<false, false>(all, first, end, change);
-}
-
-/// All nodes of a body.
-/// @param held nodes that a contact may hold, in the order of the sweep.
-/// @param hold called with each of them after its step; true: its contact holds it, so that its defect does not count.
-/// @return |defects met|^2, (N s)^2.
-template <class Hold>
-double sweepBody(const Sweep& all, bool forward, const std::vector<int>& held, const Hold& hold) {
-  const auto run = forward ? sweepForth : sweepBack;
-  const int way = forward ? 1 : -1;
-  const int nodes = all.body.K->rows();
-  int at = forward ? 0 : nodes - 1;
-  double change = 0.0;
-  for (const int node : held) {
-    change = run(all, at, node, change);
-    at = node + way;
-    const double with = run(all, node, at, change);
-    if (!hold(node)) change = with;
-  }
-  return run(all, at, forward ? nodes : -1, change);
 }
 
 /// A node whose own contact is static is projected at once: its tangential velocity becomes the tool's, its impulse the
@@ -265,13 +168,14 @@ bool GaussSeidelRelaxation::project(const ContactProblem& problem, int contact, 
   return true;
 }
 
-void GaussSeidelRelaxation::findHeld(int body, bool forward) {
+void GaussSeidelRelaxation::findHeld(const ContactProblem& problem, int body) {
   held_.clear();
   if (!holding_) return;
-  for (const Touched& at : touched_) {  // ascending
-    if (at.body == body && node_contact_[body][at.node] >= 0) held_.push_back(at.node);
+  const std::vector<int>& lane_of = problem.bodies[body].K->pattern->lane_of;
+  for (const Touched& at : touched_) {
+    if (at.body == body && node_contact_[body][at.node] >= 0) held_.push_back(lane_of[at.node]);
   }
-  if (!forward) std::reverse(held_.begin(), held_.end());
+  std::sort(held_.begin(), held_.end());
 }
 
 double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
@@ -282,12 +186,10 @@ double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration
   if (!forward) followTouched(problem, solution.v);
   double change = 0.0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    const BodySystem& body = problem.bodies[k];
-    if (body.asleep) continue;
-    findHeld(static_cast<int>(k), forward);
+    if (problem.bodies[k].asleep) continue;
+    findHeld(problem, static_cast<int>(k));
     const auto hold = [&](int i) { return project(problem, node_contact_[k][i], corrector, solution); };
-    const Sweep all{body, block_inverse_[k], contact_impulses_[k], lower_[k], solution.v[k]};
-    change += sweepBody(all, forward, held_, hold);
+    change += bodies_[k].sweep(forward, held_, solution.v[k], hold);
   }
   if (forward) {
     for (Touched& at : touched_) at.v = solution.v[at.body].col(at.node);
@@ -295,8 +197,8 @@ double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration
   return std::sqrt(change);
 }
 
-/// Bodies that contacts of this step join share one map of velocities; those that nothing joins have maps of their own, with
-/// weights of their own (doc/method.md).
+/// Bodies that contacts of this step join share one map of velocities; those that nothing joins have maps of their own,
+/// with weights of their own (doc/method.md).
 void GaussSeidelRelaxation::groupBodies(const ContactProblem& problem) {
   partner_.resize(problem.bodies.size());
   std::iota(partner_.begin(), partner_.end(), 0);
@@ -349,8 +251,8 @@ void GaussSeidelRelaxation::apply(const ContactRow& row, const Vector3& impulse_
   for (int a = 0; a < row.node_count; ++a) {
     const RowNode& at = row.nodes[a];
     const Vector3 share = at.weight * impulse_W;
-    v[at.body].col(at.node) += block_inverse_[at.body][at.node] * share;
-    contact_impulses_[at.body].col(at.node) += share;
+    v[at.body].col(at.node) += bodies_[at.body].inverse(at.node) * share;
+    bodies_[at.body].addImpulse(at.node, share);
   }
 }
 

@@ -1,8 +1,9 @@
 #include "tissue_contact/solver/residuals.h"
 
+#include <array>
 #include <cmath>
 
-#include "core/row_product.h"
+#include "core/slice_product.h"
 #include "solver/momentum_defect.h"
 #include "solver/residual_measures.h"
 
@@ -56,36 +57,43 @@ double kineticAngle(const CoulombLaw& law, const Vector2& friction, const Vector
                       law.anisotropic == nullptr ? Vector2(-sliding) : kineticFriction(law, sliding.normalized()));
 }
 
-/// @tparam kDamped the body has a damping matrix: known when compiled, so that the others do not ask node by node.
-template <bool kDamped>
-TISSUE_CONTACT_INLINE double defectOf(const BodySystem& body, const NodalVectors& v, const NodalVectors& impulses,
-                                      NodalVectors& defect) {
-  const BlockMatrix& K = *body.K;
-  const BlockMatrix& D = kDamped ? *body.D : K;
-  double sum = 0.0;
-  for (int i = 0; i < K.rows(); ++i) {
-    if ((*body.fixed)[i]) {
-      defect.col(i).setZero();
-      continue;
-    }
-    const Vector3 v_i = v.col(i);
-    const Vector3 elastic = rowProduct(K, K.row_start[i], K.row_start[i + 1], v) + blockProduct(K.diagonal[i], v_i);
-    Vector3 d = body.b.col(i) + impulses.col(i) - body.mass[i] * v_i - body.stiffness_scale * elastic;
-    if (kDamped) {
-      d -= body.damping_scale *
-           (rowProduct(D, D.row_start[i], D.row_start[i + 1], v) + blockProduct(D.diagonal[i], v_i));
-    }
-    defect.col(i) = d;
-    sum += d.squaredNorm();
+/// defect -= scale * blocks off the diagonal * v.
+TISSUE_CONTACT_INLINE void subtractOffDiagonal(const BlockMatrix& matrix, double scale, const NodalVectors& v,
+                                               NodalVectors& defect) {
+  for (int slice = 0; slice < matrix.pattern->slices(); ++slice) {
+    const std::array<int, kLanes> rows = rowsOf(*matrix.pattern, slice);
+    LaneVectors own;
+    gather(v.data(), rows.data(), own);
+    LaneVectors sum{};
+    addUpperProduct(matrix, slice, v.data(), sum);
+    const LaneVectors product = {-scale * sum[0], -scale * sum[1], -scale * sum[2]};
+    scatterAdd(product, rows.data(), defect.data());
+    scatterMirrored(matrix, slice, -scale, own, defect.data());
   }
-  return sum;
 }
 
 }  // namespace
 
 TISSUE_CONTACT_CLONES
 double bodyDefect(const BodySystem& body, const NodalVectors& v, const NodalVectors& impulses, NodalVectors& defect) {
-  return body.D != nullptr ? defectOf<true>(body, v, impulses, defect) : defectOf<false>(body, v, impulses, defect);
+  const auto nodes = static_cast<std::size_t>(v.cols());
+  defect = body.b + impulses;
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const auto c = static_cast<Eigen::Index>(i);
+    const Vector3 v_i = v.col(c);
+    Vector3 own = body.stiffness_scale * (body.K->diagonal[i] * v_i) + body.mass[c] * v_i;
+    if (body.D != nullptr) own += body.damping_scale * (body.D->diagonal[i] * v_i);
+    defect.col(c) -= own;
+  }
+  subtractOffDiagonal(*body.K, body.stiffness_scale, v, defect);
+  if (body.D != nullptr) subtractOffDiagonal(*body.D, body.damping_scale, v, defect);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const auto c = static_cast<Eigen::Index>(i);
+    if ((*body.fixed)[i]) defect.col(c).setZero();
+    sum += defect.col(c).squaredNorm();
+  }
+  return sum;
 }
 
 double loadScale(const ContactProblem& problem) {

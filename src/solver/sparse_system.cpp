@@ -14,10 +14,9 @@ void addLowerTriangle(const BlockMatrix& matrix, double scale, const std::vector
   for (int i = 0; i < matrix.rows(); ++i) {
     if (first_row[i] < 0) continue;
     addLowerBlock(scale * matrix.diagonal[i], first_row[i], first_row[i], entries);
-    for (int k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k) {
-      const int j = matrix.columns[k];
-      if (j < i && first_row[j] >= 0) addLowerBlock(scale * matrix.values[k], first_row[i], first_row[j], entries);
-    }
+    matrix.pattern->forRow(i, [&](int j, int place) {
+      if (j < i && first_row[j] >= 0) addLowerBlock(scale * matrix.block(place), first_row[i], first_row[j], entries);
+    });
   }
 }
 
@@ -32,7 +31,7 @@ void SparseSystem::assemble(const BodySystem& body) {
     rows += 3;
   }
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(9 * (body.K->values.size() / 2 + body.K->rows()));
+  entries.reserve(9 * (body.K->pattern->lower.size() + body.K->rows()));
   addLowerTriangle(*body.K, body.stiffness_scale, first_row_, entries);
   if (body.D != nullptr) addLowerTriangle(*body.D, body.damping_scale, first_row_, entries);
   for (int i = 0; i < body.K->rows(); ++i) {

@@ -58,12 +58,17 @@ DilatationPatches::DilatationPatches(const std::vector<Tetrahedron>& tetrahedra,
     if (patch.members.empty()) throw std::invalid_argument("mean dilatation: patch " + std::to_string(p) + " is empty");
     patch.bulk /= patch.volume;
     patch.damping_s /= patch.volume;
+    patch.members.shrink_to_fit();
     patch.nodes = nodes[p];
     patch.first = first;
     first += patch.nodes.size();
     most_nodes = std::max(most_nodes, patch.nodes.size());
-    for (const int a : patch.nodes) {
-      for (const int b : patch.nodes) patch.slots.push_back(slotOf(tets.pattern, fixed, a, b));
+    const std::size_t count = patch.nodes.size();
+    patch.slots.reserve(count * (count + 1) / 2);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = i; j < count; ++j) {
+        patch.slots.push_back(slotOf(*tets.pattern, fixed, patch.nodes[i], patch.nodes[j]));
+      }
     }
   }
 }
@@ -109,16 +114,15 @@ void DilatationPatches::addStiffness(const Patch& patch, const Vector3* b, const
                                      Elasticity::State& state) {
   const double scale = patch.bulk / patch.volume;
   const std::size_t count = patch.nodes.size();
+  const int* next = patch.slots.data();
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = i; j < count; ++j) {
-      const int slot = patch.slots[i * count + j];
+      const int slot = *next++;
       if (slot < 0) continue;
       Matrix3 block = Matrix3::Zero();
       if (b != nullptr) block = (scale * b[i]) * b[j].transpose();
       if (old != nullptr) block -= (scale * old[i]) * old[j].transpose();
       addBlock(i == j, slot, block, patch.damping_s, state.stiffness, state.damping);
-      if (i == j) continue;
-      addBlock(false, patch.slots[j * count + i], block.transpose(), patch.damping_s, state.stiffness, state.damping);
     }
   }
 }

@@ -19,7 +19,7 @@ struct DilatationPatches {
   struct Patch {
     std::vector<Member> members;
     std::vector<int> nodes;
-    std::vector<int> slots;  ///< of node pairs, row by row, as BlockSlots
+    std::vector<int> slots;  ///< of node pairs i <= j, row by row, as BlockSlots
     double volume = 0.0;     ///< m^3
     double bulk = 0.0;       ///< mean over the volume, Pa
     double damping_s = 0.0;  ///< likewise

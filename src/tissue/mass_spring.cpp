@@ -11,29 +11,28 @@ namespace {
 void addSpring(const Spring& spring, const Matrix3& unit_block, double scale, BlockMatrix& K) {
   const Matrix3 block = scale * unit_block;
   for (std::size_t i = 0; i < 2; ++i) {
-    if (spring.slots[i][i] >= 0) K.diagonal[spring.slots[i][i]] += block;
+    if (spring.slots(i, i) >= 0) K.diagonal[spring.slots(i, i)] += block;
   }
-  if (spring.slots[0][1] < 0) return;
-  K.values[spring.slots[0][1]] -= block;
-  K.values[spring.slots[1][0]] -= block;
+  if (spring.slots(0, 1) < 0) return;
+  K.add(spring.slots(0, 1), -block);
 }
 
 }  // namespace
 
 MassSpring::MassSpring(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
                        const std::vector<bool>& fixed, const ElementMaterials& materials)
-    : pattern_(BlockMatrix::forTetrahedra(tetrahedra, fixed)), damps_(!materials.damping_s.empty()), rest_(rest) {
+    : pattern_(BlockPattern::forElements(tetrahedra, fixed)), damps_(!materials.damping_s.empty()), rest_(rest) {
   for (const MaterialDescription& material : materials.materials) checkMaterial(material, "");
   springs_ = makeSprings(rest, tetrahedra, materials);
-  for (Spring& spring : springs_) spring.slots = findSlots(pattern_, spring.nodes, fixed);
+  for (Spring& spring : springs_) spring.slots = findSlots(*pattern_, spring.nodes, fixed);
 }
 
 MassSpring::~MassSpring() = default;
 
 std::unique_ptr<Elasticity::State> MassSpring::makeState() const {
   auto state = std::make_unique<State>();
-  state->stiffness = pattern_;
-  if (damps_) state->damping = pattern_;
+  state->stiffness = BlockMatrix(pattern_);
+  if (damps_) state->damping = BlockMatrix(pattern_);
   NodalVectors forces(3, rest_.cols());
   update(rest_, *state, forces);
   return state;

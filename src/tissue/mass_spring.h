@@ -47,7 +47,7 @@ class MassSpring : public Elasticity {
 
  private:
   std::vector<Spring> springs_;
-  BlockMatrix pattern_;
+  std::shared_ptr<const BlockPattern> pattern_;
   bool damps_;
   NodalVectors rest_;
 };

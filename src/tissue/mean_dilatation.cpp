@@ -22,7 +22,7 @@ MeanDilatation::MeanDilatation(const NodalVectors& rest, const std::vector<Tetra
     : TetElasticity(materials.materials.at(0).model == ElasticModel::kCorotational,
                     std::make_unique<TetElements>(
                         rest, tetrahedra, fixed, materials, deviatoricParameters,
-                        BlockMatrix::forElements(DilatationPatches::nodesOf(tetrahedra, patch_of), fixed))),
+                        BlockPattern::forElements(DilatationPatches::nodesOf(tetrahedra, patch_of), fixed))),
       corotational_(materials.materials.at(0).model == ElasticModel::kCorotational),
       averaged_(tetrahedra, fixed, materials, patch_of, tets()) {}
 
@@ -49,14 +49,14 @@ std::unique_ptr<Elasticity::State> MeanDilatation::makeState() const {
 /// b of the patch's nodes: sum of V R grad N.
 void MeanDilatation::addGradients(const Patch& patch, const RotationState& state, Vector3* gradients) const {
   for (const DilatationPatches::Member& member : patch.members) {
-    const TetElement& element = tets().elements[member.element];
-    Eigen::Matrix<double, 3, 4> c = shapeGradients(element.rest_inverse);
+    Eigen::Matrix<double, 3, 4> c = tets().shapeGradients(member.element);
     if (corotational_) {
       const auto& q = state.rotations[member.element / kLanes];
       const std::size_t lane = member.element % kLanes;
       c = Quaternion(q[0][lane], q[1][lane], q[2][lane], q[3][lane]).normalized().toRotationMatrix() * c;
     }
-    for (int i = 0; i < 4; ++i) gradients[member.local[i]] += element.volume * c.col(i);
+    const double volume = tets().elements[member.element].volume;
+    for (int i = 0; i < 4; ++i) gradients[member.local[i]] += volume * c.col(i);
   }
 }
 
@@ -134,7 +134,7 @@ double MeanDilatation::energy(const NodalVectors& x) const {
   if (corotational_) {
     state.rotations.resize(tets().batches.size());
     for (std::size_t e = 0; e < tets().elements.size(); ++e) {
-      const Quaternion q = nearestRotation(deformationGradient(tets().elements[e], x), Quaternion::Identity());
+      const Quaternion q = nearestRotation(tets().deformationGradient(e, x), Quaternion::Identity());
       const double parts[4] = {q.w(), q.x(), q.y(), q.z()};
       for (std::size_t i = 0; i < 4; ++i) state.rotations[e / kLanes][i][e % kLanes] = parts[i];
     }

@@ -102,10 +102,10 @@ void addStiffness(const MembraneTriangle& triangle, const Stretch& stretch, Elas
   const Matrix3 tension = V * triangle.gradients.transpose() * tensionAcross(stretch) * triangle.gradients;
   for (int i = 0; i < 3; ++i) {
     for (int j = i; j < 3; ++j) {
-      if (triangle.slots[i][j] < 0) continue;
+      if (triangle.slots(i, j) < 0) continue;
       const Matrix3 block = (lambda * c.col(i)) * c.col(j).transpose() + (crossed * c.col(j)) * c.col(i).transpose() +
                             straight * c.col(i).dot(c.col(j)) * in_plane + tension(i, j) * across;
-      addBlock(triangle.slots, i, j, block, triangle.damping_s, state.stiffness, state.damping);
+      addBlock(i == j, triangle.slots(i, j), block, triangle.damping_s, state.stiffness, state.damping);
     }
   }
 }
@@ -142,7 +142,7 @@ Membrane::Membrane(const NodalVectors& rest, const std::vector<Triangle>& triang
     triangles_.back().volume = thickness_m * triangleArea(rest, triangles[t]);
     triangles_.back().lame = planeStressParameters(materials.of(t));
     triangles_.back().damping_s = materials.dampingOf(t);
-    triangles_.back().slots = findSlots(constant_stiffness_, triangles[t], fixed);
+    triangles_.back().slots = findSlots(*constant_stiffness_.pattern, triangles[t], fixed);
   }
 }
 

@@ -85,14 +85,15 @@ SpectralTangent spectralTangent(const Matrix3& F, const LameParameters& material
   return tangent;
 }
 
-void addStiffness(const TetElement& element, const Matrix3& F, const InPatch& patch, double sign,
+void addStiffness(const TetElements& tets, std::size_t e, const Matrix3& F, const InPatch& patch, double sign,
                   Elasticity::State& state) {
+  const TetElement& element = tets.elements[e];
   const SpectralTangent tangent = spectralTangent(F, element.lame, patch);
-  const Eigen::Matrix<double, 3, 4> b = tangent.V.transpose() * shapeGradients(element.rest_inverse);
+  const Eigen::Matrix<double, 3, 4> b = tangent.V.transpose() * tets.shapeGradients(e);
   const double volume = sign * element.volume;
   for (int n = 0; n < 4; ++n) {
     for (int m = n; m < 4; ++m) {
-      if (element.slots[n][m] < 0) continue;
+      if (element.slots(n, m) < 0) continue;
       Matrix3 inner;
       for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3;
@@ -103,7 +104,7 @@ void addStiffness(const TetElement& element, const Matrix3& F, const InPatch& pa
         inner(j, i) = tangent.stretch(i, j) * b(j, n) * b(i, m) + tangent.crossed(i, j) * b(i, n) * b(j, m);
       }
       const Matrix3 block = volume * tangent.U * inner * tangent.U.transpose();
-      addBlock(element.slots, n, m, block, element.damping_s, state.stiffness, state.damping);
+      addBlock(n == m, element.slots(n, m), block, element.damping_s, state.stiffness, state.damping);
     }
   }
 }
@@ -145,7 +146,7 @@ NeoHookean::NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>&
     tets_ = std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, modelParameters);
     return;
   }
-  BlockMatrix couplings = BlockMatrix::forElements(DilatationPatches::nodesOf(tetrahedra, patch_of), fixed);
+  auto couplings = BlockPattern::forElements(DilatationPatches::nodesOf(tetrahedra, patch_of), fixed);
   tets_ = std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, shapeParameters, std::move(couplings));
   patches_ = std::make_unique<DilatationPatches>(tetrahedra, fixed, materials, patch_of, *tets_);
 }
@@ -191,10 +192,10 @@ void NeoHookean::rebuildStiffness(DeformationState& state) const {
   state.stiffness.setZero();
   state.damping.setZero();
   for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
-    const TetElement& element = tets_->elements[e];
     InPatch patch;
-    if (patches_) patch = inPatch(element, state.tangent_pressures[patches_->of_batch[e / kLanes][e % kLanes]]);
-    addStiffness(element, matrixInLane(state.tangent_deformations[e / kLanes], e % kLanes), patch, 1.0, state);
+    if (patches_)
+      patch = inPatch(tets_->elements[e], state.tangent_pressures[patches_->of_batch[e / kLanes][e % kLanes]]);
+    addStiffness(*tets_, e, matrixInLane(state.tangent_deformations[e / kLanes], e % kLanes), patch, 1.0, state);
   }
   for (std::size_t p = 0; patches_ && p < patches_->patches.size(); ++p) addPatchStiffness(p, 1.0, state);
 }
@@ -208,8 +209,7 @@ void NeoHookean::addPatchStiffness(std::size_t p, double sign, DeformationState&
     for (const DilatationPatches::Member& member : patch.members) {
       const std::size_t e = member.element;
       const Matrix3 C = cofactors(matrixInLane(state.tangent_deformations[e / kLanes], e % kLanes));
-      const Eigen::Matrix<double, 3, 4> c =
-          tets_->elements[e].volume * C * shapeGradients(tets_->elements[e].rest_inverse);
+      const Eigen::Matrix<double, 3, 4> c = tets_->elements[e].volume * C * tets_->shapeGradients(e);
       for (int i = 0; i < 4; ++i) b[member.local[i]] += c.col(i);
     }
   }
@@ -225,10 +225,10 @@ void NeoHookean::refreshStiffness(const std::vector<BatchRange>& ranges, Deforma
   });
   const bool rebuild = cancels || 2 * changes > tets_->elements.size();
   forEachChanged(ranges, state, [&](std::size_t batch, std::size_t lane) {
-    const TetElement& element = tets_->elements[batch * kLanes + lane];
-    if (!rebuild) addStiffness(element, matrixInLane(state.tangent_deformations[batch], lane), {}, -1.0, state);
+    const std::size_t e = batch * kLanes + lane;
+    if (!rebuild) addStiffness(*tets_, e, matrixInLane(state.tangent_deformations[batch], lane), {}, -1.0, state);
     for (std::size_t i = 0; i < 9; ++i) state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];
-    if (!rebuild) addStiffness(element, matrixInLane(state.deformations[batch], lane), {}, 1.0, state);
+    if (!rebuild) addStiffness(*tets_, e, matrixInLane(state.deformations[batch], lane), {}, 1.0, state);
   });
   if (rebuild) rebuildStiffness(state);
 }
@@ -274,7 +274,7 @@ void NeoHookean::refreshPatches(DeformationState& state) const {
       const std::size_t lane = member.element % kLanes;
       const TetElement& element = tets_->elements[member.element];
       const auto add = [&](const MatrixBatch& F, double pressure, double sign) {
-        addStiffness(element, matrixInLane(F, lane), inPatch(element, pressure), sign, state);
+        addStiffness(*tets_, member.element, matrixInLane(F, lane), inPatch(element, pressure), sign, state);
       };
       if (!rebuild) add(state.tangent_deformations[batch], state.tangent_pressures[p], -1.0);
       for (std::size_t i = 0; i < 9; ++i)
@@ -339,9 +339,9 @@ void NeoHookean::addPatches(const std::vector<BatchRange>& ranges, bool still, D
 double NeoHookean::energy(const NodalVectors& x) const {
   double energy = 0.0;
   std::vector<double> changes(patches_ ? patches_->patches.size() : 0, 0.0);  // of volume, m^3
-  std::size_t e = 0;
-  for (const TetElement& element : tets_->elements) {
-    const Matrix3 F = deformationGradient(element, x);
+  for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
+    const TetElement& element = tets_->elements[e];
+    const Matrix3 F = tets_->deformationGradient(e, x);
     const double I = F.squaredNorm();
     const double J = F.determinant();
     const LameParameters& material = element.lame;
@@ -353,7 +353,6 @@ double NeoHookean::energy(const NodalVectors& x) const {
       energy += element.volume * 0.5 * kFlatModulus * material.mu * flat * flat;
       changes[patches_->of_batch[e / kLanes][e % kLanes]] += element.volume * (J - 1.0);
     }
-    ++e;
   }
   for (std::size_t p = 0; p < changes.size(); ++p) {
     energy += 0.5 * patches_->patches[p].bulk * changes[p] * changes[p] / patches_->patches[p].volume;

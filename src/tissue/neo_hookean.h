@@ -37,7 +37,6 @@ namespace tissue_contact {
 
 struct BatchRange;
 struct DilatationPatches;
-struct TetElement;
 struct TetElements;
 
 /// Model: const after construction. Thread-safe for different states.

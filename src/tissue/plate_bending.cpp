@@ -109,8 +109,8 @@ void PlateBending::connect(const std::vector<bool>& fixed, BlockMatrix& constant
     Slots slots{};
     for (int i = 0; i < patch.count; ++i) {
       for (int j = 0; j < patch.count; ++j) {
-        slots[i][j] = slotOf(constant_stiffness, fixed, patch.nodes[i], patch.nodes[j]);
-        if (!flat_ || slots[i][j] < 0) continue;
+        slots[i][j] = slotOf(*constant_stiffness.pattern, fixed, patch.nodes[i], patch.nodes[j]);
+        if (!flat_ || j < i || slots[i][j] < 0) continue;
         const Matrix3 block = patch.weights.col(i).dot(patch.tensor * patch.weights.col(j)) * Matrix3::Identity();
         addBlock(i == j, slots[i][j], block, patch.damping_s, constant_stiffness, constant_damping);
       }
@@ -166,7 +166,7 @@ void PlateBending::addCurved(std::size_t index, const Folds& folds, Elasticity::
   for (int i = 0; i < patch.count; ++i) {
     forces.col(patch.nodes[i]) -= gradients[i].transpose() * moment;
     const Matrix3 left = gradients[i].transpose() * patch.tensor;
-    for (int j = 0; j < patch.count; ++j) {
+    for (int j = i; j < patch.count; ++j) {
       const int slot = slots_[index][i][j];
       if (slot < 0) continue;
       const Matrix3 block = left * gradients[j];

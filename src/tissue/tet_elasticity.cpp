@@ -93,19 +93,20 @@ void TetElasticity::prepare(RotationState& state) const {
   state.turned.assign(tets_->batches.size(), 0);
   state.held = tets_->nothingHeld();
   tets_->prepare(state);
-  for (const TetElement& element : tets_->elements) addStiffness(element, Quaternion::Identity(), 1.0, state);
+  for (std::size_t e = 0; e < tets_->elements.size(); ++e) addStiffness(e, Quaternion::Identity(), 1.0, state);
 }
 
-void TetElasticity::addStiffness(const TetElement& element, const Quaternion& rotation, double sign, State& state) {
-  const Eigen::Matrix<double, 3, 4> c = rotation.toRotationMatrix() * shapeGradients(element.rest_inverse);
+void TetElasticity::addStiffness(std::size_t e, const Quaternion& rotation, double sign, State& state) const {
+  const TetElement& element = tets_->elements[e];
+  const Eigen::Matrix<double, 3, 4> c = rotation.toRotationMatrix() * tets_->shapeGradients(e);
   const double lambda = sign * element.volume * element.lame.lambda;
   const double mu = sign * element.volume * element.lame.mu;
   for (int i = 0; i < 4; ++i) {
     for (int j = i; j < 4; ++j) {
-      if (element.slots[i][j] < 0) continue;
+      if (element.slots(i, j) < 0) continue;
       Matrix3 block = (lambda * c.col(i)) * c.col(j).transpose() + (mu * c.col(j)) * c.col(i).transpose();
       block.diagonal().array() += mu * c.col(i).dot(c.col(j));
-      addBlock(element.slots, i, j, block, element.damping_s, state.stiffness, state.damping);
+      addBlock(i == j, element.slots(i, j), block, element.damping_s, state.stiffness, state.damping);
     }
   }
 }
@@ -118,8 +119,8 @@ void TetElasticity::refreshStiffness(std::size_t batch, RotationState& state) co
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::size_t e = batch * kLanes + lane;
     if ((state.turned[batch] >> lane & 1) == 0 || e >= tets_->elements.size()) continue;
-    addStiffness(tets_->elements[e], rotation(state.tangent_rotations, lane), -1.0, state);
-    addStiffness(tets_->elements[e], rotation(state.rotations, lane), 1.0, state);
+    addStiffness(e, rotation(state.tangent_rotations, lane), -1.0, state);
+    addStiffness(e, rotation(state.rotations, lane), 1.0, state);
     for (std::size_t i = 0; i < 4; ++i) state.tangent_rotations[batch][i][lane] = state.rotations[batch][i][lane];
   }
 }
@@ -181,8 +182,9 @@ void TetElasticity::evaluate(const NodalVectors& x, const std::vector<BatchRange
 
 double TetElasticity::energy(const NodalVectors& x) const {
   double energy = 0.0;
-  for (const TetElement& element : tets_->elements) {
-    const Matrix3 F = deformationGradient(element, x);
+  for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
+    const TetElement& element = tets_->elements[e];
+    const Matrix3 F = tets_->deformationGradient(e, x);
     const Matrix3 R =
         corotational_ ? nearestRotation(F, Quaternion::Identity()).toRotationMatrix() : Matrix3(Matrix3::Identity());
     const Matrix3 S = R.transpose() * F;

@@ -8,14 +8,15 @@
 namespace tissue_contact {
 namespace {
 
-std::vector<ElementBatch> makeBatches(const std::vector<TetElement>& elements) {
+std::vector<ElementBatch> makeBatches(const NodalVectors& rest, const std::vector<TetElement>& elements) {
   std::vector<ElementBatch> batches((elements.size() + kLanes - 1) / kLanes);
   for (std::size_t slot = 0; slot < batches.size() * kLanes; ++slot) {
     const bool used = slot < elements.size();
     const TetElement& element = used ? elements[slot] : elements.back();
     ElementBatch& batch = batches[slot / kLanes];
     const std::size_t lane = slot % kLanes;
-    for (std::size_t i = 0; i < 9; ++i) batch.rest_inverse[i][lane] = element.rest_inverse.data()[i];
+    const Matrix3 rest_inverse = edgeMatrix(rest, element.nodes).inverse();
+    for (std::size_t i = 0; i < 9; ++i) batch.rest_inverse[i][lane] = rest_inverse.data()[i];
     batch.volume[lane] = used ? element.volume : 0.0;
     batch.nodes[lane] = element.nodes;
   }
@@ -36,23 +37,21 @@ std::vector<BatchMaterial> makeBatchMaterials(const std::vector<TetElement>& ele
 
 TetElements::TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
                          const std::vector<bool>& fixed, const ElementMaterials& materials, Lame lame,
-                         BlockMatrix couplings)
+                         std::shared_ptr<const BlockPattern> couplings)
     : damps(!materials.damping_s.empty()), pattern(std::move(couplings)) {
   for (const MaterialDescription& description : materials.materials) checkMaterial(description, "");
   elements.reserve(tetrahedra.size());
   bool same = true;
   for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
-    const Matrix3 D = edgeMatrix(rest, tetrahedra[e]);
-    elements.push_back({tetrahedra[e], D.inverse(), D.determinant() / 6.0, lame(materials.of(e)),
-                        materials.dampingOf(e), findSlots(pattern, tetrahedra[e], fixed)});
+    elements.push_back({tetrahedra[e], edgeMatrix(rest, tetrahedra[e]).determinant() / 6.0, lame(materials.of(e)),
+                        materials.dampingOf(e), findSlots(*pattern, tetrahedra[e], fixed)});
     const LameParameters& first = elements.front().lame;
     same = same && elements.back().lame.lambda == first.lambda && elements.back().lame.mu == first.mu;
   }
-  batches = makeBatches(elements);
+  batches = makeBatches(rest, elements);
   material =
       elements.empty() ? LameParameters{} : LameParameters{elements.front().lame.lambda, elements.front().lame.mu};
   if (!same) batch_materials = makeBatchMaterials(elements);
-  pattern.values = std::vector<Matrix3>();  // where blocks lie is all that is asked of it
 }
 
 void TetElements::split(const std::vector<bool>& still, Held& held) const {
@@ -74,23 +73,26 @@ void TetElements::split(const std::vector<bool>& still, Held& held) const {
 }
 
 void TetElements::prepare(Elasticity::State& state) const {
-  const auto zero = [&](BlockMatrix& matrix) {
-    matrix = pattern;
-    matrix.values.assign(matrix.columns.size(), Matrix3::Zero());
-  };
-  zero(state.stiffness);
-  if (damps) zero(state.damping);
+  state.stiffness = BlockMatrix(pattern);
+  if (damps) state.damping = BlockMatrix(pattern);
 }
 
-Eigen::Matrix<double, 3, 4> shapeGradients(const Matrix3& rest_inverse) {
+Matrix3 TetElements::restInverse(std::size_t element) const {
+  const ElementBatch& batch = batches[element / kLanes];
+  Matrix3 rest_inverse;
+  for (std::size_t i = 0; i < 9; ++i) rest_inverse.data()[i] = batch.rest_inverse[i][element % kLanes];
+  return rest_inverse;
+}
+
+Eigen::Matrix<double, 3, 4> TetElements::shapeGradients(std::size_t element) const {
   Eigen::Matrix<double, 3, 4> gradients;
-  gradients.rightCols<3>() = rest_inverse.transpose();
+  gradients.rightCols<3>() = restInverse(element).transpose();
   gradients.col(0) = -gradients.rightCols<3>().rowwise().sum();
   return gradients;
 }
 
-Matrix3 deformationGradient(const TetElement& element, const NodalVectors& x) {
-  return edgeMatrix(x, element.nodes) * element.rest_inverse;
+Matrix3 TetElements::deformationGradient(std::size_t element, const NodalVectors& x) const {
+  return edgeMatrix(x, elements[element].nodes) * restInverse(element);
 }
 
 }  // namespace tissue_contact

@@ -3,6 +3,7 @@
 /// their stiffness goes, and the same in batches for the force kernels.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "tissue/block_slots.h"
@@ -14,12 +15,12 @@
 
 namespace tissue_contact {
 
+/// What of a tetrahedron the force kernels do not need, or not one by one.
 struct TetElement {
   Tetrahedron nodes;
-  Matrix3 rest_inverse;  ///< D_rest^-1, 1/m; its rows are grad N_1..N_3
-  double volume;         ///< m^3
-  LameParameters lame;   ///< Pa; for some models their own parameters in the place of Lame's
-  double damping_s;      ///< what of its stiffness goes into State::damping
+  double volume;        ///< m^3
+  LameParameters lame;  ///< Pa; for some models their own parameters in the place of Lame's
+  double damping_s;     ///< what of its stiffness goes into State::damping
   BlockSlots<4> slots;
 };
 
@@ -27,13 +28,13 @@ struct TetElements {
   using Lame = LameParameters (*)(const MaterialDescription&);
 
   /// @param lame the model's elastic parameters from a material.
-  /// @param couplings zero matrix with at least the blocks of the tetrahedra.
+  /// @param couplings at least the blocks of the tetrahedra.
   /// @throws std::invalid_argument for a material out of range.
   TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
-              const ElementMaterials& materials, Lame lame, BlockMatrix couplings);
+              const ElementMaterials& materials, Lame lame, std::shared_ptr<const BlockPattern> couplings);
   TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
               const ElementMaterials& materials, Lame lame)
-      : TetElements(rest, tetrahedra, fixed, materials, lame, BlockMatrix::forTetrahedra(tetrahedra, fixed)) {}
+      : TetElements(rest, tetrahedra, fixed, materials, lame, BlockPattern::forElements(tetrahedra, fixed)) {}
 
   /// Zero matrices of the right pattern.
   void prepare(Elasticity::State& state) const;
@@ -57,17 +58,20 @@ struct TetElements {
   /// Sorts the batches by whether all nodes of their elements are in `still`; `forces` are left to the model.
   void split(const std::vector<bool>& still, Held& held) const;
 
+  /// Gradients of the four shape functions of an element, columns, 1/m.
+  Eigen::Matrix<double, 3, 4> shapeGradients(std::size_t element) const;
+
+  Matrix3 deformationGradient(std::size_t element, const NodalVectors& x) const;
+
   std::vector<TetElement> elements;
-  std::vector<ElementBatch> batches;           ///< the same elements, laid out for the force kernels
-  LameParameters material;                     ///< of all elements, if batch_materials is empty
-  std::vector<BatchMaterial> batch_materials;  ///< where materials differ
-  bool damps = false;                          ///< there is a State::damping
-  BlockMatrix pattern;                         ///< without values
+  std::vector<ElementBatch> batches;            ///< the same elements, laid out for the force kernels
+  LameParameters material;                      ///< of all elements, if batch_materials is empty
+  std::vector<BatchMaterial> batch_materials;   ///< where materials differ
+  bool damps = false;                           ///< there is a State::damping
+  std::shared_ptr<const BlockPattern> pattern;  ///< of the stiffness
+
+ private:
+  Matrix3 restInverse(std::size_t element) const;  ///< D_rest^-1, 1/m; its rows are grad N_1..N_3
 };
-
-/// Gradients of the four shape functions, columns, 1/m.
-Eigen::Matrix<double, 3, 4> shapeGradients(const Matrix3& rest_inverse);
-
-Matrix3 deformationGradient(const TetElement& element, const NodalVectors& x);
 
 }  // namespace tissue_contact

@@ -28,12 +28,6 @@ PronyStep pronyStep(const PronyTerm& term, double ratios, double elapsed_s, doub
           term.modulus_ratio / ratios * std::exp(-step_s / term.time_s)};
 }
 
-/// to = a + b, all of one pattern.
-void add(const BlockMatrix& a, const BlockMatrix& b, BlockMatrix& to) {
-  for (std::size_t i = 0; i < to.diagonal.size(); ++i) to.diagonal[i] = a.diagonal[i] + b.diagonal[i];
-  for (std::size_t i = 0; i < to.values.size(); ++i) to.values[i] = a.values[i] + b.values[i];
-}
-
 }  // namespace
 
 struct Overstress::MaxwellState : RotationState {
@@ -43,7 +37,8 @@ struct Overstress::MaxwellState : RotationState {
 };
 
 Overstress::Overstress(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
-                       const std::vector<bool>& fixed, const ElementMaterials& materials, BlockMatrix pattern)
+                       const std::vector<bool>& fixed, const ElementMaterials& materials,
+                       std::shared_ptr<const BlockPattern> pattern)
     : TetElasticity(
           materials.materials.at(0).model != ElasticModel::kLinear,
           std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, overstressParameters, std::move(pattern))),
@@ -83,25 +78,16 @@ struct Viscoelastic::SumState : State {
   std::unique_ptr<State> overstress;
 
   void sum() {
-    add(relaxed->stiffness, overstress->stiffness, stiffness);
-    if (damping.rows() > 0) add(relaxed->damping, overstress->damping, damping);
+    stiffness.setSum(1.0, relaxed->stiffness, 1.0, overstress->stiffness);
+    if (damping.rows() > 0) damping.setSum(1.0, relaxed->damping, 1.0, overstress->damping);
   }
 };
-
-namespace {
-
-BlockMatrix zeroStiffness(const Elasticity& elasticity) {
-  BlockMatrix pattern = std::move(elasticity.makeState()->stiffness);
-  pattern.setZero();
-  return pattern;
-}
-
-}  // namespace
 
 Viscoelastic::Viscoelastic(std::unique_ptr<const Elasticity> relaxed, const NodalVectors& rest,
                            const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
                            const ElementMaterials& materials)
-    : relaxed_(std::move(relaxed)), overstress_(rest, tetrahedra, fixed, materials, zeroStiffness(*relaxed_)) {}
+    : relaxed_(std::move(relaxed)),
+      overstress_(rest, tetrahedra, fixed, materials, relaxed_->makeState()->stiffness.pattern) {}
 
 std::unique_ptr<Elasticity::State> Viscoelastic::makeState() const {
   auto state = std::make_unique<SumState>();

@@ -29,7 +29,7 @@ class Overstress : private TetElasticity {
   /// @param materials with a Prony series; the terms of the first are those of all.
   /// @param pattern zero matrix with at least the blocks of the tetrahedra.
   Overstress(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
-             const ElementMaterials& materials, BlockMatrix pattern);
+             const ElementMaterials& materials, std::shared_ptr<const BlockPattern> pattern);
   ~Overstress() override;
 
   std::unique_ptr<State> makeState() const override;

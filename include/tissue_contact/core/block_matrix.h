@@ -1,30 +1,48 @@
 /// @file
-/// Room `core`: sparse symmetric matrix of 3x3 blocks over the nodes of a mesh, rows compressed, diagonal apart.
+/// Room `core`: sparse symmetric matrix of 3x3 blocks over the nodes of a mesh. Of each pair of blocks that mirror each
+/// other one is stored, four rows side by side, so that products go through it with four rows at a time.
+///
+/// Sliced storage: Monakov, Lokhmotov & Avetisyan, "Automatically Tuning Sparse Matrix-Vector Multiplication for GPU
+/// Architectures", HiPEAC 2010. Which rows lie side by side: those that a Gauss-Seidel sweep in the order of the nodes
+/// may visit together (level scheduling: Saad, "Iterative Methods for Sparse Linear Systems", 2nd ed., section 11.6),
+/// so that such a sweep gives what it gives row by row.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "tissue_contact/core/types.h"
 
 namespace tissue_contact {
 
-/// Rows and columns are nodes. The four vectors of indices and blocks belong together; forElements() makes them. Both triangles are stored, so that a row is all a Gauss-Seidel sweep needs to read.
-struct BlockMatrix {
-  std::vector<Matrix3> diagonal;  ///< one per node
-  std::vector<int> row_start;     ///< nodes + 1 offsets into `columns` and `values`
-  std::vector<int> row_middle;    ///< per node the offset of its first column beyond the diagonal
-  std::vector<int> columns;       ///< ascending within a row, never the row itself
-  std::vector<Matrix3> values;
+/// Where blocks lie. Block (i, j) and its mirror image (j, i) share a place; the block stored is the one with i < j.
+struct BlockPattern {
+  static constexpr int kRows = 4;  ///< of a slice, one per lane
 
-  int rows() const { return static_cast<int>(diagonal.size()); }
+  /// A block below the diagonal, as seen from its row.
+  struct Lower {
+    int column;
+    int place;
+  };
 
-  /// Index into `values` of block (row, column), -1 when it is not stored.
-  int find(int row, int column) const;
+  int nodes = 0;
+  /// kRows nodes per slice; one that would have fewer repeats its first row, with blocks of zero. No row has a block
+  /// with another one of its slice, and blocks (i, j) with i < j have i in an earlier slice than j.
+  std::vector<int> rows;
+  std::vector<int> first;  ///< slices + 1 offsets of entries: one block for each row of the slice
+  /// kRows per entry: 3 * column, where its coordinates begin. Ascending in each lane, beyond the row; 3 * the row
+  /// itself where there is no block.
+  std::vector<int> columns;
+  std::vector<int> lane_of;      ///< per node: kRows * slice + lane
+  std::vector<int> lower_first;  ///< nodes + 1 offsets into `lower`
+  std::vector<Lower> lower;      ///< columns ascending within a row
 
-  /// Zero matrix with a block for every pair of free nodes that share an element (a range of node indices). Fixed nodes
-  /// get no off-diagonal.
+  /// A block for every pair of free nodes that share an element (a range of node indices). Fixed nodes get none off the
+  /// diagonal.
   template <typename Elements>
-  static BlockMatrix forElements(const Elements& elements, const std::vector<bool>& fixed) {
+  static std::shared_ptr<const BlockPattern> forElements(const Elements& elements, const std::vector<bool>& fixed) {
     std::vector<std::vector<int>> neighbours(fixed.size());
     for (const auto& element : elements) {
       for (const int a : element) {
@@ -35,8 +53,74 @@ struct BlockMatrix {
     }
     return fromNeighbours(neighbours);
   }
+
+  int slices() const { return static_cast<int>(first.size()) - 1; }
+  std::size_t entries() const { return static_cast<std::size_t>(first.back()); }
+
+  /// Place of block (row, column), -1 when it is not stored. Not for the diagonal.
+  int find(int row, int column) const;
+
+  /// Calls use(column, place) for the blocks of a row off the diagonal, columns ascending.
+  template <typename Use>
+  void forRow(int row, const Use& use) const {
+    for (int k = lower_first[row]; k < lower_first[row + 1]; ++k) use(lower[k].column, lower[k].place);
+    const int slice = lane_of[row] / kRows;
+    const int lane = lane_of[row] % kRows;
+    for (int k = first[slice]; k < first[slice + 1] && columns[kRows * k + lane] != 3 * row; ++k) {
+      use(columns[kRows * k + lane] / 3, placeOf(k, lane, false));
+    }
+  }
+
+  static int placeOf(int entry, int lane, bool mirrored) { return 2 * (kRows * entry + lane) + (mirrored ? 1 : 0); }
+
+ private:
+  /// @param neighbours of each node, mutual; may name a node twice. Sorted on the way.
+  static std::shared_ptr<const BlockPattern> fromNeighbours(std::vector<std::vector<int>>& neighbours);
+};
+
+/// Blocks of one entry. Element (r, c) of the block in lane l: at[r + 3 c][l].
+struct alignas(32) BlockLanes {
+  std::array<std::array<double, BlockPattern::kRows>, 9> at;
+};
+
+/// Rows and columns are nodes. Empty, or made for a pattern.
+struct BlockMatrix {
+  std::shared_ptr<const BlockPattern> pattern;
+  std::vector<Matrix3> diagonal;   ///< one per node
+  std::vector<BlockLanes> values;  ///< one per entry
+
+  BlockMatrix() = default;
+  /// Zero.
+  explicit BlockMatrix(std::shared_ptr<const BlockPattern> of);
+
+  template <typename Elements>
+  static BlockMatrix forElements(const Elements& elements, const std::vector<bool>& fixed) {
+    return BlockMatrix(BlockPattern::forElements(elements, fixed));
+  }
   static BlockMatrix forTetrahedra(const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed) {
     return forElements(tetrahedra, fixed);
+  }
+
+  int rows() const { return static_cast<int>(diagonal.size()); }
+
+  /// Block at a place that the pattern has found, as seen from the row that was asked for.
+  Matrix3 block(int place) const {
+    const BlockLanes& entry = values[static_cast<std::size_t>(place / 2) / BlockPattern::kRows];
+    const std::size_t lane = static_cast<std::size_t>(place / 2) % BlockPattern::kRows;
+    Matrix3 result;
+    for (std::size_t m = 0; m < 9; ++m) result.data()[m] = entry.at[m][lane];
+    if (place % 2 != 0) result.transposeInPlace();
+    return result;
+  }
+
+  /// Adds to the block at a place, and thereby to its mirror image.
+  void add(int place, const Matrix3& block) {
+    BlockLanes& entry = values[static_cast<std::size_t>(place / 2) / BlockPattern::kRows];
+    const std::size_t lane = static_cast<std::size_t>(place / 2) % BlockPattern::kRows;
+    const std::size_t down = place % 2 == 0 ? 1 : 3;
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t r = 0; r < 3; ++r) entry.at[down * r + (4 - down) * c][lane] += block.data()[r + 3 * c];
+    }
   }
 
   void setZero();
@@ -44,14 +128,11 @@ struct BlockMatrix {
   /// Takes over the blocks of a matrix of the same pattern. No allocation.
   void copyBlocks(const BlockMatrix& from);
 
-  /// Sum over off-diagonal blocks of row `i`: sum_j values * v_j.
-  Vector3 offDiagonalProduct(int i, const NodalVectors& v) const;
-  Vector3 lowerProduct(int i, const NodalVectors& v) const;  ///< over j < i only
-  Vector3 upperProduct(int i, const NodalVectors& v) const;  ///< over j > i only
+  /// Becomes a_scale a + b_scale b, which have the same pattern as this. No allocation.
+  void setSum(double a_scale, const BlockMatrix& a, double b_scale, const BlockMatrix& b);
 
- private:
-  /// @param neighbours of each node; may name a node twice. Sorted on the way.
-  static BlockMatrix fromNeighbours(std::vector<std::vector<int>>& neighbours);
+  /// Sum over off-diagonal blocks of row `i`: sum_j A_ij v_j.
+  Vector3 offDiagonalProduct(int i, const NodalVectors& v) const;
 };
 
 }  // namespace tissue_contact

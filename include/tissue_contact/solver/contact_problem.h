@@ -19,7 +19,8 @@ namespace tissue_contact {
 /// damping alpha M + beta K: mass_i = (1 + alpha dt) m_i, stiffness_scale = dt (dt + beta), b = M v0 + dt f(x0).
 struct BodySystem {
   const BlockMatrix* K = nullptr;  ///< N/m
-  const BlockMatrix* D = nullptr;  ///< N s/m, added as dt * D; null: damping is all in stiffness_scale and mass
+  /// N s/m, of K's pattern, added as dt * D; null: damping is all in stiffness_scale and mass.
+  const BlockMatrix* D = nullptr;
   const std::vector<bool>* fixed = nullptr;  ///< per node: its velocity is 0; may differ from step to step
   /// All nodes rest in this step: b = 0, v = 0 is the answer, the rest of this may be old. For solvers that carry
   /// something from step to step; the others may go by `fixed` alone.

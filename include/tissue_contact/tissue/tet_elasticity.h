@@ -25,7 +25,6 @@
 namespace tissue_contact {
 
 struct BatchRange;
-struct TetElement;
 struct TetElements;
 
 /// Model: const after construction. Thread-safe for different states.
@@ -72,7 +71,7 @@ class TetElasticity : public Elasticity {
  private:
   void evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, RotationState& state,
                 NodalVectors& forces) const;
-  static void addStiffness(const TetElement& element, const Quaternion& rotation, double sign, State& state);
+  void addStiffness(std::size_t element, const Quaternion& rotation, double sign, State& state) const;
   void adaptRotations(const NodalVectors& x, RotationState& state) const;
 
   bool corotational_;

@@ -73,6 +73,7 @@ TriangleTree::TriangleTree(const NodalVectors& x, std::vector<Triangle> triangle
   if (triangles_.empty()) return;
   placeCorners(x);
   const std::unique_ptr<FclTree> built = buildTree(corners_);
+  nodes_.reserve(static_cast<std::size_t>(built->getNumBVs()));
   for (int n = 0; n < built->getNumBVs(); ++n) {
     const auto& node = built->getBV(n);
     nodes_.emplace_back();

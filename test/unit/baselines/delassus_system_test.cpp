@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <array>
 #include <stdexcept>
+#include <vector>
 
 namespace tissue_contact {
 namespace {
@@ -17,11 +19,9 @@ struct TwoMasses {
   ContactProblem contacts;
 
   TwoMasses() {
+    K = BlockMatrix::forElements(std::vector<std::array<int, 2>>{{0, 1}}, fixed);
     K.diagonal = {2.0 * Matrix3::Identity(), 2.0 * Matrix3::Identity(), Matrix3::Identity()};
-    K.row_start = {0, 1, 2, 2};
-    K.row_middle = {0, 2, 2};
-    K.columns = {1, 0};
-    K.values = {-Matrix3::Identity(), -Matrix3::Identity()};
+    K.add(K.pattern->find(0, 1), -Matrix3::Identity());
     contacts.dt_s = 0.1;
     BodySystem body;
     body.K = &K;

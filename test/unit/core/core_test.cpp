@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "support/refusal.h"
 #include "tissue_contact/core/block_matrix.h"
@@ -11,6 +12,7 @@
 #include "tissue_contact/core/nearest_word.h"
 #include "tissue_contact/core/range.h"
 #include "tissue_contact/core/text.h"
+#include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
 namespace {
@@ -63,29 +65,54 @@ TEST(NearestWord, HasABound) {
 TEST(BlockMatrix, HasABlockForEveryPairOfFreeNeighbours) {
   const BlockMatrix K = BlockMatrix::forTetrahedra({{0, 1, 2, 3}, {1, 2, 3, 4}}, {false, false, false, false, true});
   ASSERT_EQ(K.rows(), 5);
-  EXPECT_EQ(K.columns, (std::vector<int>{1, 2, 3, 0, 2, 3, 0, 1, 3, 0, 1, 2}));
-  EXPECT_EQ(K.row_start, (std::vector<int>{0, 3, 6, 9, 12, 12}));
-  EXPECT_EQ(K.row_middle, (std::vector<int>{0, 4, 8, 12, 12}));
-  EXPECT_EQ(K.find(2, 3), 8);
-  EXPECT_EQ(K.find(1, 4), -1);
-  EXPECT_EQ(K.find(4, 1), -1);
-  EXPECT_EQ(K.find(1, 1), -1);
+  for (int i = 0; i < 5; ++i) {
+    std::vector<int> columns;
+    K.pattern->forRow(i, [&](int j, int place) {
+      columns.push_back(j);
+      EXPECT_EQ(place, K.pattern->find(i, j));
+    });
+    std::vector<int> expected;
+    for (int j = 0; j < 4; ++j) {
+      if (i < 4 && j != i) expected.push_back(j);
+    }
+    EXPECT_EQ(columns, expected) << "row " << i;
+    EXPECT_EQ(K.pattern->find(i, i), -1);
+    EXPECT_EQ(K.pattern->find(i, 4), -1);
+  }
 }
 
-TEST(BlockMatrix, RowProductIsTheDenseOne) {
+TEST(BlockMatrix, StoresMirrorImagesOnce) {
   BlockMatrix K = BlockMatrix::forTetrahedra({{0, 1, 2, 3}}, {false, false, false, false});
+  Matrix3 block;
+  block << 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0;
+  K.add(K.pattern->find(1, 2), block);
+  EXPECT_EQ(K.block(K.pattern->find(1, 2)), block);
+  EXPECT_EQ(K.block(K.pattern->find(2, 1)), block.transpose());
+  K.add(K.pattern->find(2, 1), block);
+  EXPECT_EQ(K.block(K.pattern->find(1, 2)), block + block.transpose());
   NodalVectors v(3, 4);
   for (Eigen::Index i = 0; i < v.size(); ++i) v.data()[i] = 0.3 * static_cast<double>(i) - 1.0;
-  Vector3 expected = Vector3::Zero();
-  for (int k = K.row_start[2]; k < K.row_start[3]; ++k) {
-    K.values[k] << 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, k;
-    expected += K.values[k] * v.col(K.columns[k]);
-  }
+  const Vector3 expected = (block + block.transpose()) * v.col(1);
   EXPECT_LE((K.offDiagonalProduct(2, v) - expected).norm(), 1e-14 * expected.norm());
-  EXPECT_EQ(K.upperProduct(2, v), K.values[K.row_start[3] - 1] * v.col(3));
-  EXPECT_LE((K.lowerProduct(2, v) + K.upperProduct(2, v) - expected).norm(), 1e-14 * expected.norm());
+  BlockMatrix sum = K;
+  sum.setSum(2.0, K, -1.0, K);
+  EXPECT_EQ(sum.block(K.pattern->find(1, 2)), K.block(K.pattern->find(1, 2)));
   K.setZero();
   EXPECT_EQ(K.offDiagonalProduct(2, v), Vector3::Zero());
+}
+
+// What lets a sweep go slice by slice: nodes of a slice are no neighbours, and earlier neighbours lie in earlier slices.
+TEST(BlockPattern, SlicesKeepTheOrderOfNeighbours) {
+  const TetMesh mesh = makeBlockMesh({Vector3(0.05, 0.04, 0.03), {5, 4, 3}, {}});
+  std::vector<bool> fixed(static_cast<std::size_t>(mesh.positions.cols()), false);
+  fixed[7] = fixed[20] = true;
+  const auto pattern = BlockPattern::forElements(mesh.tetrahedra, fixed);
+  const auto sliceOf = [&](int node) { return pattern->lane_of[node] / BlockPattern::kRows; };
+  for (int i = 0; i < pattern->nodes; ++i) {
+    EXPECT_EQ(pattern->rows[pattern->lane_of[i]], i);
+    pattern->forRow(i, [&](int j, int /*place*/) { EXPECT_EQ(sliceOf(j) < sliceOf(i), j < i) << i << ", " << j; });
+  }
+  EXPECT_LE(pattern->slices(), pattern->nodes / 3);  // most are full
 }
 
 }  // namespace

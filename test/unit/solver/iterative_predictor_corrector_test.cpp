@@ -21,9 +21,7 @@ struct OneNode {
   ContactSolution solution;
 
   explicit OneNode(const Vector3& free_velocity, const CoulombLaw& law) {
-    K.diagonal = {Matrix3::Zero()};
-    K.row_start = {0, 0};
-    K.row_middle = {0};
+    K = BlockMatrix::forTetrahedra({}, fixed);
     BodySystem body;
     body.K = &K;
     body.fixed = &fixed;

@@ -63,12 +63,36 @@ Vector3 plainDefect(const BodySystem& body, int i, const NodalVectors& v) {
   Vector3 defect = body.b.col(i) - body.mass[i] * v.col(i);
   const auto subtract = [&](const BlockMatrix& matrix, double scale) {
     defect -= scale * (matrix.diagonal[i] * v.col(i));
-    for (int k = matrix.row_start[i]; k < matrix.row_start[i + 1]; ++k)
-      defect -= scale * (matrix.values[k] * v.col(matrix.columns[k]));
+    defect -= scale * matrix.offDiagonalProduct(i, v);
   };
   subtract(*body.K, body.stiffness_scale);
   if (body.D != nullptr) subtract(*body.D, body.damping_scale);
   return defect;
+}
+
+/// Four rows at a time with half the blocks stored, against node by node and block by block.
+TEST(BodyDefect, IsThePlainOne) {
+  for (const bool damped : {false, true}) {
+    PressedBlock scene(0.5, 0.03);
+    BodySystem& body = scene.problem.bodies[0];
+    body.b.setRandom();
+    if (damped) {
+      body.D = body.K;
+      body.damping_scale = 2e-3;
+    }
+    NodalVectors v = NodalVectors::Random(3, body.K->rows());
+    for (int i = 0; i < body.K->rows(); ++i) {
+      if (scene.fixed[i]) v.col(i).setZero();
+    }
+    NodalVectors expected(3, body.K->rows());
+    for (int i = 0; i < body.K->rows(); ++i) {
+      expected.col(i) = scene.fixed[i] ? Vector3(Vector3::Zero()) : plainDefect(body, i, v);
+    }
+    NodalVectors defect = NodalVectors::Zero(3, body.K->rows());
+    const double square = bodyDefect(body, v, defect, defect);  // of impulses in the place of the defect
+    EXPECT_LE((defect - expected).cwiseAbs().maxCoeff(), 1e-14 * expected.cwiseAbs().maxCoeff());
+    EXPECT_NEAR(square, expected.squaredNorm(), 1e-13 * square);
+  }
 }
 
 /// A sweep forth and one back as in the text-book, each node's defect computed in full; between the two contacts move

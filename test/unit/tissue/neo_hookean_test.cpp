@@ -30,8 +30,8 @@ void move(const Elasticity& elasticity, int steps, NodalVectors& x) {
   for (int step = 0; step < steps; ++step) {
     elasticity.update(x, *state, f);
     BlockMatrix A = state->stiffness;
-    for (Matrix3& block : A.values) block *= kStep * kStep;
-    for (Matrix3& block : A.diagonal) block = kStep * kStep * block + 1.02 * kMass * Matrix3::Identity();
+    A.setSum(kStep * kStep, state->stiffness, 0.0, state->stiffness);
+    for (Matrix3& block : A.diagonal) block += 1.02 * kMass * Matrix3::Identity();
     NodalVectors next = NodalVectors::Zero(3, x.cols());
     solveStatic(A, std::vector<bool>(static_cast<std::size_t>(x.size()), false), kMass * v + kStep * f, next);
     v = next;

@@ -1,0 +1,222 @@
+#include "solver/body_sweep.h"
+
+namespace tissue_contact {
+namespace {
+
+/// What the kernels read and write, of one body.
+struct Work {
+  const BodySystem& body;
+  const std::vector<BlockLanes>& diagonal;
+  const std::vector<BlockLanes>& inverse;
+  const std::vector<SliceVectors>& right;
+  const std::vector<std::array<double, kLanes>>& free;
+  double* lower;
+  double* v;
+};
+
+TISSUE_CONTACT_INLINE void store(const LaneVectors& from, const int* at, double* v) {
+  for (int lane = kLanes; lane-- > 0;) {  // the first one last: a slice with fewer rows repeats it, unmoved
+    double* const to = v + at[lane];
+    to[0] = from[0][lane];
+    to[1] = from[1][lane];
+    to[2] = from[2][lane];
+  }
+}
+
+/// Gauss-Seidel step of a slice's rows. @param squares |defect|^2 of each free row, else 0.
+template <bool kDamped>
+TISSUE_CONTACT_INLINE void relax(const Work& all, int slice, Lanes& squares) {
+  const BlockMatrix& K = *all.body.K;
+  const std::array<int, kLanes> rows = rowsOf(*K.pattern, slice);
+  LaneVectors elastic{};
+  addUpperProduct(K, slice, all.v, elastic);
+  LaneVectors defect, lower, v;
+  load(all.right[slice], defect);
+  gather(all.lower, rows.data(), lower);
+  gather(all.v, rows.data(), v);
+  const double scale = all.body.stiffness_scale;
+  defect[0] -= lower[0] + scale * elastic[0];
+  defect[1] -= lower[1] + scale * elastic[1];
+  defect[2] -= lower[2] + scale * elastic[2];
+  if (kDamped) {
+    const double damping = all.body.damping_scale;
+    LaneVectors viscous{};
+    addUpperProduct(*all.body.D, slice, all.v, viscous);
+    defect[0] -= damping * viscous[0];
+    defect[1] -= damping * viscous[1];
+    defect[2] -= damping * viscous[2];
+  }
+  LaneVectors own{};
+  addProduct(all.diagonal[slice], v, own);
+  defect[0] -= own[0];
+  defect[1] -= own[1];
+  defect[2] -= own[2];
+  addProduct(all.inverse[slice], defect, v);
+  store(v, rows.data(), all.v);
+  Lanes free;
+  load(all.free[slice].data(), free);
+  squares = free * (defect[0] * defect[0] + defect[1] * defect[1] + defect[2] * defect[2]);
+}
+
+/// Adds what a slice's rows do to the rows after them.
+template <bool kDamped>
+TISSUE_CONTACT_INLINE void carry(const Work& all, int slice) {
+  const BlockMatrix& K = *all.body.K;
+  LaneVectors v;
+  gather(all.v, rowsOf(*K.pattern, slice).data(), v);
+  scatterMirrored(K, slice, all.body.stiffness_scale, v, all.lower);
+  if (kDamped) scatterMirrored(*all.body.D, slice, all.body.damping_scale, v, all.lower);
+}
+
+TISSUE_CONTACT_INLINE double sum(const Lanes& squares) { return (squares[0] + squares[1]) + (squares[2] + squares[3]); }
+
+template <bool kDamped>
+TISSUE_CONTACT_INLINE double sweepForth(const Work& all, const std::vector<unsigned char>& moves, int begin, int end) {
+  Lanes change = {0.0, 0.0, 0.0, 0.0};
+  for (int slice = begin; slice < end; ++slice) {
+    if (moves[slice] == 0) continue;
+    Lanes squares;
+    relax<kDamped>(all, slice, squares);
+    carry<kDamped>(all, slice);
+    change += squares;
+  }
+  return sum(change);
+}
+
+template <bool kDamped>
+TISSUE_CONTACT_INLINE double sweepBack(const Work& all, const std::vector<unsigned char>& moves, int begin, int end) {
+  Lanes change = {0.0, 0.0, 0.0, 0.0};
+  for (int slice = end; slice-- > begin;) {
+    if (moves[slice] == 0) continue;
+    Lanes squares;
+    relax<kDamped>(all, slice, squares);
+    change += squares;
+  }
+  return sum(change);
+}
+
+TISSUE_CONTACT_CLONES
+double runForth(const Work& all, const std::vector<unsigned char>& moves, int begin, int end) {
+  return all.body.D != nullptr ? sweepForth<true>(all, moves, begin, end) : sweepForth<false>(all, moves, begin, end);
+}
+
+TISSUE_CONTACT_CLONES
+double runBack(const Work& all, const std::vector<unsigned char>& moves, int begin, int end) {
+  return all.body.D != nullptr ? sweepBack<true>(all, moves, begin, end) : sweepBack<false>(all, moves, begin, end);
+}
+
+TISSUE_CONTACT_CLONES
+void runRelax(const Work& all, int slice, double* squares) {
+  Lanes of_lanes;
+  all.body.D != nullptr ? relax<true>(all, slice, of_lanes) : relax<false>(all, slice, of_lanes);
+  std::memcpy(squares, &of_lanes, sizeof(of_lanes));
+}
+
+TISSUE_CONTACT_CLONES
+void runCarry(const Work& all, int slice) {
+  all.body.D != nullptr ? carry<true>(all, slice) : carry<false>(all, slice);
+}
+
+/// Of symmetric blocks, in closed form: cofactors over the determinant.
+TISSUE_CONTACT_INLINE void invert(const BlockLanes& blocks, const double* free, BlockLanes& inverse) {
+  Lanes m[9], by;
+  load(blocks, m);
+  load(free, by);
+  const Lanes xx = m[4] * m[8] - m[7] * m[5];
+  const Lanes xy = m[7] * m[2] - m[1] * m[8];
+  const Lanes xz = m[1] * m[5] - m[4] * m[2];
+  const Lanes yy = m[0] * m[8] - m[6] * m[2];
+  const Lanes yz = m[6] * m[1] - m[0] * m[7];
+  const Lanes zz = m[0] * m[4] - m[3] * m[1];
+  by /= m[0] * xx + m[3] * xy + m[6] * xz;
+  const Lanes result[9] = {by * xx, by * xy, by * xz, by * xy, by * yy, by * yz, by * xz, by * yz, by * zz};
+  std::memcpy(inverse.at.data(), result, sizeof(result));
+}
+
+TISSUE_CONTACT_CLONES
+void invertAll(const std::vector<BlockLanes>& blocks, const std::vector<std::array<double, kLanes>>& free,
+               std::vector<BlockLanes>& inverse) {
+  for (std::size_t slice = 0; slice < blocks.size(); ++slice) invert(blocks[slice], free[slice].data(), inverse[slice]);
+}
+
+}  // namespace
+
+void BodySweep::prepare(const BodySystem& body) {
+  body_ = &body;
+  const auto slices = static_cast<std::size_t>(pattern().slices());
+  diagonal_.resize(slices);
+  inverse_.resize(slices);
+  right_.resize(slices);
+  free_.resize(slices);
+  moves_.resize(slices);
+  lower_.resize(3, body.K->rows());
+  prepareSlices();
+  invertAll(diagonal_, free_, inverse_);
+}
+
+void BodySweep::prepareSlices() {
+  const BodySystem& body = *body_;
+  const std::vector<int>& rows = pattern().rows;
+  for (std::size_t place = 0; place < rows.size(); ++place) {
+    const std::size_t slice = place / kLanes;
+    const std::size_t lane = place % kLanes;
+    const int i = rows[place];
+    const bool repeats = lane > 0 && i == rows[place - lane];
+    const bool free = !repeats && !(*body.fixed)[i];
+    BlockLanes& block = diagonal_[slice];
+    const double* const stiffness = body.K->diagonal[i].data();
+    for (std::size_t m = 0; m < 9; ++m) block.at[m][lane] = free ? body.stiffness_scale * stiffness[m] : 0.0;
+    if (body.D != nullptr && free) {
+      const double* const damping = body.D->diagonal[i].data();
+      for (std::size_t m = 0; m < 9; ++m) block.at[m][lane] += body.damping_scale * damping[m];
+    }
+    const double mass = free ? body.mass[i] : 1.0;  // of rows that stay: anything with an inverse
+    for (std::size_t m = 0; m < 9; m += 4) block.at[m][lane] += mass;
+    for (std::size_t r = 0; r < 3; ++r) right_[slice].at[r][lane] = body.b(static_cast<Eigen::Index>(r), i);
+    free_[slice][lane] = free ? 1.0 : 0.0;
+    moves_[slice] = static_cast<unsigned char>((lane > 0 ? moves_[slice] : 0) | static_cast<int>(free));
+  }
+}
+
+Matrix3 BodySweep::inverse(int node) const {
+  const auto place = static_cast<std::size_t>(pattern().lane_of[node]);
+  Matrix3 inverse;
+  for (std::size_t m = 0; m < 9; ++m) inverse.data()[m] = inverse_[place / kLanes].at[m][place % kLanes];
+  return inverse;
+}
+
+void BodySweep::addImpulse(int node, const Vector3& impulse_W) {
+  const auto place = static_cast<std::size_t>(pattern().lane_of[node]);
+  for (std::size_t r = 0; r < 3; ++r) right_[place / kLanes].at[r][place % kLanes] += impulse_W.data()[r];
+}
+
+void BodySweep::follow(int node, const Vector3& change) {
+  const auto add = [&](const BlockMatrix& matrix, double scale) {
+    const Vector3 scaled = scale * change;
+    matrix.pattern->forRow(node, [&](int j, int place) {
+      if (j > node) lower_.col(j) += matrix.block(place).transpose() * scaled;  // A is symmetric
+    });
+  };
+  add(*body_->K, body_->stiffness_scale);
+  if (body_->D != nullptr) add(*body_->D, body_->damping_scale);
+}
+
+double BodySweep::forth(int begin, int end, NodalVectors& v) {
+  return runForth({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v.data()}, moves_, begin, end);
+}
+
+double BodySweep::back(int begin, int end, NodalVectors& v) {
+  return runBack({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v.data()}, moves_, begin, end);
+}
+
+BodySweep::SquaresOfLanes BodySweep::relaxSlice(int slice, NodalVectors& v) {
+  SquaresOfLanes squares{};
+  runRelax({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v.data()}, slice, squares.data());
+  return squares;
+}
+
+void BodySweep::carrySlice(int slice, NodalVectors& v) {
+  runCarry({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v.data()}, slice);
+}
+
+}  // namespace tissue_contact

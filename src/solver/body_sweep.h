@@ -1,0 +1,78 @@
+/// @file
+/// Room `solver`, private: Gauss-Seidel sweeps over the nodes of one body, four at a time, with the impulses of
+/// contacts held.
+///
+/// A sweep visits the slices of the body's BlockPattern in their order, which gives what visiting node after node
+/// gives. A sweep forth leaves sum_{j<i} A_ij v_j of every node, which the sweep back then need not compute (Conrad &
+/// Wallach, "Alternating Methods for Sets of Linear Equations", Numer. Math. 32 (1979) 105-108).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/slice_product.h"
+#include "tissue_contact/solver/contact_problem.h"
+
+namespace tissue_contact {
+
+class BodySweep {
+ public:
+  /// Begins a step, without impulses. Allocates only for a body larger than before.
+  void prepare(const BodySystem& body);
+
+  /// P_i^-1 of a node, 1/kg; 0 if it is fixed.
+  Matrix3 inverse(int node) const;
+
+  /// Adds to J'lambda of a node, N s.
+  void addImpulse(int node, const Vector3& impulse_W);
+
+  /// A contact has moved a node by `change` (m/s) since the sweep forth.
+  void follow(int node, const Vector3& change);
+
+  /// @param v 3 x nodes, m/s.
+  /// @param held what BlockPattern::lane_of gives for the nodes that a contact may hold, ascending.
+  /// @param hold called with each of them after its step; true: its contact holds it, so that its defect does not count.
+  /// @return |defects met|^2, (N s)^2.
+  template <class Hold>
+  double sweep(bool forward, const std::vector<int>& held, NodalVectors& v, const Hold& hold) {
+    if (forward) lower_.setZero();
+    const int slices = pattern().slices();
+    int begin = 0;  // of what is left
+    int end = slices;
+    double change = 0.0;
+    for (std::size_t done = 0; done < held.size();) {
+      const auto next = [&] { return held[forward ? done : held.size() - 1 - done]; };
+      const int slice = next() / kLanes;
+      change += forward ? forth(begin, slice, v) : back(slice + 1, end, v);
+      SquaresOfLanes squares = relaxSlice(slice, v);
+      for (; done < held.size() && next() / kLanes == slice; ++done) {
+        if (hold(pattern().rows[next()])) squares[next() % kLanes] = 0.0;
+      }
+      for (const double square : squares) change += square;
+      if (forward) carrySlice(slice, v);
+      (forward ? begin : end) = forward ? slice + 1 : slice;
+    }
+    return change + (forward ? forth(begin, end, v) : back(begin, end, v));
+  }
+
+ private:
+  using SquaresOfLanes = std::array<double, kLanes>;
+
+  const BlockPattern& pattern() const { return *body_->K->pattern; }
+  void prepareSlices();
+  double forth(int begin, int end, NodalVectors& v);
+  double back(int begin, int end, NodalVectors& v);
+  SquaresOfLanes relaxSlice(int slice, NodalVectors& v);
+  void carrySlice(int slice, NodalVectors& v);
+
+  const BodySystem* body_ = nullptr;  ///< of the step
+  std::vector<BlockLanes> diagonal_;  ///< A_ii of each slice's rows
+  std::vector<BlockLanes> inverse_;   ///< A_ii^-1, 0 for fixed nodes
+  std::vector<SliceVectors> right_;   ///< b + J'lambda, N s
+  std::vector<SquaresOfLanes> free_;  ///< 1 for a row that is free, else 0
+  std::vector<unsigned char> moves_;  ///< some row of the slice is free
+  NodalVectors lower_;                ///< sum_{j<i} A_ij v_j after the sweep forth, N s
+};
+
+}  // namespace tissue_contact

@@ -1,0 +1,214 @@
+/// Sweeps four rows at a time, against the same node by node and block by block.
+#include "solver/body_sweep.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+namespace tissue_contact {
+namespace {
+
+/// A body with blocks of no symmetry of their own in K and in D, which is no multiple of K.
+struct RandomBody {
+  std::vector<bool> fixed;
+  BlockMatrix K, D;
+  BodySystem system;
+
+  /// @param pattern_fixed nodes without blocks; `held_still` are fixed too, but have blocks.
+  RandomBody(int nodes, double joined, const std::vector<int>& pattern_fixed, const std::vector<int>& held_still,
+             bool damped) {
+    std::vector<std::array<int, 2>> pairs;
+    for (int i = 0; i < nodes; ++i) {
+      for (int j = 0; j < i; ++j) {
+        if (uniform_(random_) < joined) pairs.push_back({i, j});
+      }
+    }
+    fixed.assign(static_cast<std::size_t>(nodes), false);
+    for (const int i : pattern_fixed) fixed[i] = true;
+    K = BlockMatrix::forElements(pairs, fixed);
+    D = BlockMatrix(K.pattern);
+    fill(K, 8.0 + nodes);
+    fill(D, 5.0);
+    for (const int i : held_still) fixed[i] = true;
+    system.K = &K;
+    system.D = damped ? &D : nullptr;
+    system.fixed = &fixed;
+    system.stiffness_scale = 0.7;
+    system.damping_scale = 0.2;
+    system.mass.resize(nodes);
+    system.b.resize(3, nodes);
+    for (int i = 0; i < nodes; ++i) {
+      system.mass[i] = 1.0 + uniform_(random_);
+      system.b.col(i) = fixed[i] ? Vector3(Vector3::Zero()) : randomVector();
+    }
+  }
+  RandomBody(const RandomBody&) = delete;
+  RandomBody& operator=(const RandomBody&) = delete;
+
+  Vector3 randomVector() { return {uniform_(random_) - 0.5, uniform_(random_) - 0.5, uniform_(random_) - 0.5}; }
+  bool chance(double of) { return uniform_(random_) < of; }
+
+ private:
+  void fill(BlockMatrix& matrix, double diagonal) {
+    for (int i = 0; i < matrix.rows(); ++i) {
+      if (fixed[i]) continue;
+      Matrix3 own;
+      own << randomVector(), randomVector(), randomVector();
+      matrix.diagonal[i] = diagonal * Matrix3::Identity() + own + own.transpose();
+      matrix.pattern->forRow(i, [&](int j, int place) {
+        if (j < i) return;
+        Matrix3 block;
+        block << randomVector(), randomVector(), randomVector();
+        matrix.add(place, block);
+      });
+    }
+  }
+
+  std::mt19937 random_{5};
+  std::uniform_real_distribution<double> uniform_{0.0, 1.0};
+};
+
+/// What a contact makes of a node that it may hold: true, it holds it.
+using Hold = std::function<bool(int node, Vector3& v)>;
+
+/// The textbook's sweep. @return |defects met|^2 of the nodes that nothing holds.
+double plainSweep(const BodySystem& body, const NodalVectors& impulses, bool forward, const std::vector<bool>& may_hold,
+                  const Hold& hold, NodalVectors& v) {
+  const int nodes = body.K->rows();
+  double squares = 0.0;
+  for (int step = 0; step < nodes; ++step) {
+    const int i = forward ? step : nodes - 1 - step;
+    if ((*body.fixed)[i]) continue;
+    Vector3 defect = body.b.col(i) + impulses.col(i) - body.mass[i] * v.col(i);
+    Matrix3 block = body.mass[i] * Matrix3::Identity();
+    const auto take = [&](const BlockMatrix& matrix, double scale) {
+      defect -= scale * (matrix.diagonal[i] * v.col(i));
+      matrix.pattern->forRow(i, [&](int j, int place) { defect -= scale * (matrix.block(place) * v.col(j)); });
+      block += scale * matrix.diagonal[i];
+    };
+    take(*body.K, body.stiffness_scale);
+    if (body.D != nullptr) take(*body.D, body.damping_scale);
+    v.col(i) += block.inverse() * defect;
+    Vector3 moved = v.col(i);
+    const bool held = may_hold[i] && hold(i, moved);
+    v.col(i) = moved;
+    if (!held) squares += defect.squaredNorm();
+  }
+  return squares;
+}
+
+/// Some sweeps forth and back, with impulses and with nodes that contacts hold, against the textbook's.
+void compareSweeps(RandomBody& body, double held_share) {
+  const int nodes = body.K.rows();
+  std::vector<bool> may_hold(static_cast<std::size_t>(nodes), false);
+  std::vector<int> held;
+  NodalVectors impulses = NodalVectors::Zero(3, nodes);
+  BodySweep sweeps;
+  sweeps.prepare(body.system);
+  for (int i = 0; i < nodes; ++i) {
+    if (body.fixed[i]) continue;
+    impulses.col(i) = body.randomVector();
+    sweeps.addImpulse(i, impulses.col(i));
+    may_hold[i] = body.chance(held_share);
+    if (may_hold[i]) held.push_back(body.K.pattern->lane_of[i]);
+  }
+  std::sort(held.begin(), held.end());
+  const Hold hold = [](int node, Vector3& v) {
+    if (node % 3 == 0) return false;  // its contact lets go
+    v = Vector3(0.1, -0.2, 0.01 * node);
+    return true;
+  };
+  NodalVectors v = NodalVectors::Zero(3, nodes);
+  NodalVectors expected = v;
+  for (int sweep = 0; sweep < 4; ++sweep) {
+    const bool forward = sweep % 2 == 0;
+    const double expected_squares = plainSweep(body.system, impulses, forward, may_hold, hold, expected);
+    const double squares = sweeps.sweep(forward, held, v, [&](int node) {
+      Vector3 moved = v.col(node);
+      const bool holds = hold(node, moved);
+      v.col(node) = moved;
+      return holds;
+    });
+    // Sums of some ten terms in another order.
+    EXPECT_LE((v - expected).norm(), 1e-14 * expected.norm()) << nodes << " nodes, sweep " << sweep;
+    // A defect is the difference of the loads and of A v; the blocks of A's diagonal are below 10 + nodes.
+    const double terms = (body.system.b + impulses).norm() + (10.0 + nodes) * expected.norm();
+    EXPECT_NEAR(std::sqrt(squares), std::sqrt(expected_squares), 1e-14 * terms) << nodes << " nodes, sweep " << sweep;
+    for (int i = 0; i < nodes; ++i) {
+      if (!body.fixed[i]) continue;
+      EXPECT_EQ(Vector3(v.col(i)), Vector3::Zero());
+    }
+  }
+}
+
+TEST(BodySweep, IsTheSweepNodeByNode) {
+  for (const bool damped : {false, true}) {
+    for (const int nodes : {1, 2, 3, 4, 5, 7, 30, 61}) {  // slices that have fewer than four rows among them
+      for (const double held_share : {0.0, 0.3, 1.0}) {
+        RandomBody body(nodes, 0.2, {}, {}, damped);
+        compareSweeps(body, held_share);
+      }
+    }
+  }
+}
+
+/// Fixed nodes without blocks, such as those of a boundary, and with blocks, such as those asleep; slices of nothing else.
+TEST(BodySweep, LeavesFixedNodesWhereTheyAre) {
+  for (const bool damped : {false, true}) {
+    RandomBody some(30, 0.2, {0, 7, 8, 29}, {3, 4, 5, 20}, damped);
+    compareSweeps(some, 0.3);
+    RandomBody most(13, 0.5, {0, 1, 2, 3, 4}, {5, 6, 7, 8, 9, 10, 12}, damped);
+    compareSweeps(most, 1.0);
+    RandomBody all(6, 0.5, {0, 1, 2}, {3, 4, 5}, damped);
+    compareSweeps(all, 1.0);
+  }
+}
+
+/// Of blocks that all touch each other no two lie in one slice.
+TEST(BodySweep, TakesRowsOneByOneWhereAllAreNeighbours) {
+  RandomBody body(9, 1.1, {}, {}, true);
+  EXPECT_EQ(body.K.pattern->slices(), 9);
+  compareSweeps(body, 0.3);
+}
+
+TEST(BodySweep, InverseIsThatOfTheDiagonalBlock) {
+  for (const bool damped : {false, true}) {
+    RandomBody body(11, 0.3, {2}, {6}, damped);
+    BodySweep sweeps;
+    sweeps.prepare(body.system);
+    for (int i = 0; i < 11; ++i) {
+      Matrix3 block = body.system.mass[i] * Matrix3::Identity() + body.system.stiffness_scale * body.K.diagonal[i];
+      if (damped) block += body.system.damping_scale * body.D.diagonal[i];
+      const Matrix3 expected = body.fixed[i] ? Matrix3(Matrix3::Zero()) : Matrix3(block.inverse());
+      EXPECT_LE((sweeps.inverse(i) - expected).norm(), 1e-15 * expected.norm()) << "node " << i;
+    }
+  }
+}
+
+/// A body after a larger one, with nodes fixed that were free: nothing of it is left.
+TEST(BodySweep, BeginsAnew) {
+  RandomBody larger(40, 0.2, {}, {}, true);
+  RandomBody body(10, 0.3, {1}, {4}, false);
+  BodySweep used, fresh;
+  used.prepare(larger.system);
+  NodalVectors v = NodalVectors::Zero(3, 40);
+  used.addImpulse(4, Vector3(1.0, 2.0, 3.0));
+  used.sweep(true, {}, v, [](int /*node*/) { return false; });
+  NodalVectors of_used = NodalVectors::Zero(3, 10), of_fresh = NodalVectors::Zero(3, 10);
+  used.prepare(body.system);
+  fresh.prepare(body.system);
+  for (const bool forward : {true, false}) {
+    used.sweep(forward, {}, of_used, [](int /*node*/) { return false; });
+    fresh.sweep(forward, {}, of_fresh, [](int /*node*/) { return false; });
+    EXPECT_EQ(of_used, of_fresh);
+  }
+}
+
+}  // namespace
+}  // namespace tissue_contact
