@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <queue>
 #include <utility>
 
@@ -143,11 +144,13 @@ void BlockMatrix::setZero() {
 }
 
 void BlockMatrix::copyBlocks(const BlockMatrix& from) {
+  assert(from.values.size() == values.size());
   std::copy(from.diagonal.begin(), from.diagonal.end(), diagonal.begin());
   std::copy(from.values.begin(), from.values.end(), values.begin());
 }
 
 void BlockMatrix::setSum(double a_scale, const BlockMatrix& a, double b_scale, const BlockMatrix& b) {
+  assert(a.values.size() == values.size() && b.values.size() == values.size());
   for (std::size_t i = 0; i < diagonal.size(); ++i) diagonal[i] = a_scale * a.diagonal[i] + b_scale * b.diagonal[i];
   for (std::size_t k = 0; k < values.size(); ++k) {
     for (std::size_t m = 0; m < 9; ++m) {

@@ -1,5 +1,7 @@
 #include "solver/body_sweep.h"
 
+#include <cassert>
+
 namespace tissue_contact {
 namespace {
 
@@ -142,6 +144,7 @@ void invertAll(const std::vector<BlockLanes>& blocks, const std::vector<std::arr
 }  // namespace
 
 void BodySweep::prepare(const BodySystem& body) {
+  assert(body.D == nullptr || body.D->values.size() == body.K->values.size());
   body_ = &body;
   const auto slices = static_cast<std::size_t>(pattern().slices());
   diagonal_.resize(slices);
@@ -179,6 +182,7 @@ void BodySweep::prepareSlices() {
 }
 
 Matrix3 BodySweep::inverse(int node) const {
+  if (body_ == nullptr) return Matrix3::Zero();
   const auto place = static_cast<std::size_t>(pattern().lane_of[node]);
   Matrix3 inverse;
   for (std::size_t m = 0; m < 9; ++m) inverse.data()[m] = inverse_[place / kLanes].at[m][place % kLanes];
@@ -186,6 +190,7 @@ Matrix3 BodySweep::inverse(int node) const {
 }
 
 void BodySweep::addImpulse(int node, const Vector3& impulse_W) {
+  if (body_ == nullptr) return;
   const auto place = static_cast<std::size_t>(pattern().lane_of[node]);
   for (std::size_t r = 0; r < 3; ++r) right_[place / kLanes].at[r][place % kLanes] += impulse_W.data()[r];
 }

@@ -18,10 +18,13 @@ namespace tissue_contact {
 
 class BodySweep {
  public:
-  /// Begins a step, without impulses. Allocates only for a body larger than before.
+  /// Begins a step, without impulses. Allocates only for a body of another size than before. @param body must stay until the next one begins.
   void prepare(const BodySystem& body);
 
-  /// P_i^-1 of a node, 1/kg; 0 if it is fixed.
+  /// Begins a step in which the body sleeps: none of its nodes moves, and impulses on it are not kept.
+  void rest() { body_ = nullptr; }
+
+  /// P_i^-1 of a node, 1/kg; 0 if it does not move.
   Matrix3 inverse(int node) const;
 
   /// Adds to J'lambda of a node, N s.
@@ -66,7 +69,7 @@ class BodySweep {
   SquaresOfLanes relaxSlice(int slice, NodalVectors& v);
   void carrySlice(int slice, NodalVectors& v);
 
-  const BodySystem* body_ = nullptr;  ///< of the step
+  const BodySystem* body_ = nullptr;  ///< of the step; null: it sleeps
   std::vector<BlockLanes> diagonal_;  ///< A_ii of each slice's rows
   std::vector<BlockLanes> inverse_;   ///< A_ii^-1, 0 for fixed nodes
   std::vector<SliceVectors> right_;   ///< b + J'lambda, N s

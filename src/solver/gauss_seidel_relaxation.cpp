@@ -79,7 +79,7 @@ void GaussSeidelRelaxation::prepare(const ContactProblem& problem, ContactSoluti
 void GaussSeidelRelaxation::prepareBodies(const ContactProblem& problem) {
   bodies_.resize(problem.bodies.size());
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    if (!problem.bodies[k].asleep) bodies_[k].prepare(problem.bodies[k]);
+    problem.bodies[k].asleep ? bodies_[k].rest() : bodies_[k].prepare(problem.bodies[k]);
   }
 }
 

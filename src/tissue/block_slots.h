@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <vector>
 
@@ -19,7 +20,10 @@ class BlockSlots {
   int operator()(std::size_t i, std::size_t j) const { return at_[placeOf(i, j)]; }
 
  private:
-  static std::size_t placeOf(std::size_t i, std::size_t j) { return i * (2 * N - i - 1) / 2 + j; }
+  static std::size_t placeOf(std::size_t i, std::size_t j) {
+    assert(i <= j && j < N);
+    return i * (2 * N - i - 1) / 2 + j;
+  }
 
   std::array<int, N*(N + 1) / 2> at_;  ///< row by row
 };

@@ -27,7 +27,7 @@ namespace tissue_contact {
 class Overstress : private TetElasticity {
  public:
   /// @param materials with a Prony series; the terms of the first are those of all.
-  /// @param pattern zero matrix with at least the blocks of the tetrahedra.
+  /// @param pattern holds at least the blocks of the tetrahedra.
   Overstress(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
              const ElementMaterials& materials, std::shared_ptr<const BlockPattern> pattern);
   ~Overstress() override;

@@ -54,10 +54,10 @@ struct BlockPattern {
     return fromNeighbours(neighbours);
   }
 
-  int slices() const { return static_cast<int>(first.size()) - 1; }
-  std::size_t entries() const { return static_cast<std::size_t>(first.back()); }
+  int slices() const { return static_cast<int>(first.size()) - 1; }               ///< of four rows each
+  std::size_t entries() const { return static_cast<std::size_t>(first.back()); }  ///< of four blocks each
 
-  /// Place of block (row, column), -1 when it is not stored. Not for the diagonal.
+  /// Place of block (row, column): 2 (4 entry + lane), 1 more for a mirror image; -1 when it is not stored. Not for the diagonal.
   int find(int row, int column) const;
 
   /// Calls use(column, place) for the blocks of a row off the diagonal, columns ascending.

@@ -28,7 +28,7 @@ struct BodySystem {
   double stiffness_scale = 0.0;  ///< s^2
   double damping_scale = 0.0;    ///< s: dt where there is a D
   VectorX mass;                  ///< kg, per node
-  NodalVectors b;                ///< N s
+  NodalVectors b;                ///< N s; finite, of fixed nodes too
 };
 
 /// A node a contact acts on.

@@ -18,7 +18,7 @@ class Elasticity {
   struct State {
     virtual ~State() = default;
     BlockMatrix stiffness;  ///< K, N/m, symmetric; rows of fixed nodes hold nothing
-    BlockMatrix damping;    ///< D, N s/m, where materials damp differently by region; else no rows
+    BlockMatrix damping;    ///< D, N s/m, where materials damp differently by region, of the same pattern; else no rows
     /// Set by the caller: the model may leave out rotations while they are small, where it says that it can.
     bool adapt_rotations = false;
     /// Set by the caller for models with memory, s: the step that update() prepares, and the time since the last update,

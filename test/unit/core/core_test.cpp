@@ -94,9 +94,13 @@ TEST(BlockMatrix, StoresMirrorImagesOnce) {
   for (Eigen::Index i = 0; i < v.size(); ++i) v.data()[i] = 0.3 * static_cast<double>(i) - 1.0;
   const Vector3 expected = (block + block.transpose()) * v.col(1);
   EXPECT_LE((K.offDiagonalProduct(2, v) - expected).norm(), 1e-14 * expected.norm());
-  BlockMatrix sum = K;
-  sum.setSum(2.0, K, -1.0, K);
-  EXPECT_EQ(sum.block(K.pattern->find(1, 2)), K.block(K.pattern->find(1, 2)));
+  BlockMatrix other(K.pattern), sum(K.pattern);
+  other.add(K.pattern->find(1, 2), Matrix3::Identity());
+  other.diagonal[3] = block;
+  K.diagonal[3] = Matrix3::Identity();
+  sum.setSum(2.0, K, -1.0, other);
+  EXPECT_EQ(sum.block(K.pattern->find(1, 2)), 2.0 * K.block(K.pattern->find(1, 2)) - Matrix3::Identity());
+  EXPECT_EQ(sum.diagonal[3], 2.0 * Matrix3::Identity() - block);
   K.setZero();
   EXPECT_EQ(K.offDiagonalProduct(2, v), Vector3::Zero());
 }

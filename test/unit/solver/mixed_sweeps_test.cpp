@@ -164,8 +164,11 @@ TEST(MixedSweeps, KnowThisProblemAlone) {
     asleep.asleep = true;
     one.problem.bodies.insert(one.problem.bodies.begin(), asleep);
     one.solution.v.insert(one.solution.v.begin(), NodalVectors::Zero(3, asleep.mass.size()));
+    const auto fixed_node = static_cast<int>(std::find(one.fixed.begin(), one.fixed.end(), true) - one.fixed.begin());
     for (ContactRow& row : one.problem.contacts) {
       for (int a = 0; a < row.node_count; ++a) row.nodes[a].body = 1;
+      // A fixed node of a tissue asleep, which contact does not wake. Not where a sweep holds the contact's only node.
+      if (row.node_count == 2 || row.node_count == 3) row.nodes[row.node_count++] = {0, fixed_node, -0.5};
     }
     const SolverReport report = used.solve(one.problem, one.solution);
     IterativePredictorCorrector(options(30, 20, 1e-12)).solve(same.problem, same.solution);
