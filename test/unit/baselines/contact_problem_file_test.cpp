@@ -147,7 +147,7 @@ TEST_F(ContactProblemFile, GarbledFilesAreReadOrRefusedButNothingElse) {
   std::mt19937 random(2);
   const std::string good = "FC3D 1\nn 2\nW sparse 6 0 0 1 1 1 1 2 2 1 3 3 1 4 4 1 5 5 1\nq -1 0 0 1 0 0\nmu 0.3 0.4\n";
   ASSERT_NO_THROW(read(good));
-  const std::string alphabet = "0123456789.-+e# \nnqmuWFCDx\t\0";
+  const std::string alphabet = std::string("0123456789.-+e# \nnqmuWFCDx\t") + '\0';
   int refused = 0;
   for (int trial = 0; trial < 1000; ++trial) {
     std::string text = good;
