@@ -46,7 +46,8 @@ TEST(ConformingGap, VertexIsItsOwnGap) {
 TEST(ConformingGap, ChangesWithoutAJumpFromSmoothToSharp) {
   double before = overSphere(0.001, 0.01, kMiddle, 0.0).gap;
   bool was_full = true;
-  for (double radius = 0.01; radius > 5e-4; radius *= 0.99) {
+  for (int k = 0; k <= 298; ++k) {  // 10 mm to .5 mm
+    const double radius = 0.01 * std::pow(0.99, k);
     const ConformingGap result = overSphere(0.001, radius, kMiddle, 0.0);
     const double sagitta = 4.0 / 9.0 * 1e-6 / (2.0 * radius);
     EXPECT_NEAR(result.gap, before, 0.08 * sagitta) << radius;
