@@ -66,13 +66,15 @@ class ValueCount : public YAML::EventHandler {
 };
 
 /// Within brackets yaml-cpp before 0.7 takes a colon right before "]" or the end of the text for an empty scalar, again and again until
-/// memory ends (its issues 499 and 793); hence also the blank that ends what it is given. Refused with every version, so that a scene is the same scene everywhere.
+/// memory ends (its issues 499 and 793); hence also the blank that ends what it is given. The byte 4 is its mark of the end, and
+/// zeros make it read UTF-16, in which neither would be seen. Refused with every version, in comments and quotes too, so that a scene is the same scene everywhere.
 void checkColons(const std::string& yaml, const std::string& file) {
-  const std::size_t at = yaml.find(":]");
+  const std::size_t at = std::min({yaml.find(":]"), yaml.find('\x04'), yaml.find('\0')});
   if (at == std::string::npos) return;
   const auto line = std::count(yaml.begin(), yaml.begin() + static_cast<std::ptrdiff_t>(at), '\n');
-  throw std::invalid_argument(file + ":" + std::to_string(line + 1) +
-                              ": (YAML syntax): \":]\" is not allowed; write a value or a blank after the colon");
+  throw std::invalid_argument(file + ":" + std::to_string(line + 1) + ": (YAML syntax): " +
+                              (yaml[at] == ':' ? "\":]\" is not allowed; write a value or a blank after the colon"
+                                               : "control characters are not allowed; save it as UTF-8 without them"));
 }
 
 /// The only document of the text; null if there is none.

@@ -1,5 +1,6 @@
 /// What is refused, and that each message gives file, line and key path. Each case spoils one place of a good scene.
 #include <chrono>
+#include <initializer_list>
 
 #include "scene_fixture.h"
 
@@ -194,7 +195,9 @@ TEST_F(SceneTest, RefusesAFileWithoutTissue) {
 
 // yaml-cpp 0.7 finds one more document in each of these for ever.
 TEST_F(SceneTest, RefusesATextInWhichTheParserDoesNotGetOn) {
-  for (const char* yaml : {"[:", "{y{:", "[a:]", "{a: [:]}", ",|<", ",-|-", ",-[<0[", ",]||''&a", "!&,b>,@a"}) {
+  for (const std::string& yaml : std::initializer_list<std::string>{std::string("[\0:\0", 4), std::string("\0[\0:", 4),
+                                                                    "[:", "[:\x04", "{y{:", "[a:]", "{a: [:]}", ",|<",
+                                                                    ",-|-", ",-[<0[", ",]||''&a", "!&,b>,@a"}) {
     EXPECT_EQ(refusal(yaml).find("scene.yaml:1: (YAML syntax): "), 0U) << yaml << ": " << refusal(yaml);
   }
 }
