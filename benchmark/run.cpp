@@ -14,7 +14,6 @@ using Clock = std::chrono::steady_clock;
 class Recorder {
  public:
   explicit Recorder(Simulator& simulator) : simulator_(simulator) {
-    for (const Tissue& tissue : simulator.tissues()) run_.nodes += tissue.nodeCount();
     run_.advice = simulator.advice();
     simulator_.setStepObserver([this] { step(); });
     last_ = Clock::now();
@@ -35,6 +34,7 @@ class Recorder {
 
   Run finish() {
     simulator_.setStepObserver(nullptr);
+    for (const Tissue& tissue : simulator_.tissues()) run_.nodes += tissue.nodeCount();
     const auto steps = static_cast<double>(run_.step_s.size());
     if (steps > 0.0) {
       run_.mean_iterations = iterations_ / steps;
@@ -95,6 +95,9 @@ Scene withSettings(const Scene& scene, const Settings& settings) {
   if (settings.fixedIterations()) changed.solver.tolerance = 1e-300;
   changed.step.max_step_s = settings.dt_s;
   if (!settings.simplified) changed.advisor.sleep = changed.advisor.adapt_rotations = false;
+  if (settings.refinement.mode != RefinementDescription::Mode::kNever) {
+    changed.tissues.at(0).refinement = settings.refinement;
+  }
   if (settings.cells == std::array<int, 3>{0, 0, 0}) return changed;
   auto* const block = std::get_if<BlockDescription>(&changed.tissues.at(0).geometry);
   if (block == nullptr) throw std::invalid_argument("tissue '" + changed.tissues[0].name + "' is no generated block");

@@ -34,6 +34,7 @@ struct Settings {
   SolverDescription solver;
   double dt_s = 0.001;
   std::array<int, 3> cells = {0, 0, 0};  ///< of the first tissue's block; 0: as the scene has them
+  RefinementDescription refinement;      ///< of the first tissue, a volume; never: as the scene has it
   bool simplified = true;                ///< the scene's advisor may leave out what it bounds the error of
 
   bool fixedIterations() const { return solver.tolerance == 0.0; }
@@ -53,7 +54,7 @@ struct Run {
   double mean_iterations = 0.0;
   double met_tolerance = 0.0;       ///< share of the steps
   long discarded = 0;               ///< steps without a finite answer
-  int nodes = 0;                    ///< of all tissues
+  int nodes = 0;                    ///< of all tissues, at the end
   std::vector<std::string> advice;  ///< what the advisor chose
 
   double wall_s() const;

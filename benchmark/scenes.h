@@ -26,7 +26,9 @@ struct ScenePlan {
   Motion short_motion;       ///< the beginning, for meshes of more than kLargeMesh nodes; null: all of it
   bool exact_rivals = true;  ///< run `reference` and `condensed_lcp`, whose time goes with the cube of the contacts
   std::vector<std::array<int, 3>> meshes;  ///< beside the shipped one, coarse to fine
-  std::vector<double> steps_s;             ///< beside the shipped one
+  std::vector<RefinementDescription>
+      refinements;              ///< of the shipped one: meshes that follow the tool, with cells and nodes given
+  std::vector<double> steps_s;  ///< beside the shipped one
   TruthPlan truth;
   bool has_peer = false;
 };

@@ -13,11 +13,11 @@ namespace tissue_contact {
 namespace {
 
 using Cells = std::array<int, 3>;
-using SizeKey = std::tuple<Cells, double>;  ///< mesh and step
+using SizeKey = std::tuple<Cells, double, double>;  ///< mesh, step and the finest cells of a mesh that is refined
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-SizeKey sizeOf(const Settings& settings) { return {settings.cells, settings.dt_s}; }
+SizeKey sizeOf(const Settings& settings) { return {settings.cells, settings.dt_s, settings.refinement.cell_m}; }
 
 bool sameSolver(const SolverDescription& a, const SolverDescription& b) {
   return a.method == b.method && a.relaxation == b.relaxation && a.iterations == b.iterations &&
@@ -29,7 +29,9 @@ bool relaxes(SolverMethod method) {
   return method != SolverMethod::kReference && method != SolverMethod::kCondensedLcp;
 }
 
+/// Of a refined mesh, roughly.
 int nodesOf(const Settings& settings) {
+  if (settings.refinement.nodes_at_most > 0) return settings.refinement.nodes_at_most / 2;
   return (settings.cells[0] + 1) * (settings.cells[1] + 1) * (settings.cells[2] + 1);
 }
 
@@ -95,6 +97,16 @@ class Grid {
     }
   }
 
+  /// A mesh that follows the tool, at tolerances of which one is enough for a haptic device.
+  void refined(const RefinementDescription& refinement) {
+    for (const double tolerance : {1e-2, 1e-3, shipped_.solver.tolerance}) {
+      Settings settings = shipped_;
+      settings.refinement = refinement;
+      settings.solver.tolerance = tolerance;
+      add(settings);
+    }
+  }
+
   const std::vector<Settings>& all() const { return all_; }
 
  private:
@@ -144,7 +156,9 @@ class Sweep {
     const auto found = converged_.find(sizeOf(settings));
     if (found != converged_.end()) return found->second;
     Settings shipped_at = shipped_;
-    std::tie(shipped_at.cells, shipped_at.dt_s) = sizeOf(settings);
+    shipped_at.cells = settings.cells;
+    shipped_at.dt_s = settings.dt_s;
+    shipped_at.refinement = settings.refinement;
     return converged_.emplace(sizeOf(settings), run(convergedSettings(shipped_at), "converged ")).first->second;
   }
 
@@ -174,6 +188,7 @@ class Sweep {
     row.tolerance = settings.solver.tolerance;
     row.dt_s = settings.dt_s;
     row.nodes = run.nodes;
+    row.refined_cell_m = settings.refinement.cell_m;
     row.solver_error = row.same_mesh_error = wrenchError(run, exact).relative;
     row.total_error = isTruth(settings) ? kNone : wrenchError(run, truth_).relative;
     row.mean_iterations = run.mean_iterations;
@@ -288,6 +303,7 @@ std::vector<Settings> settingsGrid(const ScenePlan& plan, bool quick) {
   if (plan.exact_rivals) grid.exactRivals();
   for (const double dt : plan.steps_s) grid.size(shipped.cells, dt);
   for (const Cells& cells : plan.meshes) grid.size(cells, shipped.dt_s);
+  for (const RefinementDescription& refinement : plan.refinements) grid.refined(refinement);
   return grid.all();
 }
 

@@ -24,6 +24,7 @@ struct BenchmarkRow {
   double tolerance = 0.0;  ///< 0: the number of iterations is fixed
   double dt_s = 0.0;
   int nodes = 0;
+  double refined_cell_m = 0.0;  ///< finest cells of a mesh that follows the tool; 0: it does not
   StepTimes times;
   double steps_per_s = 0.0;
   double realtime_factor = 0.0;  ///< simulated over wall time: above 1, the scene keeps up with the robot

@@ -22,7 +22,8 @@ std::string number(double value) { return std::isfinite(value) ? text("%.6g", va
 
 std::string settingsText(const BenchmarkRow& row) {
   if (row.peer) return row.method;
-  const std::string method = row.method + (row.relaxation.empty() ? "" : " " + row.relaxation);
+  const std::string follows = row.refined_cell_m > 0.0 ? text("mesh follows, %.2g mm: ", 1e3 * row.refined_cell_m) : "";
+  const std::string method = follows + row.method + (row.relaxation.empty() ? "" : " " + row.relaxation);
   return row.tolerance > 0.0
              ? text("%s, %.0e (at most %dx%d)", method.c_str(), row.tolerance, row.iterations, row.contact_passes)
              : text("%s, %d iterations", method.c_str(), row.iterations);
@@ -144,7 +145,8 @@ PeerVerdict judgePeer(const SceneResult& result, const BenchmarkRow& peer, bool 
 }
 
 void writeCsv(const SceneResult& result, std::ostream& out) {
-  out << "scene,method,relaxation,iterations,contact_passes,tolerance,dt_s,nodes,median_ms,p99_ms,max_ms,steps_per_s,"
+  out << "scene,method,relaxation,iterations,contact_passes,tolerance,dt_s,nodes,refined_cell_m,median_ms,p99_ms,max_"
+         "ms,steps_per_s,"
          "realtime_factor,"
          "solver_error,total_error,same_mesh_error,mean_iterations,met_tolerance,reference_met,discarded,shipped,at_"
          "shipped_size,"
@@ -153,12 +155,13 @@ void writeCsv(const SceneResult& result, std::ostream& out) {
     out << result.scene << ',' << row.method << ',' << row.relaxation << ','
         << (row.peer ? "" : std::to_string(row.iterations)) << ','
         << (row.peer ? "" : std::to_string(row.contact_passes)) << ',' << number(row.tolerance) << ','
-        << number(row.dt_s) << ',' << row.nodes << ',' << number(1e3 * row.times.median) << ','
-        << number(1e3 * row.times.p99) << ',' << number(1e3 * row.times.max) << ',' << number(row.steps_per_s) << ','
-        << number(row.realtime_factor) << ',' << number(row.solver_error) << ',' << number(row.total_error) << ','
-        << number(row.same_mesh_error) << ',' << number(row.mean_iterations) << ',' << number(row.met_tolerance) << ','
-        << number(row.reference_met) << ',' << row.discarded << ',' << row.shipped << ',' << row.at_shipped_size << ','
-        << row.shipped_solver << ',' << number(result.truth_error) << ',' << result.of << '\n';
+        << number(row.dt_s) << ',' << row.nodes << ',' << number(row.refined_cell_m) << ','
+        << number(1e3 * row.times.median) << ',' << number(1e3 * row.times.p99) << ',' << number(1e3 * row.times.max)
+        << ',' << number(row.steps_per_s) << ',' << number(row.realtime_factor) << ',' << number(row.solver_error)
+        << ',' << number(row.total_error) << ',' << number(row.same_mesh_error) << ',' << number(row.mean_iterations)
+        << ',' << number(row.met_tolerance) << ',' << number(row.reference_met) << ',' << row.discarded << ','
+        << row.shipped << ',' << row.at_shipped_size << ',' << row.shipped_solver << ',' << number(result.truth_error)
+        << ',' << result.of << '\n';
   }
 }
 
@@ -181,7 +184,7 @@ void printSummary(const SceneResult& result, std::ostream& out) {
   if (!verdict.on_front && verdict.found_better) printRow(result.rows[verdict.better], out);
   out << "  shipped solver over meshes and steps:\n";
   for (const BenchmarkRow& row : result.rows) {
-    if (row.shipped_solver) printRow(row, out);
+    if (row.shipped_solver || row.refined_cell_m > 0.0) printRow(row, out);
   }
   for (const BenchmarkRow& row : result.rows) {
     if (!row.peer) continue;

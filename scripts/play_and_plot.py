@@ -128,11 +128,11 @@ class Recorder:
 
     def _take_topology(self, message):
         with self.lock:
-            self._rest[message.tissue] = message.rest_positions
+            self._rest[message.tissue] = (message.revision, message.rest_positions)
 
     def _take_mesh(self, message):
         with self.lock:
-            self._meshes[message.tissue] = message.positions
+            self._meshes[message.tissue] = (message.revision, message.positions)
 
     def is_answered(self):
         """Whether the newest joint state heard has its wrench."""
@@ -146,7 +146,8 @@ class Recorder:
             begin = min((samples[0][0] for samples in self.forces.values()), default=0.0)
             now = self.last_wrench.to_sec() - begin if self.last_wrench else 0.0
             contacts = self.last_contacts.contacts if self.last_contacts else []
-            meshes = [(self._rest[name], mesh) for name, mesh in self._meshes.items() if name in self._rest]
+            meshes = [(self._rest[name][1], mesh) for name, (revision, mesh) in self._meshes.items()
+                      if name in self._rest and self._rest[name][0] == revision]  # else the other one is on its way
         deepest = 0.0
         for rest, mesh in meshes:
             moved = numpy.array([(p.x - r.x, p.y - r.y, p.z - r.z) for p, r in zip(mesh, rest)])

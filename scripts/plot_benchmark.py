@@ -81,7 +81,8 @@ def read(file):
 
 
 def size_name(row):
-    return "%d nodes, %g ms" % (row["nodes"], 1e3 * row["dt_s"])
+    follows = ", cells of %.2g mm that follow" % (1e3 * row["refined_cell_m"]) if row["refined_cell_m"] > 0 else ""
+    return "%d nodes, %g ms%s" % (row["nodes"], 1e3 * row["dt_s"], follows)
 
 
 def pareto(rows, error):
@@ -187,7 +188,7 @@ def save(figure, file):
 
 def plot_growth(rows, folder):
     shipped = next(r for r in rows if r["shipped"])
-    grown = sorted((r for r in rows if r["shipped_solver"] and r["dt_s"] == shipped["dt_s"]), key=lambda r: r["nodes"])
+    grown = sorted((r for r in rows if r["shipped_solver"] and r["dt_s"] == shipped["dt_s"] and not r["refined_cell_m"] > 0), key=lambda r: r["nodes"])
     if len(grown) < 2:
         return False
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6))

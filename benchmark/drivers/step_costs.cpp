@@ -1,10 +1,8 @@
 /// Prints what an implicit step costs: press and drag (a 5 mm ball, 4 mm deep, 20 mm/s) on a block or on a Gmsh mesh of the
 /// same block, with the median and the 99th percentile of the processor time of a step in contact. `--trace FILE` writes
 /// every step: why was this one slow?
-/// usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--tolerance T] [--relaxation NAME] [--iterations N]
+/// usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--refinement never|auto|MAP] [--tolerance T] [--relaxation NAME] [--iterations N]
 /// [--step S] [--drag M] [--youngs-modulus PA] [--poissons-ratio NU] [--trace FILE]
-#include <time.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -15,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "step_times.h"
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/simulation/simulator.h"
@@ -31,7 +30,8 @@ struct Arguments {
   std::map<std::string, std::string> values = {{"--tolerance", "0.001"},     {"--relaxation", "gauss_seidel"},
                                                {"--iterations", "30"},       {"--youngs-modulus", "5000"},
                                                {"--poissons-ratio", "0.45"}, {"--step", "0.001"},
-                                               {"--drag", "0.01"},           {"--trace", ""}};
+                                               {"--drag", "0.01"},           {"--trace", ""},
+                                               {"--refinement", "never"}};
 };
 
 bool parse(int argc, char** argv, Arguments& arguments) {
@@ -55,6 +55,9 @@ Simulator makeScene(const Arguments& arguments) {
       ", poissons_ratio: " + arguments.values.at("--poissons-ratio") +
       ", density_kg_per_m3: 1000}\n"
       "    damping: {stiffness_s: 0.003}\n"
+      "    refinement: " +
+      arguments.values.at("--refinement") +
+      "\n"
       "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
       "instruments:\n  - name: probe\n    urdf: package://tissue_contact/urdf/probe.urdf\n    tip_link: tip\n"
       "    joint_state_topics: [/probe/joint_states]\n    base_pose: {position_m: [-0.01, 0, 0.0451]}\n"
@@ -66,20 +69,6 @@ Simulator makeScene(const Arguments& arguments) {
   SceneEnvironment environment;
   environment.package_path = [](const std::string&) { return std::string(TISSUE_CONTACT_SOURCE_DIR); };
   return Simulator(parseScene(yaml, "step_costs", environment.package_path), environment);
-}
-
-/// Of this thread, so that others on the machine count little.
-double processorSeconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 void run(Simulator& simulator, const Arguments& arguments) {
@@ -112,9 +101,10 @@ void run(Simulator& simulator, const Arguments& arguments) {
     iterations += report.iterations;
   }
   if (file != nullptr) std::fclose(file);
-  std::printf("%s nodes %d median_ms %.4f p99_ms %.4f max_ms %.4f iterations %.1f steps %zu\n", arguments.mesh.c_str(),
-              simulator.tissues()[0].nodeCount(), quantile(ms, 0.5), quantile(ms, 0.99), quantile(ms, 1.0),
-              ms.empty() ? 0.0 : iterations / static_cast<double>(ms.size()), ms.size());
+  std::printf("%s meshes %d nodes %d median_ms %.4f p99_ms %.4f max_ms %.4f iterations %.1f steps %zu\n",
+              arguments.mesh.c_str(), simulator.meshRevision(0), simulator.tissues()[0].nodeCount(), quantile(ms, 0.5),
+              quantile(ms, 0.99), quantile(ms, 1.0), ms.empty() ? 0.0 : iterations / static_cast<double>(ms.size()),
+              ms.size());
 }
 
 }  // namespace
@@ -122,10 +112,10 @@ void run(Simulator& simulator, const Arguments& arguments) {
 int main(int argc, char** argv) {
   Arguments arguments;
   if (!parse(argc, argv, arguments)) {
-    std::fprintf(
-        stderr,
-        "usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--tolerance T] [--relaxation NAME] [--iterations N] "
-        "[--step S] [--drag M] [--youngs-modulus PA] [--poissons-ratio NU] [--trace FILE]\n");
+    std::fprintf(stderr,
+                 "usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--refinement never|auto|MAP] [--tolerance T] "
+                 "[--relaxation NAME] "
+                 "[--iterations N] [--step S] [--drag M] [--youngs-modulus PA] [--poissons-ratio NU] [--trace FILE]\n");
     return 2;
   }
   try {

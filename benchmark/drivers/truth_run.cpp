@@ -1,8 +1,8 @@
 /// One run of a scene of tissue_contact_benchmark on a mesh of one's own: forces on the last instrument over time, in tip
 /// axes, as CSV. benchmark/truth/make_truth.py makes truths of many of them.
 /// usage: truth_run SCENE MESH STEP_S TOLERANCE SECONDS [BAG]
-///   SCENE press-drag, grasp, partial-slip or robot (with its BAG); MESH a file in the tissue's frame, or - for the scene's
-///   own; SECONDS of the motion, 0: all
+///   SCENE press-drag, grasp, partial-slip or robot (with its BAG); MESH a file in the tissue's frame, - for the scene's
+///   own, refined for that one with refinement: auto, or CELL_MM,REACH_MM,NODES for it refined so; SECONDS of the motion, 0: all
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -29,7 +29,16 @@ ScenePlan planOf(const std::string& name, const std::string& bag) {
 }
 
 void prepare(const std::vector<std::string>& words, Scene& scene) {
-  if (words[1] != "-") {
+  RefinementDescription& refinement = scene.tissues[0].refinement;
+  double cell_mm = 0.0;
+  double reach_mm = 0.0;
+  if (words[1] == "refined") {
+    refinement.mode = RefinementDescription::Mode::kAuto;
+  } else if (std::sscanf(words[1].c_str(), "%lf,%lf,%d", &cell_mm, &reach_mm, &refinement.nodes_at_most) == 3) {
+    refinement.mode = RefinementDescription::Mode::kGiven;
+    refinement.cell_m = 1e-3 * cell_mm;
+    refinement.reach_m = 1e-3 * reach_mm;
+  } else if (words[1] != "-") {
     MeshDescription mesh;
     mesh.file = words[1];
     mesh.remove_unreferenced_nodes = true;
@@ -64,6 +73,7 @@ void run(const std::vector<std::string>& words) {
     });
   } catch (const Enough&) {
   }
+  std::fprintf(stderr, "%d meshes, ", simulator.meshRevision(0));
   std::fprintf(stderr, "%d nodes, %d steps, %d of them to the tolerance\n", simulator.tissues()[0].nodeCount(), steps,
                met);
 }

@@ -75,7 +75,8 @@ struct ContactDetector::Implementation {
                   std::vector<Contact>& contacts);
   double deepestGroove(const TouchingShape& shape, const std::vector<Pose>& X_WL) const;
   bool fitBetweenShapes(const TouchingShape& shape, const std::vector<std::vector<Pose>>& X_WL, Contact& contact) const;
-  double surfaceDistance(MovingSurface& surface, const TouchingShape& shape, const Pose& X_WS, double bound);
+  double surfaceDistance(MovingSurface& surface, const TouchingShape& shape, const Pose& X_WS, double bound,
+                         NearPlace* place = nullptr);
 };
 
 ContactDetector::ContactDetector(const std::vector<Instrument>& instruments, SharedSurfaces surfaces,
@@ -248,8 +249,9 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
 }
 
 /// Least signed distance of the shape over the surface's triangles, or `bound` if that is less.
+/// @param place unless null: gets where that is, if some triangle is as near.
 double ContactDetector::Implementation::surfaceDistance(MovingSurface& surface, const TouchingShape& shape,
-                                                        const Pose& X_WS, double bound) {
+                                                        const Pose& X_WS, double bound, NearPlace* place) {
   const ShapeDistance& distance = *shape.distance;
   // The surface node nearest to the middle of the shape tells how far to look.
   const Vector3 middle = X_WS * distance.boxCentre();
@@ -264,7 +266,12 @@ double ContactDetector::Implementation::surfaceDistance(MovingSurface& surface, 
   for (const int triangle : candidates) {
     const Triangle& nodes = surface.triangles()[triangle];
     const TrianglePoints points(inShape(nodes[0]), inShape(nodes[1]), inShape(nodes[2]));
-    if (distance.closest(points, nearest, closest)) nearest = std::min(nearest, closest.distance);
+    if (!distance.closest(points, nearest, closest) || !(closest.distance <= nearest)) continue;
+    nearest = closest.distance;
+    if (place != nullptr) {
+      place->nodes = nodes;
+      place->weights = closest.weights;
+    }
   }
   return nearest;
 }
@@ -285,6 +292,32 @@ void ContactDetector::lowerClosestApproach(const std::vector<NodalVectors>& posi
                  nearest - surface.halfThickness()};
     }
   }
+}
+
+void ContactDetector::findNear(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL,
+                               const std::vector<double>& within_m, std::vector<NearPlace>& near) {
+  Implementation& self = *implementation_;
+  placeAll(*self.surfaces, positions);
+  near.clear();
+  for (MovingSurface& surface : *self.surfaces) {
+    const double bound = within_m[surface.tissue()] + surface.halfThickness();
+    if (within_m[surface.tissue()] < 0.0 || surface.nodes().empty()) continue;
+    for (const TouchingShape& shape : self.shapes) {
+      const Pose X_WS = X_WL.at(shape.instrument).at(shape.link) * shape.X_LS;
+      if (!(surface.box().exteriorDistance(boxAround(*shape.distance, X_WS, 0.0)) < bound)) continue;
+      NearPlace place{surface.tissue(), shape.instrument, shape.contact_link, shape.shape};
+      const double nearest = self.surfaceDistance(surface, shape, X_WS, bound, &place);
+      if (!(nearest < bound)) continue;
+      place.distance_m = nearest - surface.halfThickness();
+      near.push_back(place);
+    }
+  }
+}
+
+void ContactDetector::setSurface(int tissue, TissueSurface surface, const NodalVectors& rest) {
+  MovingSurface& own = (*implementation_->surfaces)[tissue];
+  own = MovingSurface(tissue, std::move(surface), rest);
+  implementation_->narrow_phase.makeRoom(own);
 }
 
 }  // namespace tissue_contact

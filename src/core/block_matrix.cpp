@@ -3,13 +3,71 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <numeric>
 #include <queue>
 #include <utility>
 
 namespace tissue_contact {
 namespace {
 
-using Neighbours = std::vector<std::vector<int>>;  // ascending
+/// Of each node the others that share an element with it, ascending.
+class Neighbours {
+ public:
+  struct Row {
+    const int* first;
+    const int* last;
+    const int* begin() const { return first; }
+    const int* end() const { return last; }
+  };
+
+  /// Elements as in BlockPattern::fromElements().
+  Neighbours(const std::vector<int>& first, const std::vector<int>& nodes, std::size_t node_count);
+
+  std::size_t size() const { return first_.size() - 1; }
+  std::size_t pairs() const { return nodes_.size(); }
+  Row operator[](std::size_t i) const { return {nodes_.data() + first_[i], nodes_.data() + first_[i + 1]}; }
+
+ private:
+  std::vector<int> first_;
+  std::vector<int> nodes_;
+};
+
+/// Offsets of rows of these lengths, and the end.
+std::vector<int> offsets(const std::vector<int>& lengths) {
+  std::vector<int> first(lengths.size() + 1, 0);
+  std::partial_sum(lengths.begin(), lengths.end(), first.begin() + 1);
+  return first;
+}
+
+Neighbours::Neighbours(const std::vector<int>& first, const std::vector<int>& nodes, std::size_t node_count) {
+  std::vector<int> lengths(node_count, 0);
+  for (const int node : nodes) ++lengths[node];
+  const std::vector<int> first_use = offsets(lengths);
+  std::vector<int> elements(nodes.size());  // of each node
+  std::vector<int> next(first_use.begin(), first_use.end() - 1);
+  for (std::size_t e = 0; e + 1 < first.size(); ++e) {
+    for (int k = first[e]; k < first[e + 1]; ++k) elements[next[nodes[k]]++] = static_cast<int>(e);
+  }
+  std::vector<int> found;  // the rows, each in the order of its elements
+  std::vector<int> seen_by(node_count, -1);
+  for (std::size_t i = 0; i < node_count; ++i) {
+    const std::size_t before = found.size();
+    seen_by[i] = static_cast<int>(i);
+    for (int use = first_use[i]; use < first_use[i + 1]; ++use) {
+      for (int k = first[elements[use]]; k < first[elements[use] + 1]; ++k) {
+        if (std::exchange(seen_by[nodes[k]], static_cast<int>(i)) != static_cast<int>(i)) found.push_back(nodes[k]);
+      }
+    }
+    lengths[i] = static_cast<int>(found.size() - before);
+  }
+  // Being neighbours is mutual: handing each row out to its members fills theirs in ascending order.
+  first_ = offsets(lengths);
+  nodes_.resize(found.size());
+  next.assign(first_.begin(), first_.end() - 1);
+  for (std::size_t i = 0; i < node_count; ++i) {
+    for (int k = first_[i]; k < first_[i + 1]; ++k) nodes_[next[found[k]]++] = static_cast<int>(i);
+  }
+}
 
 /// Length of the longest chain of ever later neighbours that begins at each node: those that hold up most come first.
 std::vector<int> chainsAfter(const Neighbours& neighbours) {
@@ -29,9 +87,10 @@ class ReadyNodes {
  public:
   explicit ReadyNodes(const Neighbours& neighbours) : neighbours_(neighbours), chain_(chainsAfter(neighbours)) {
     for (std::size_t i = 0; i < neighbours.size(); ++i) {
-      const auto beyond = std::lower_bound(neighbours[i].begin(), neighbours[i].end(), static_cast<int>(i));
-      waits_for_.push_back(static_cast<int>(beyond - neighbours[i].begin()));
-      blocks_.push_back(static_cast<int>(neighbours[i].end() - beyond));
+      const auto row = neighbours[i];
+      const int* const beyond = std::lower_bound(row.begin(), row.end(), static_cast<int>(i));
+      waits_for_.push_back(static_cast<int>(beyond - row.begin()));
+      blocks_.push_back(static_cast<int>(row.end() - beyond));
       if (waits_for_.back() == 0) put(static_cast<int>(i));
     }
   }
@@ -85,9 +144,7 @@ void addEntries(const Neighbours& neighbours, const std::vector<int>& slice, Blo
 /// Places of the blocks below the diagonal, with the slices made.
 void findLower(const Neighbours& neighbours, BlockPattern& pattern) {
   std::vector<int> next(neighbours.size(), 0);  // per node: its blocks beyond the diagonal that have been seen
-  std::size_t blocks = 0;
-  for (const std::vector<int>& row : neighbours) blocks += row.size();
-  pattern.lower.reserve(blocks / 2);
+  pattern.lower.reserve(neighbours.pairs() / 2);
   pattern.lower_first.reserve(neighbours.size() + 1);
   pattern.lower_first.push_back(0);
   for (std::size_t i = 0; i < neighbours.size(); ++i) {
@@ -104,11 +161,9 @@ void findLower(const Neighbours& neighbours, BlockPattern& pattern) {
 
 }  // namespace
 
-std::shared_ptr<const BlockPattern> BlockPattern::fromNeighbours(std::vector<std::vector<int>>& neighbours) {
-  for (std::vector<int>& row : neighbours) {
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-  }
+std::shared_ptr<const BlockPattern> BlockPattern::fromElements(const std::vector<int>& first,
+                                                               const std::vector<int>& nodes, std::size_t node_count) {
+  const Neighbours neighbours(first, nodes, node_count);
   const auto pattern = std::make_shared<BlockPattern>();
   pattern->nodes = static_cast<int>(neighbours.size());
   pattern->lane_of.resize(neighbours.size());
@@ -125,12 +180,21 @@ std::shared_ptr<const BlockPattern> BlockPattern::fromNeighbours(std::vector<std
 }
 
 int BlockPattern::find(int row, int column) const {
+  if (row == column) return -1;
   const int low = std::min(row, column);
-  const int high = std::max(row, column);
-  const int slice = lane_of[low] / kRows;
+  const int wanted = 3 * std::max(row, column);
   const int lane = lane_of[low] % kRows;
-  for (int k = first[slice]; low != high && k < first[slice + 1]; ++k) {
-    if (columns[kRows * k + lane] == 3 * high) return placeOf(k, lane, row > column);
+  int from = first[lane_of[low] / kRows];
+  int to = first[lane_of[low] / kRows + 1];
+  while (from < to) {  // ascending, with the row itself, where there is no block, at the end
+    const int middle = (from + to) / 2;
+    const int there = columns[kRows * middle + lane];
+    if (there == wanted) return placeOf(middle, lane, row > column);
+    if (there < wanted && there != 3 * low) {
+      from = middle + 1;
+    } else {
+      to = middle;
+    }
   }
   return -1;
 }

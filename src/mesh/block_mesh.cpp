@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tissue_contact/core/check.h"
@@ -86,17 +87,37 @@ constexpr std::array<std::array<int, 4>, 5> kEvenCell = {
 constexpr std::array<std::array<int, 4>, 5> kOddCell = {
     {{1, 2, 4, 7}, {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}}};
 
-void appendCell(const std::array<int, 3>& cell, const std::array<int, 3>& cells, std::vector<Tetrahedron>& tetrahedra) {
+/// Each along the edges from corner 0 to corner 7, the diagonal of the cell that all six share (Kuhn).
+constexpr std::array<std::array<int, 4>, 6> kSixths = {
+    {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
+
+/// @param mirror bits by which corners are mirrored: 1 along x, 2 along y, 4 along z.
+template <std::size_t N>
+void appendCell(const std::array<std::array<int, 4>, N>& split, int mirror, const std::array<int, 3>& cell,
+                const std::array<int, 3>& cells, std::vector<Tetrahedron>& tetrahedra) {
   const int row = cells[0] + 1;
   const int layer = row * (cells[1] + 1);
   const int corner = cell[0] + row * cell[1] + layer * cell[2];
-  const auto& split = (cell[0] + cell[1] + cell[2]) % 2 == 0 ? kEvenCell : kOddCell;
+  const bool turns_over = mirror == 1 || mirror == 2 || mirror == 4 || mirror == 7;
   for (const std::array<int, 4>& tet : split) {
     Tetrahedron nodes{};
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      nodes[i] = corner + (tet[i] & 1) + row * ((tet[i] >> 1) & 1) + layer * (tet[i] >> 2);
+      const int at = tet[i] ^ mirror;
+      nodes[i] = corner + (at & 1) + row * ((at >> 1) & 1) + layer * (at >> 2);
     }
+    if (turns_over) std::swap(nodes[2], nodes[3]);
     tetrahedra.push_back(nodes);
+  }
+}
+
+void appendCell(BlockSplit split, const std::array<int, 3>& cell, const std::array<int, 3>& cells,
+                std::vector<Tetrahedron>& tetrahedra) {
+  if (split == BlockSplit::kSix) {
+    const int mirror = cell[0] % 2 + 2 * (cell[1] % 2) + 4 * (cell[2] % 2);
+    appendCell(kSixths, mirror, cell, cells, tetrahedra);
+  } else {
+    const bool even = (cell[0] + cell[1] + cell[2]) % 2 == 0;
+    appendCell(even ? kEvenCell : kOddCell, 0, cell, cells, tetrahedra);
   }
 }
 
@@ -112,7 +133,7 @@ void checkBlock(const BlockDescription& block) {
   }
 }
 
-TetMesh makeBlockMesh(const BlockDescription& block) {
+TetMesh makeBlockMesh(const BlockDescription& block, BlockSplit split) {
   checkBlock(block);
   std::array<std::vector<double>, 3> axes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -127,11 +148,10 @@ TetMesh makeBlockMesh(const BlockDescription& block) {
       for (const double x : axes[0]) mesh.positions.col(node++) = Vector3(x, y, z);
     }
   }
-  mesh.tetrahedra.reserve(static_cast<std::size_t>(kTetrahedraPerCell) * block.cells[0] * block.cells[1] *
-                          block.cells[2]);
+  mesh.tetrahedra.reserve(static_cast<std::size_t>(split) * block.cells[0] * block.cells[1] * block.cells[2]);
   for (int k = 0; k < block.cells[2]; ++k) {
     for (int j = 0; j < block.cells[1]; ++j) {
-      for (int i = 0; i < block.cells[0]; ++i) appendCell({i, j, k}, block.cells, mesh.tetrahedra);
+      for (int i = 0; i < block.cells[0]; ++i) appendCell(split, {i, j, k}, block.cells, mesh.tetrahedra);
     }
   }
   return mesh;

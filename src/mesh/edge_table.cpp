@@ -1,11 +1,30 @@
 #include "mesh/edge_table.h"
 
 #include <algorithm>
-#include <utility>
+#include <numeric>
 
 #include "tissue_contact/mesh/tissue_surface.h"
 
 namespace tissue_contact {
+
+namespace {
+
+/// Stable, by numbers from 0.
+template <typename Number>
+void sortBy(const Number& number, std::vector<EdgeUse>& uses) {
+  std::vector<int> next;
+  for (const EdgeUse& use : uses) {
+    const std::size_t after = static_cast<std::size_t>(number(use)) + 1;
+    if (next.size() <= after) next.resize(after + 1, 0);
+    ++next[after];
+  }
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<EdgeUse> sorted(uses.size());
+  for (const EdgeUse& use : uses) sorted[next[number(use)]++] = use;
+  uses.swap(sorted);
+}
+
+}  // namespace
 
 EdgeTable::EdgeTable(const std::vector<Triangle>& triangles) : edges_of_(triangles.size()) {
   uses_.reserve(3 * triangles.size());
@@ -20,8 +39,8 @@ EdgeTable::EdgeTable(const std::vector<Triangle>& triangles) : edges_of_(triangl
     const int b = t[(use.side + 1) % 3];
     return {std::min(a, b), std::max(a, b)};
   };
-  std::stable_sort(uses_.begin(), uses_.end(),
-                   [&](const EdgeUse& a, const EdgeUse& b) { return nodesOf(a) < nodesOf(b); });
+  sortBy([&](const EdgeUse& use) { return nodesOf(use)[1]; }, uses_);
+  sortBy([&](const EdgeUse& use) { return nodesOf(use)[0]; }, uses_);
   for (std::size_t i = 0; i < uses_.size(); ++i) {
     const std::array<int, 2> nodes = nodesOf(uses_[i]);
     if (edges_.empty() || edges_.back().nodes != nodes) edges_.push_back({nodes, static_cast<int>(i), 0});

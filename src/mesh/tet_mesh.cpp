@@ -51,12 +51,12 @@ void checkElement(const TetMesh& mesh, std::size_t index, const std::string& sou
 /// Faces opposite to nodes 0 to 3, counter-clockwise seen from outside a tetrahedron of positive volume.
 constexpr std::array<std::array<std::size_t, 3>, 4> kOutwardFaces = {{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
+}  // namespace
+
 Triangle outwardFace(const Tetrahedron& tet, std::size_t opposite) {
   const auto& local = kOutwardFaces[opposite];
   return {tet[local[0]], tet[local[1]], tet[local[2]]};
 }
-
-}  // namespace
 
 double signedVolume(const NodalVectors& x, const Tetrahedron& tet) {
   const Vector3 a = x.col(tet[0]);
@@ -90,9 +90,9 @@ std::vector<FaceUse> sortedFaces(const std::vector<Tetrahedron>& tetrahedra) {
   return faces;
 }
 
-std::vector<Triangle> boundaryTriangles(const std::vector<Tetrahedron>& tetrahedra) {
+std::vector<OuterFace> outerFaces(const std::vector<Tetrahedron>& tetrahedra) {
   const std::vector<FaceUse> faces = sortedFaces(tetrahedra);
-  std::vector<std::array<std::size_t, 2>> outer;  // tetrahedron, opposite node
+  std::vector<OuterFace> outer;
   for (std::size_t i = 0, end = 0; i < faces.size(); i = end) {
     for (end = i + 1; end < faces.size() && faces[end].nodes == faces[i].nodes;) ++end;
     if (end - i > 2) {
@@ -105,10 +105,17 @@ std::vector<Triangle> boundaryTriangles(const std::vector<Tetrahedron>& tetrahed
     }
     if (end - i == 1) outer.push_back({faces[i].tetrahedron, faces[i].opposite});
   }
-  std::sort(outer.begin(), outer.end());
+  std::sort(outer.begin(), outer.end(), [](const OuterFace& a, const OuterFace& b) {
+    return std::tie(a.tetrahedron, a.opposite) < std::tie(b.tetrahedron, b.opposite);
+  });
+  return outer;
+}
+
+std::vector<Triangle> boundaryTriangles(const std::vector<Tetrahedron>& tetrahedra) {
   std::vector<Triangle> triangles;
-  triangles.reserve(outer.size());
-  for (const auto& [tetrahedron, opposite] : outer) triangles.push_back(outwardFace(tetrahedra[tetrahedron], opposite));
+  for (const OuterFace& face : outerFaces(tetrahedra)) {
+    triangles.push_back(outwardFace(tetrahedra[face.tetrahedron], face.opposite));
+  }
   return triangles;
 }
 

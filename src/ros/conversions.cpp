@@ -107,20 +107,21 @@ void fillWrench(const Wrench& wrench, std::int64_t stamp_ns, geometry_msgs::Wren
   message.wrench.torque = toVector(wrench.torque);
 }
 
-void fillTopology(const Tissue& tissue, TissueTopology& message) {
-  message.tissue = tissue.name();
-  fillPoints(tissue.restPositions(), message.rest_positions);
-  fillIndices(tissue.tetrahedra(), message.tetrahedra);
-  fillIndices(tissue.surface(), message.surface_triangles);
+void fillTopology(const MeshRevision& mesh, TissueTopology& message) {
+  message.revision = static_cast<std::uint32_t>(mesh.revision);
+  fillPoints(mesh.rest_positions, message.rest_positions);
+  fillIndices(mesh.tetrahedra, message.tetrahedra);
+  fillIndices(mesh.surface, message.surface_triangles);
   message.fixed_nodes.clear();
-  for (std::size_t node = 0; node < tissue.fixed().size(); ++node) {
-    if (tissue.fixed()[node]) message.fixed_nodes.push_back(static_cast<std::uint32_t>(node));
+  for (std::size_t node = 0; node < mesh.fixed.size(); ++node) {
+    if (mesh.fixed[node]) message.fixed_nodes.push_back(static_cast<std::uint32_t>(node));
   }
 }
 
 void fillMesh(const SceneSnapshot& snapshot, int tissue, TissueMesh& message) {
   message.header.stamp = toTime(snapshot.stamp_ns);
   message.step = static_cast<std::uint64_t>(snapshot.step);
+  message.revision = static_cast<std::uint32_t>(snapshot.revisions[static_cast<std::size_t>(tissue)]->revision);
   fillPoints(snapshot.positions[static_cast<std::size_t>(tissue)], message.positions);
 }
 
@@ -128,11 +129,13 @@ void fillContacts(const Simulator& simulator, const SceneSnapshot& snapshot, Con
   message.header.stamp = toTime(snapshot.stamp_ns);
   message.step = static_cast<std::uint64_t>(snapshot.step);
   message.contacts.resize(snapshot.contacts.size());
+  const std::vector<TissueDescription>& tissues =
+      simulator.scene().tissues;  // not those of the simulator, which change
   for (std::size_t i = 0; i < message.contacts.size(); ++i) {
     const SolvedContact& solved = snapshot.contacts[i];
     const ContactKey& key = solved.contact.key;
     auto& contact = message.contacts[i];
-    contact.tissue = simulator.tissues()[static_cast<std::size_t>(key.tissue)].name();
+    contact.tissue = tissues[static_cast<std::size_t>(key.tissue)].name;
     if (key.instrument >= 0) {
       const Instrument& instrument = simulator.instruments()[static_cast<std::size_t>(key.instrument)];
       contact.instrument = instrument.name();
@@ -141,7 +144,7 @@ void fillContacts(const Simulator& simulator, const SceneSnapshot& snapshot, Con
     } else {
       contact.instrument.clear();
       contact.link.clear();
-      contact.other_tissue = simulator.tissues()[static_cast<std::size_t>(key.other_tissue)].name();
+      contact.other_tissue = tissues[static_cast<std::size_t>(key.other_tissue)].name;
     }
     contact.point = toPoint(solved.contact.p_WC);
     contact.normal = toVector(solved.contact.R_WC.col(0));

@@ -40,14 +40,14 @@ JointStateSample toSample(const sensor_msgs::JointState& message);
 /// Wrench of the tissues on the instrument at its tip link's origin and in its axes; header.frame_id is the caller's.
 void fillWrench(const Wrench& wrench, std::int64_t stamp_ns, geometry_msgs::WrenchStamped& message);
 
-/// Rest positions, tetrahedra, surface and fixed nodes; all but the header.
-void fillTopology(const Tissue& tissue, TissueTopology& message);
+/// Revision, rest positions, tetrahedra, surface and fixed nodes; all but header and tissue.
+void fillTopology(const MeshRevision& mesh, TissueTopology& message);
 
-/// Positions and step of a snapshot; all but frame_id and tissue, which do not change.
+/// Positions, their revision and the step of a snapshot taken with `mesh`; all but frame_id and tissue, which do not change.
 void fillMesh(const SceneSnapshot& snapshot, int tissue, TissueMesh& message);
 
 /// All contacts of a snapshot's step; all but frame_id.
-/// @param simulator for the names alone.
+/// @param simulator for the names alone; its meshes may change meanwhile.
 void fillContacts(const Simulator& simulator, const SceneSnapshot& snapshot, ContactArray& message);
 
 /// The last step's report and the player's counts; all but what only a clock or the caller's own counts can tell.

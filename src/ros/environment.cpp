@@ -18,7 +18,7 @@
 
 #include "ros/bag/bag_frames.h"
 #include "ros/conversions.h"
-#include "ros/number_parameter.h"
+#include "ros/parameter.h"
 #include "tissue_contact/core/range.h"
 #include "tissue_contact/core/read_file.h"
 #include "tissue_contact/instrument/parse_urdf.h"

@@ -9,6 +9,8 @@ namespace {
 constexpr int kMaxCellsPerAxis = 200;
 constexpr int kMaxSheetCellsPerAxis = 1000;  // 2 triangles per cell: as many elements as a block may have
 
+constexpr int kMostRefinedNodes = 300'000;
+
 constexpr Range kSizeRange{1e-6, 10.0, "m", "give metres, not millimetres"};
 constexpr Range kThicknessRange{1e-6, 1.0, "m", "give metres: 2 mm is 0.002"};
 constexpr Range kGrowthRange{1.0, 3.0};
@@ -85,6 +87,24 @@ decltype(TissueDescription::geometry) parseGeometry(const YamlMap& map, const Pa
   return parseShell(value, paths);
 }
 
+RefinementDescription parseRefinement(const YamlCursor& cursor) {
+  using Mode = RefinementDescription::Mode;
+  RefinementDescription refinement;
+  if (cursor.isScalar()) {
+    constexpr std::pair<const char*, Mode> kModes[] = {{"never", Mode::kNever}, {"auto", Mode::kAuto}};
+    refinement.mode = cursor.choice(kModes);
+    return refinement;
+  }
+  const YamlMap map = cursor.map();
+  refinement.mode = Mode::kGiven;
+  refinement.cell_m = map.get("cell_m").number(kSizeRange);
+  if (const YamlCursor* value = map.find("reach_m")) refinement.reach_m = value->number(kSizeRange);
+  if (const YamlCursor* value = map.find("nodes_at_most")) {
+    refinement.nodes_at_most = value->integer(1, kMostRefinedNodes);
+  }
+  return refinement;
+}
+
 std::vector<Attachment> parseAttachments(const YamlCursor& cursor) {
   std::vector<Attachment> attachments;
   std::size_t places = 0;
@@ -110,6 +130,7 @@ TissueDescription parseTissue(const YamlCursor& cursor, const PathContext& paths
   TissueDescription tissue;
   tissue.name = parseName(map.get("name"));
   tissue.geometry = parseGeometry(map, paths);
+  if (const YamlCursor* value = map.find("refinement")) tissue.refinement = parseRefinement(*value);
   if (const YamlCursor* value = map.find("pose")) tissue.pose = parsePose(*value);
   tissue.material = parseMaterial(map.get("material"), isMembrane(tissue));
   if (const YamlCursor* value = map.find("damping")) tissue.damping = parseDamping(*value);

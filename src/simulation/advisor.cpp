@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "tissue_contact/simulation/simulator.h"
 #include "tissue_contact/tissue/element_materials.h"
 #include "tissue_contact/tissue/make_elasticity.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
@@ -90,9 +91,39 @@ bool advisedSleepByParts(const Scene& scene) {
          !(scene.solver.time_budget_s > 0.0);
 }
 
-std::vector<std::string> adviceLines(const Scene& scene, const FoldWatch& folds) {
+std::string refinementLine(const TissueDescription& tissue, double cell_m, double reach_m, int nodes_at_most) {
+  std::ostringstream line;
+  line << "mesh of tissue " << quoted(tissue.name) << ": ";
+  if (!(cell_m > 0.0)) {
+    line << "as it is, since no instrument touches; for other tissues give refinement.cell_m";
+    return line.str();
+  }
+  line.precision(3);
+  line << "refined to cells of " << 1e3 * cell_m << " mm, " << 1e3 * reach_m
+       << " mm around what touches it, and moved along with that; at most " << nodes_at_most
+       << " nodes, for which cells grow";
+  return line.str();
+}
+
+std::string coarseCellsText(const Simulator& simulator) {
+  const CoarseCells& cells = simulator.report().coarse_cells;
+  const auto tissue = static_cast<std::size_t>(cells.tissue);
+  std::ostringstream text;
+  text.precision(3);
+  text << "tissue " << quoted(simulator.scene().tissues[tissue].name) << ": cells are " << cells.factor
+       << " times as long as its refinement asks for, since its mesh, of " << simulator.tissues()[tissue].nodeCount()
+       << " nodes now, may not have enough of them for shorter ones: forces are those of coarser cells. Raise "
+          "tissues[].refinement.nodes_at_most, or give a larger tissues[].refinement.cell_m";
+  return text.str();
+}
+
+std::vector<std::string> adviceLines(const Scene& scene, const FoldWatch& folds,
+                                     const std::vector<std::string>& meshes) {
   std::vector<std::string> lines = {sleepLine(scene)};
-  for (const TissueDescription& tissue : scene.tissues) lines.push_back(modelLine(scene, tissue));
+  for (std::size_t t = 0; t < scene.tissues.size(); ++t) {
+    lines.push_back(modelLine(scene, scene.tissues[t]));
+    if (!meshes[t].empty()) lines.push_back(meshes[t]);
+  }
   for (std::size_t p = 0; p < scene.tissue_pairs.size(); ++p) lines.push_back(pairLine(scene, p, folds));
   for (const FrictionDescription& pair : scene.friction) lines.push_back(frictionLine(scene, pair));
   lines.emplace_back(scene.friction.empty() ? "friction: none is listed, so nothing tangential is computed"

@@ -20,6 +20,11 @@ bool advisedSleep(const Scene& scene);
 bool advisedSleepByParts(const Scene& scene);
 
 /// One line per choice: what it is about, what was chosen, why.
-std::vector<std::string> adviceLines(const Scene& scene, const FoldWatch& folds);
+/// @param meshes about each tissue, empty: nothing.
+std::vector<std::string> adviceLines(const Scene& scene, const FoldWatch& folds,
+                                     const std::vector<std::string>& meshes);
+
+/// What a refined mesh will be like. @param cell_m of the finest cells, 0: nothing asks for any.
+std::string refinementLine(const TissueDescription& tissue, double cell_m, double reach_m, int nodes_at_most);
 
 }  // namespace tissue_contact

@@ -53,7 +53,8 @@ std::vector<Instrument> buildInstruments(const Scene& scene, const SceneEnvironm
   return instruments;
 }
 
-std::vector<Tissue> buildTissues(const Scene& scene, const SceneEnvironment& environment) {
+std::vector<Tissue> buildTissues(const Scene& scene, const SceneEnvironment& environment,
+                                 std::vector<std::unique_ptr<TissueRefinement>>& refinements) {
   SceneBudget(scene).addGenerated();  // before the first of them is built
   SceneBudget budget(scene);
   BuildProgress progress(environment.meshes.say);
@@ -63,10 +64,17 @@ std::vector<Tissue> buildTissues(const Scene& scene, const SceneEnvironment& env
       const Pose X_WT = atEntry(
           "pose", [&] { return placeInWorld(description.pose, "tissue '" + description.name + "'", environment); });
       const std::string ordinal = std::to_string(tissues.size() + 1) + " of " + std::to_string(scene.tissues.size());
-      tissues.emplace_back(description, X_WT, [&](std::size_t nodes, std::size_t elements) {
+      const auto on_size = [&](std::size_t nodes, std::size_t elements) {
         budget.add(description, nodes, elements);
         progress.beginTissue(description, ordinal, nodes, elements);
-      });
+      };
+      if (description.refinement.mode == RefinementDescription::Mode::kNever) {
+        refinements.emplace_back();
+        tissues.emplace_back(description, X_WT, on_size);
+      } else {
+        refinements.push_back(std::make_unique<TissueRefinement>(description, X_WT, on_size));
+        tissues.push_back(refinements.back()->tissue());
+      }
     });
   }
   progress.stage("tissues are built; preparing their surfaces and first stiffness");

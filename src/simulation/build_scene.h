@@ -2,8 +2,10 @@
 /// Room `simulation`, private: turns a scene description and its environment into instruments and tissues.
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "simulation/tissue_refinement.h"
 #include "tissue_contact/contact/tissue_pair_detector.h"
 #include "tissue_contact/instrument/instrument.h"
 #include "tissue_contact/simulation/scene.h"
@@ -14,7 +16,9 @@ namespace tissue_contact {
 
 /// @throws std::invalid_argument naming what is wrong in the scene or its files.
 std::vector<Instrument> buildInstruments(const Scene& scene, const SceneEnvironment& environment);
-std::vector<Tissue> buildTissues(const Scene& scene, const SceneEnvironment& environment);
+/// @param refinements gets one per tissue, null where the mesh never changes. They refer to the scene.
+std::vector<Tissue> buildTissues(const Scene& scene, const SceneEnvironment& environment,
+                                 std::vector<std::unique_ptr<TissueRefinement>>& refinements);
 
 /// The scene's tissue pairs by index.
 /// @throws std::invalid_argument naming a tissue that is not there.

@@ -49,7 +49,8 @@ void ContactMemory::addKeptPoints(const ContactDetector& detector, const std::ve
     Contact probe;
     probe.key = withSlot(remembered_[first].contact.key, 0);
     while (end < remembered_.size() && withSlot(remembered_[end].contact.key, 0) == probe.key) ++end;
-    if (probe.key.other_tissue >= 0) continue;  // tissue against tissue: the pair's own feature is its point
+    // Tissue against tissue the pair's own feature is its point; without a feature, its mesh has changed there.
+    if (probe.key.other_tissue >= 0 || probe.key.feature[0] < 0) continue;
     const auto fresh = std::lower_bound(contacts.begin(), contacts.end(), probe, keyBefore);
     giveSlots(fresh != contacts.end() && fresh->key == probe.key ? &*fresh : nullptr, first, end);
     for (std::size_t old = first; old < end; ++old) {

@@ -6,13 +6,17 @@
 namespace tissue_contact {
 
 ContactPressure::ContactPressure(const std::vector<Tissue>& tissues) : tissues_(tissues), surfaces_(tissues.size()) {
-  for (std::size_t t = 0; t < tissues.size(); ++t) {
-    Surface& surface = surfaces_[t];
-    surface.first_load.assign(tissues[t].nodeCount(), -1);
-    surface.triangles_of_node.resize(tissues[t].nodeCount());
-    for (std::size_t i = 0; i < tissues[t].surface().size(); ++i) {
-      for (const int node : tissues[t].surface()[i]) surface.triangles_of_node[node].push_back(static_cast<int>(i));
-    }
+  for (std::size_t t = 0; t < tissues.size(); ++t) changeSurface(static_cast<int>(t));
+}
+
+void ContactPressure::changeSurface(int tissue) {
+  clear();
+  const Tissue& now = tissues_[tissue];
+  Surface& surface = surfaces_[tissue];
+  surface.first_load.assign(now.nodeCount(), -1);
+  surface.triangles_of_node.assign(now.nodeCount(), {});
+  for (std::size_t i = 0; i < now.surface().size(); ++i) {
+    for (const int node : now.surface()[i]) surface.triangles_of_node[node].push_back(static_cast<int>(i));
   }
 }
 

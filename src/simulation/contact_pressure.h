@@ -31,6 +31,9 @@ class ContactPressure {
   /// @param tissues must outlive this.
   explicit ContactPressure(const std::vector<Tissue>& tissues);
 
+  /// A tissue has another surface now. Nothing presses any more.
+  void changeSurface(int tissue);
+
   void clear();  ///< nothing presses
 
   /// Keeps the normal forces of a step in place of those before.

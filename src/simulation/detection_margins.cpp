@@ -52,15 +52,17 @@ std::vector<std::size_t> groupsOf(const std::vector<TouchingTissues>& pairs, std
 
 }  // namespace
 
-SurfaceEdges::SurfaceEdges(const std::vector<Tissue>& tissues) {
-  for (const Tissue& tissue : tissues) {
-    at_nodes_.push_back(edgesAtNodes(tissue));
-    const VectorX& edges = at_nodes_.back();
-    const double mean = meanSurfaceEdge(&tissue, 1);
-    const double finest = (edges.array() > 0.0).select(edges.array(), mean).minCoeff();
-    graded_.push_back(finest < mean / kEven || edges.maxCoeff() > mean * kEven);
-    largest_.push_back(graded_.back() ? edges.maxCoeff() : mean);
-  }
+SurfaceEdges::SurfaceEdges(const std::vector<Tissue>& tissues)
+    : at_nodes_(tissues.size()), graded_(tissues.size()), largest_(tissues.size()) {
+  for (std::size_t t = 0; t < tissues.size(); ++t) setSurface(static_cast<int>(t), tissues[t]);
+}
+
+void SurfaceEdges::setSurface(int index, const Tissue& tissue) {
+  const VectorX& edges = at_nodes_[index] = edgesAtNodes(tissue);
+  const double mean = meanSurfaceEdge(&tissue, 1);
+  const double finest = (edges.array() > 0.0).select(edges.array(), mean).minCoeff();
+  graded_[index] = finest < mean / kEven || edges.maxCoeff() > mean * kEven;
+  largest_[index] = graded_[index] ? edges.maxCoeff() : mean;
 }
 
 double SurfaceEdges::at(int tissue, const std::array<int, 3>& nodes, const Vector3& weights) const {

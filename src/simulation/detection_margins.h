@@ -17,6 +17,9 @@ class SurfaceEdges {
  public:
   explicit SurfaceEdges(const std::vector<Tissue>& tissues);
 
+  /// Goes on with another surface of a tissue.
+  void setSurface(int index, const Tissue& tissue);
+
   /// Mean of the sides of the triangles about the contact's point, m; of two surfaces that of the finer one.
   double finer(const Contact& contact) const;
 

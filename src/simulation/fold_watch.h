@@ -19,14 +19,17 @@ class FoldWatch {
   FoldWatch() = default;
   FoldWatch(const std::vector<TouchingTissues>& pairs, const std::vector<Tissue>& tissues);
 
-  /// Per pair, whether it can be left out; empty if none ever can. No allocation.
+  /// Goes on with another mesh of a tissue.
+  void setMesh(int index, const Tissue& tissue);
+
+  /// Per pair, whether it can be left out; empty: none ever can. No allocation.
   /// @param travels_m per tissue: the way any node of it may go in the coming step.
   const std::vector<bool>& apart(const std::vector<NodalVectors>& positions, const std::vector<double>& travels_m);
 
   bool watches(std::size_t pair) const { return !bodies_.empty() && bodies_[pair].has_value(); }
 
  private:
-  std::vector<int> tissue_;                        ///< per pair
+  std::vector<TouchingTissues> pairs_;
   std::vector<std::optional<ConvexBody>> bodies_;  ///< per pair
   std::vector<bool> apart_;
 };

@@ -96,14 +96,9 @@ FrictionTable::FrictionTable(const Scene& scene, const std::vector<Instrument>& 
   }
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     between_tissues_.emplace_back(tissues.size(), none[t]);
-    Surface& surface = surfaces_.emplace_back();
-    surface.tissue = &tissues[t];
-    if (tissues[t].surfaceRegions().empty() && tissues[t].surfaceFibres().empty()) continue;
-    surface.triangles_of_node.resize(tissues[t].nodeCount());
-    for (std::size_t i = 0; i < tissues[t].surface().size(); ++i) {
-      for (const int node : tissues[t].surface()[i]) surface.triangles_of_node[node].push_back(static_cast<int>(i));
-    }
   }
+  surfaces_.resize(tissues.size());
+  for (std::size_t t = 0; t < tissues.size(); ++t) setSurface(static_cast<int>(t), tissues[t]);
   std::vector<std::size_t> sorted(scene.friction.size());
   std::iota(sorted.begin(), sorted.end(), std::size_t{0});
   std::stable_sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
@@ -111,6 +106,17 @@ FrictionTable::FrictionTable(const Scene& scene, const std::vector<Instrument>& 
   });
   for (const std::size_t i : sorted) {
     atEntry(elementOf("friction", i), [&] { add(scene.friction[i], scene, instruments, tissues); });
+  }
+}
+
+void FrictionTable::setSurface(int index, const Tissue& tissue) {
+  Surface& surface = surfaces_[index];
+  surface.tissue = &tissue;
+  surface.triangles_of_node.clear();
+  if (tissue.surfaceRegions().empty() && tissue.surfaceFibres().empty()) return;
+  surface.triangles_of_node.resize(tissue.nodeCount());
+  for (std::size_t i = 0; i < tissue.surface().size(); ++i) {
+    for (const int node : tissue.surface()[i]) surface.triangles_of_node[node].push_back(static_cast<int>(i));
   }
 }
 

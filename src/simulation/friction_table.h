@@ -35,6 +35,9 @@ class FrictionTable {
   CoulombLaw at(const Contact& contact, const std::vector<NodalVectors>& x, const std::vector<std::vector<Pose>>& X_WL,
                 const ContactBefore& before) const;
 
+  /// Goes on with another surface of a tissue, which must outlive this.
+  void setSurface(int index, const Tissue& tissue);
+
   /// Whether any law asks for the pressure.
   bool dependsOnPressure() const;
 

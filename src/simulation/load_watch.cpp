@@ -36,30 +36,35 @@ std::vector<double> nodeAreas(const Tissue& tissue) {
 
 LoadWatch::LoadWatch(const Scene& scene, const std::vector<Tissue>& tissues) {
   for (std::size_t t = 0; t < tissues.size(); ++t) {
-    const std::vector<Tetrahedron>& elements = tissues[t].tetrahedra();
-    const auto nodes = static_cast<std::size_t>(tissues[t].nodeCount());
     Body& body = bodies_.emplace_back();
-    body.tissue = &tissues[t];
     body.modulus_pa = largestModulus(scene.tissues[t]);
-    body.node_area = nodeAreas(tissues[t]);
-    body.node_seen.assign(nodes, 0);
-    body.element_seen.assign(elements.size(), 0);
     body.law = scene.tissues[t].material.model;
     body.poissons_ratio = scene.tissues[t].material.poissons_ratio;
     for (const TissueRegion& region : scene.tissues[t].regions) {
       body.poissons_ratio_of_regions.push_back(region.material.poissons_ratio - body.poissons_ratio);
     }
-    if (hasRange(body.law)) body.strains.resize(elements.size());
-    body.first_of_node.assign(nodes + 1, 0);
-    for (const Tetrahedron& element : elements) {
-      for (const int node : element) ++body.first_of_node[node + 1];
-    }
-    for (std::size_t i = 0; i < nodes; ++i) body.first_of_node[i + 1] += body.first_of_node[i];
-    body.elements_of_node.resize(body.first_of_node.back());
-    std::vector<int> next(body.first_of_node.begin(), body.first_of_node.end() - 1);
-    for (std::size_t e = 0; e < elements.size(); ++e) {
-      for (const int node : elements[e]) body.elements_of_node[next[node]++] = static_cast<int>(e);
-    }
+    setMesh(static_cast<int>(t), tissues[t]);
+  }
+}
+
+void LoadWatch::setMesh(int index, const Tissue& tissue) {
+  const std::vector<Tetrahedron>& elements = tissue.tetrahedra();
+  const auto nodes = static_cast<std::size_t>(tissue.nodeCount());
+  Body& body = bodies_[index];
+  body.tissue = &tissue;
+  body.node_area = nodeAreas(tissue);
+  body.node_seen.assign(nodes, 0);
+  body.element_seen.assign(elements.size(), 0);
+  if (hasRange(body.law)) body.strains.resize(elements.size());
+  body.first_of_node.assign(nodes + 1, 0);
+  for (const Tetrahedron& element : elements) {
+    for (const int node : element) ++body.first_of_node[node + 1];
+  }
+  for (std::size_t i = 0; i < nodes; ++i) body.first_of_node[i + 1] += body.first_of_node[i];
+  body.elements_of_node.resize(body.first_of_node.back());
+  std::vector<int> next(body.first_of_node.begin(), body.first_of_node.end() - 1);
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    for (const int node : elements[e]) body.elements_of_node[next[node]++] = static_cast<int>(e);
   }
 }
 

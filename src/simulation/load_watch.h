@@ -28,6 +28,9 @@ class LoadWatch {
 
   LoadWatch(const Scene& scene, const std::vector<Tissue>& tissues);
 
+  /// Goes on with another mesh of a tissue, which must outlive this.
+  void setMesh(int index, const Tissue& tissue);
+
   /// @param contacts sorted by key. No allocation once it has grown.
   void check(const std::vector<SolvedContact>& contacts, const std::vector<NodalVectors>& positions,
              ImplausibleLoad& load, LawError& law_error);

@@ -8,10 +8,30 @@ MovingTissue::MovingTissue(const Scene& scene, const Tissue& tissue, NodalVector
                            BodySystem& system)
     : scene_(scene), tissue_(tissue), x_(x), v_(v), system_(system), loads_(NodalVectors::Zero(3, tissue.nodeCount())) {
   reset();
-  if (!advisedSleep(scene) || tissue.elasticity().hasMemory()) return;
-  sleep_.emplace(tissue.fixed(), system, meanSurfaceEdge(&tissue, 1), tissue.attachmentStiffness(),
-                 advisedSleepByParts(scene));
+  watchSleep();
+}
+
+void MovingTissue::watchSleep() {
+  sleep_.reset();
+  if (!advisedSleep(scene_) || tissue_.elasticity().hasMemory()) return;
+  sleep_.emplace(tissue_.fixed(), system_, meanSurfaceEdge(&tissue_, 1), tissue_.attachmentStiffness(),
+                 advisedSleepByParts(scene_));
   system_.fixed = &sleep_->still();
+}
+
+void MovingTissue::changeMesh() {
+  for (int i = 0; i < tissue_.nodeCount(); ++i) {
+    if (!tissue_.fixed()[i]) continue;
+    x_.col(i) = tissue_.restPositions().col(i);
+    v_.col(i).setZero();
+  }
+  loads_.setZero(3, tissue_.nodeCount());
+  system_.b.setZero(3, tissue_.nodeCount());
+  system_.mass = tissue_.nodeMasses();
+  sleep_.reset();
+  elastic_state_ = tissue_.elasticity().makeStateAt(x_);
+  makeState();
+  watchSleep();
 }
 
 void MovingTissue::reset() {
@@ -26,13 +46,17 @@ void MovingTissue::stop() {
   if (elastic_state_ && !(tissue_.elasticity().hasMemory() && loads_.allFinite())) {
     elastic_state_.reset();  // or else a large tissue would hold two for a moment
   }
+  makeState();
+  if (sleep_) sleep_->wakeAll();
+  still_changed_ = false;
+}
+
+void MovingTissue::makeState() {
   if (!elastic_state_) elastic_state_ = tissue_.elasticity().makeState();
   elastic_state_->adapt_rotations = scene_.advisor.adapt_rotations;
   system_.K = &elastic_state_->stiffness;
   system_.D = elastic_state_->damping.rows() > 0 ? &elastic_state_->damping : nullptr;
   system_.fixed = sleep_ ? &sleep_->still() : &tissue_.fixed();
-  if (sleep_) sleep_->wakeAll();
-  still_changed_ = false;
 }
 
 void MovingTissue::wake(const std::vector<int>& touched) {

@@ -30,6 +30,9 @@ class MovingTissue {
 
   /// Undeformed, at rest, awake.
   void reset();
+  /// Goes on with another mesh, awake, with a fresh elastic state. x and v are those of its nodes already; fixed ones are put to
+  /// where they rest.
+  void changeMesh();
   /// At rest where it is, awake, with a fresh elastic state: what was not finite may have got into tangents. Bodies with memory
   /// keep theirs.
   void stop();
@@ -61,6 +64,8 @@ class MovingTissue {
   double heldForce() const { return sleep_ ? sleep_->heldForce() : 0.0; }  ///< see TissueSleep::heldForce()
 
  private:
+  void makeState();
+  void watchSleep();
   double allowedHeldForce(std::optional<double> pressing_n) const;
 
   const Scene& scene_;

@@ -2,6 +2,7 @@
 /// Room `simulation`: see scene_budget.h.
 #include "simulation/scene_budget.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -50,7 +51,8 @@ std::optional<std::array<std::size_t, 2>> sizeOf(const TissueDescription& tissue
   };
   if (const auto* block = std::get_if<BlockDescription>(&tissue.geometry)) {
     for (const int cells : block->cells) multiply(cells);
-    size[1] *= kTetrahedraPerCell;
+    size[1] *= static_cast<std::size_t>(
+        tissue.refinement.mode == RefinementDescription::Mode::kNever ? BlockSplit::kFive : BlockSplit::kSix);
     return size;
   }
   if (const auto* sheet = std::get_if<SheetDescription>(&tissue.geometry)) {
@@ -76,6 +78,11 @@ void SceneBudget::addGenerated() {
 }
 
 void SceneBudget::add(const TissueDescription& tissue, std::size_t nodes, std::size_t elements) {
+  if (tissue.refinement.mode != RefinementDescription::Mode::kNever) {
+    constexpr std::size_t kElementsPerNode = 6;  // at most: as in the inside of a large block
+    nodes = std::max(nodes, mostNodes(tissue.refinement, nodes));
+    elements = std::max(elements, kElementsPerNode * nodes);
+  }
   const std::string own = "tissue '" + tissue.name + "' has " + sizeText(tissue, nodes, elements);
   const std::string fix = "; use fewer cells, grading or a coarser mesh";
   elements_ += elements;

@@ -29,7 +29,7 @@ class SceneBudget {
   /// Adds every tissue whose size the scene itself tells: blocks and sheets.
   /// @throws EntryError "tissues[i]".
   void addGenerated();
-  /// Adds a tissue.
+  /// Adds a tissue; one that is refined with as many nodes as it may come to have.
   /// @throws EntryError, without the tissue's own entry, when the scene becomes too large by it.
   void add(const TissueDescription& tissue, std::size_t nodes, std::size_t elements);
   /// Adds an instrument's shapes.

@@ -15,6 +15,7 @@
 #include "simulation/load_watch.h"
 #include "simulation/moving_tissue.h"
 #include "simulation/step_contacts.h"
+#include "simulation/touched_places.h"
 #include "tissue_contact/baselines/make_contact_solver.h"
 #include "tissue_contact/contact/tissue_pair_detector.h"
 #include "tissue_contact/core/check.h"
@@ -23,10 +24,15 @@
 namespace tissue_contact {
 namespace {
 
+/// A mesh is refined before an instrument reaches it that moves on as fast for so many steps.
+constexpr double kStepsAhead = 4.0;
+
+TissueSurface surfaceOf(const Tissue& tissue) { return {tissue.surface(), tissue.fixed(), tissue.thickness()}; }
+
 std::vector<TissueSurface> surfacesOf(const std::vector<Tissue>& tissues) {
   std::vector<TissueSurface> surfaces;
   surfaces.reserve(tissues.size());
-  for (const Tissue& tissue : tissues) surfaces.push_back({tissue.surface(), tissue.fixed(), tissue.thickness()});
+  for (const Tissue& tissue : tissues) surfaces.push_back(surfaceOf(tissue));
   return surfaces;
 }
 
@@ -46,6 +52,9 @@ struct Simulator::Implementation {
   void reset();
   void step(double dt);
   void restTissues();
+  void refineTissues();
+  void changeMesh(int tissue, const NodeTransfer& transfer);
+  void takeMesh(int tissue, const std::vector<int>& to_new);
   void detectContacts(double dt);
   void wakeTouched();
   void assemble(double dt);
@@ -54,12 +63,14 @@ struct Simulator::Implementation {
   void moveTissues(double dt);
   void recordContacts();
   void sumWrenches();
+  CoarseCells coarsestCells() const;
 
   const Scene scene;
   const std::vector<Instrument> instruments;
-  const std::vector<Tissue> tissues;
-  const FrictionTable friction;
-  const SurfaceEdges edges;
+  std::vector<std::unique_ptr<TissueRefinement>> refinements;  ///< per tissue; null: its mesh never changes
+  std::vector<Tissue> tissues;
+  FrictionTable friction;
+  SurfaceEdges edges;
 
   InstrumentMotion motion;
   std::vector<NodalVectors> x;  ///< per tissue, m
@@ -74,7 +85,12 @@ struct Simulator::Implementation {
   StepContacts contacts;
   std::unique_ptr<ContactSolver> solver;
   std::vector<int> touched_nodes;  ///< scratch
-  std::vector<Wrench> wrenches;    ///< per instrument
+  TouchedPlaces touched_places;
+  std::vector<double>
+      approach_m;  ///< per tissue: how near a resting shape must be for the mesh to be refined; < 0: it never is
+  std::vector<double> near_m;    ///< scratch: the same in this step
+  std::vector<NearPlace> near;   ///< scratch
+  std::vector<Wrench> wrenches;  ///< per instrument
   LoadWatch load_watch;
   StepReport report;
   std::optional<Residuals> residuals = Residuals();  ///< none: nobody has asked since the step
@@ -87,7 +103,7 @@ struct Simulator::Implementation {
 Simulator::Implementation::Implementation(const Scene& description, const SceneEnvironment& environment)
     : scene(description),
       instruments(buildInstruments(scene, environment)),
-      tissues(buildTissues(scene, environment)),
+      tissues(buildTissues(scene, environment, refinements)),
       friction(scene, instruments, tissues),
       edges(tissues),
       motion(instruments),
@@ -96,6 +112,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       detector(instruments, shareSurfaces(surfacesOf(tissues), restPositionsOf(tissues)), environment.meshes),
       contacts(tissues, motion, friction, edges),
       solver(atEntry("solver", [&] { return makeContactSolver(scene.solver, environment.clock); })),
+      touched_places(scene, instruments),
       wrenches(instruments.size()),
       load_watch(scene, tissues) {
   requireMethodForLaws(scene);
@@ -106,6 +123,11 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
     pair_detector.emplace(pairs, detector.surfaces());
     if (scene.advisor.skip_folds) folds = FoldWatch(pairs, tissues);
   }
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    const std::vector<double> cells_m = touched_places.cellsOn(static_cast<int>(t));
+    approach_m.push_back(refinements[t] && !cells_m.empty() ? refinements[t]->reach(cells_m.back()) : -1.0);
+  }
+  near_m.resize(tissues.size());
   solution.v.resize(tissues.size());
   problem.bodies.resize(tissues.size());
   for (std::size_t t = 0; t < tissues.size(); ++t) {
@@ -115,9 +137,19 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
 
 void Simulator::Implementation::reset() {
   motion.reset();
-  for (MovingTissue& tissue : moving) tissue.reset();
-  solver->reset();
   contacts.clear();
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    if (!refinements[t] || !refinements[t]->reset()) continue;
+    takeMesh(static_cast<int>(t), {});
+    x[t] = tissues[t].restPositions();
+    solution.v[t].setZero(3, tissues[t].nodeCount());
+    moving[t].changeMesh();
+  }
+  for (MovingTissue& tissue : moving) tissue.reset();
+  problem.contacts.clear();
+  solution.impulses.clear();
+  solution.states.clear();
+  solver->reset();
   wrenches.assign(instruments.size(), Wrench());
   report = StepReport();
   residuals = Residuals();
@@ -129,6 +161,7 @@ void Simulator::Implementation::reset() {
 void Simulator::Implementation::step(double dt) {
   residuals.reset();
   restTissues();
+  refineTissues();
   detectContacts(dt);
   wakeTouched();
   assemble(dt);
@@ -150,6 +183,49 @@ void Simulator::Implementation::restTissues() {
     contacts.touchedNodes(tissue, touched_nodes);
     moving[t].fallAsleep(contacts.weakestNetForce(tissue, solution.impulses, last_dt), touched_nodes);
   }
+}
+
+/// Lets the meshes follow what touched tissues in the step before, or is near to them now.
+void Simulator::Implementation::refineTissues() {
+  if (std::none_of(refinements.begin(), refinements.end(), [](const auto& one) { return one != nullptr; })) return;
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    near_m[t] = approach_m[t] < 0.0 ? -1.0 : approach_m[t] + kStepsAhead * motion.longestTravel();
+  }
+  detector.findNear(x, motion.startPoses(), near_m, near);
+  bool any = false;
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    if (!refinements[t]) continue;
+    const int tissue = static_cast<int>(t);
+    touched_places.begin(tissue, contacts.solved(), tissues[t].restPositions());
+    touched_places.addNear(near, *refinements[t], kStepsAhead * motion.longestTravel(), tissues[t].restPositions());
+    const std::optional<NodeTransfer> transfer = refinements[t]->follow(touched_places.places());
+    if (!transfer) continue;
+    changeMesh(tissue, *transfer);
+    any = true;
+  }
+  if (!any) return;
+  contacts.finishRenumbering();
+  solver->reset();
+}
+
+void Simulator::Implementation::changeMesh(int tissue, const NodeTransfer& transfer) {
+  takeMesh(tissue, transfer.to_new);
+  x[tissue] = transfer.carried(x[tissue]);
+  solution.v[tissue] = transfer.carried(solution.v[tissue]);
+  moving[tissue].changeMesh();
+}
+
+/// Makes again what has been made from the mesh of this tissue. Members that refer to each other keep their places.
+/// @param to_new see StepContacts::renumber().
+void Simulator::Implementation::takeMesh(int tissue, const std::vector<int>& to_new) {
+  tissues[tissue] = refinements[tissue]->tissue();
+  const Tissue& now = tissues[tissue];
+  friction.setSurface(tissue, now);
+  edges.setSurface(tissue, now);
+  load_watch.setMesh(tissue, now);
+  detector.setSurface(tissue, surfaceOf(now), now.restPositions());
+  folds.setMesh(tissue, now);
+  contacts.renumber(tissue, to_new);
 }
 
 void Simulator::Implementation::detectContacts(double dt) {
@@ -242,6 +318,15 @@ void Simulator::Implementation::sumWrenches() {
   }
 }
 
+CoarseCells Simulator::Implementation::coarsestCells() const {
+  CoarseCells coarsest;
+  for (std::size_t t = 0; t < refinements.size(); ++t) {
+    if (!refinements[t] || !(refinements[t]->coarsening() > coarsest.factor)) continue;
+    coarsest = {static_cast<int>(t), refinements[t]->coarsening()};
+  }
+  return coarsest;
+}
+
 std::unique_ptr<Simulator::Implementation> Simulator::build(const Scene& scene, const SceneEnvironment& environment) {
   try {
     return atEntry("", [&] { return std::make_unique<Implementation>(scene, environment); });
@@ -259,7 +344,18 @@ Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 const Scene& Simulator::scene() const { return implementation_->scene; }
 const std::vector<Instrument>& Simulator::instruments() const { return implementation_->instruments; }
 const std::vector<Tissue>& Simulator::tissues() const { return implementation_->tissues; }
-std::vector<std::string> Simulator::advice() const { return adviceLines(scene(), implementation_->folds); }
+std::vector<std::string> Simulator::advice() const {
+  const Implementation& all = *implementation_;
+  std::vector<std::string> meshes(all.tissues.size());
+  for (std::size_t t = 0; t < meshes.size(); ++t) {
+    if (!all.refinements[t]) continue;
+    const std::vector<double> cells_m = all.touched_places.cellsOn(static_cast<int>(t));
+    const double cell_m = cells_m.empty() ? 0.0 : cells_m.front();
+    meshes[t] = refinementLine(scene().tissues[t], cell_m, all.refinements[t]->reach(cell_m),
+                               all.refinements[t]->nodesAtMost());
+  }
+  return adviceLines(scene(), all.folds, meshes);
+}
 
 void Simulator::reset() { implementation_->reset(); }
 
@@ -311,6 +407,7 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
   report.advanced_s = report.interrupted ? report.substeps * dt : duration_s;
   all.sumWrenches();
   all.load_watch.check(all.contacts.solved(), all.x, report.implausible_load, report.law_error);
+  report.coarse_cells = all.coarsestCells();
 }
 
 void Simulator::setSolverDeadline(double clock_s, double prompt_s) {
@@ -333,6 +430,10 @@ const Residuals& Simulator::residuals() const {
   Implementation& all = *implementation_;
   if (!all.residuals) all.residuals = computeResiduals(all.problem, all.solution, all.residual_scratch);
   return *all.residuals;
+}
+int Simulator::meshRevision(int tissue) const {
+  const auto& refinement = implementation_->refinements.at(tissue);
+  return refinement ? refinement->revision() : 0;
 }
 long Simulator::stepCount() const { return implementation_->step_count; }
 void Simulator::lowerClosestApproach(Approach& closest) {

@@ -26,6 +26,21 @@ double shareBeforeTouch(const ContactRow& row, const std::vector<NodalVectors>& 
   return way > row.gap_m ? row.gap_m / way : 1.0;
 }
 
+/// A point of a surface whose nodes have other numbers now; where one of them is no more, of no feature and without weight.
+void renumberPoint(const std::vector<int>& to_new, std::array<int, 3>& feature, std::array<int, 3>& nodes,
+                   Vector3& weights) {
+  bool is_there = true;
+  for (int i = 0; i < 3; ++i) is_there &= weights[i] == 0.0 || to_new[nodes[i]] >= 0;
+  for (const int node : feature) is_there &= node < 0 || to_new[node] >= 0;
+  for (int i = 0; i < 3; ++i) {
+    nodes[i] = std::max(to_new[nodes[i]], 0);  // one without a weight need not be there
+    if (feature[i] >= 0) feature[i] = is_there ? to_new[feature[i]] : -1;
+  }
+  if (!is_there) weights.setZero();
+  const auto end = std::find(feature.begin(), feature.end(), -1);
+  std::sort(feature.begin(), end);
+}
+
 }  // namespace
 
 void sumImpulsesOn(int tissue, const std::vector<SolvedContact>& contacts, const std::vector<Vector3>& impulses,
@@ -213,6 +228,24 @@ Vector3 StepContacts::slipOf(std::size_t c, const ContactProblem& problem, const
   if (before == ContactState::kStatic) slip -= tangents * u_besides_[c] * back_time_s_;
   const double most = kMostSlipPerEdge * edges_.finer(contacts_[c].contact);
   return slip.norm() > most ? Vector3(slip * (most / slip.norm())) : slip;
+}
+
+void StepContacts::renumber(int tissue, const std::vector<int>& to_new) {
+  if (pressure_) pressure_->changeSurface(tissue);
+  for (SolvedContact& solved : contacts_) {
+    Contact& contact = solved.contact;
+    if (contact.key.tissue == tissue) renumberPoint(to_new, contact.key.feature, contact.nodes, contact.weights);
+    if (contact.key.other_tissue == tissue) {
+      renumberPoint(to_new, contact.key.other_feature, contact.other_nodes, contact.other_weights);
+    }
+  }
+}
+
+void StepContacts::finishRenumbering() {
+  std::sort(contacts_.begin(), contacts_.end(),
+            [](const SolvedContact& a, const SolvedContact& b) { return a.contact.key < b.contact.key; });
+  memory_.remember(contacts_);
+  if (pressure_) pressure_->remember(contacts_);
 }
 
 int StepContacts::count(ContactState state) const {

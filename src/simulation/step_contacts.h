@@ -66,6 +66,12 @@ class StepContacts {
   /// @param x at its end.
   void record(const std::vector<NodalVectors>& x, const ContactProblem& problem, const ContactSolution& solution);
 
+  /// The mesh of a tissue has changed, the tissue is the new one: contacts go on at the same places.
+  /// @param to_new per node before; -1: it is no more. A contact of such nodes is continued by the nearest one of its shape.
+  void renumber(int tissue, const std::vector<int>& to_new);
+  /// To be called once all meshes that change have been renumbered.
+  void finishRenumbering();
+
   const std::vector<SolvedContact>& solved() const { return contacts_; }
   int count(ContactState state) const;
 

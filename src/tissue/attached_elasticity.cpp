@@ -58,9 +58,15 @@ void AttachedElasticity::withoutSprings(AttachedState& state, const Work& work) 
   addSprings(springs_, damping_s_, state.damping0, state.damping);
 }
 
-std::unique_ptr<Elasticity::State> AttachedElasticity::makeState() const {
+std::unique_ptr<Elasticity::State> AttachedElasticity::makeState() const { return attach(body_->makeState()); }
+
+std::unique_ptr<Elasticity::State> AttachedElasticity::makeStateAt(const NodalVectors& x) const {
+  return attach(body_->makeStateAt(x));
+}
+
+std::unique_ptr<Elasticity::State> AttachedElasticity::attach(std::unique_ptr<State> body) const {
   auto state = std::make_unique<AttachedState>();
-  state->body = body_->makeState();
+  state->body = std::move(body);
   std::swap(state->body->stiffness, state->stiffness);
   std::swap(state->body->damping, state->damping);
   state->stiffness0.resize(springs_.size());

@@ -28,6 +28,7 @@ class AttachedElasticity : public Elasticity {
                      double damping_s);
 
   std::unique_ptr<State> makeState() const override;
+  std::unique_ptr<State> makeStateAt(const NodalVectors& x) const override;
   void update(const NodalVectors& x, State& state, NodalVectors& forces) const override;
   void holdStill(const std::vector<bool>& still, const NodalVectors& x, State& state) const override;
   bool hasMemory() const override { return body_->hasMemory(); }
@@ -35,6 +36,8 @@ class AttachedElasticity : public Elasticity {
 
  private:
   struct AttachedState;
+
+  std::unique_ptr<State> attach(std::unique_ptr<State> body) const;
 
   template <typename Work>
   void withoutSprings(AttachedState& state, const Work& work) const;

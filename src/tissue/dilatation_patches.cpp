@@ -3,8 +3,16 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace tissue_contact {
+namespace {
+
+// What few patches have more of: element_patches.h, Bisection.
+constexpr std::size_t kManyNodes = 12;
+constexpr std::size_t kManyMembers = 8;
+
+}  // namespace
 
 double bulkModulus(const MaterialDescription& material) {
   const LameParameters lame = lameParameters(material);
@@ -21,23 +29,24 @@ std::vector<std::vector<int>> DilatationPatches::nodesOf(const std::vector<Tetra
   for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
     if (patch_of[e] < 0) throw std::invalid_argument("mean dilatation: patch number " + std::to_string(patch_of[e]));
     nodes.resize(std::max(nodes.size(), static_cast<std::size_t>(patch_of[e]) + 1));
-    nodes[patch_of[e]].insert(nodes[patch_of[e]].end(), tetrahedra[e].begin(), tetrahedra[e].end());
+    std::vector<int>& patch = nodes[patch_of[e]];
+    patch.reserve(kManyNodes);
+    for (const int node : tetrahedra[e]) {
+      if (std::find(patch.begin(), patch.end(), node) == patch.end()) patch.push_back(node);
+    }
   }
-  for (std::vector<int>& patch : nodes) {
-    std::sort(patch.begin(), patch.end());
-    patch.erase(std::unique(patch.begin(), patch.end()), patch.end());
-  }
+  for (std::vector<int>& patch : nodes) std::sort(patch.begin(), patch.end());
   return nodes;
 }
 
 DilatationPatches::DilatationPatches(const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
                                      const ElementMaterials& materials, const std::vector<int>& patch_of,
-                                     const TetElements& tets) {
-  const std::vector<std::vector<int>> nodes = nodesOf(tetrahedra, patch_of);
+                                     std::vector<std::vector<int>> nodes, const TetElements& tets) {
   patches.resize(nodes.size());
   for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
     Patch& patch = patches[patch_of[e]];
     const std::vector<int>& of_patch = nodes[patch_of[e]];
+    patch.members.reserve(kManyMembers);
     Member& member = patch.members.emplace_back(Member{e, {}});
     for (int i = 0; i < 4; ++i) {
       const auto at = std::lower_bound(of_patch.begin(), of_patch.end(), tetrahedra[e][i]);
@@ -58,8 +67,7 @@ DilatationPatches::DilatationPatches(const std::vector<Tetrahedron>& tetrahedra,
     if (patch.members.empty()) throw std::invalid_argument("mean dilatation: patch " + std::to_string(p) + " is empty");
     patch.bulk /= patch.volume;
     patch.damping_s /= patch.volume;
-    patch.members.shrink_to_fit();
-    patch.nodes = nodes[p];
+    patch.nodes = std::move(nodes[p]);
     patch.first = first;
     first += patch.nodes.size();
     most_nodes = std::max(most_nodes, patch.nodes.size());

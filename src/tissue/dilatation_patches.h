@@ -39,10 +39,12 @@ struct DilatationPatches {
                                                const std::vector<int>& patch_of);
 
   /// @param patch_of per tetrahedron, from 0 without gaps.
+  /// @param nodes as nodesOf() has them.
   /// @param tets whose pattern holds the blocks of all patches.
   /// @throws std::invalid_argument for a wrong patch_of.
   DilatationPatches(const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
-                    const ElementMaterials& materials, const std::vector<int>& patch_of, const TetElements& tets);
+                    const ElementMaterials& materials, const std::vector<int>& patch_of,
+                    std::vector<std::vector<int>> nodes, const TetElements& tets);
 
   std::size_t nodeCount() const { return patches.back().first + patches.back().nodes.size(); }
 

@@ -19,18 +19,26 @@ struct MeanDilatation::PatchState : RotationState {
 MeanDilatation::MeanDilatation(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
                                const std::vector<bool>& fixed, const ElementMaterials& materials,
                                const std::vector<int>& patch_of)
+    : MeanDilatation(rest, tetrahedra, fixed, materials, patch_of, DilatationPatches::nodesOf(tetrahedra, patch_of)) {}
+
+MeanDilatation::MeanDilatation(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
+                               const std::vector<bool>& fixed, const ElementMaterials& materials,
+                               const std::vector<int>& patch_of, std::vector<std::vector<int>> patch_nodes)
     : TetElasticity(materials.materials.at(0).model == ElasticModel::kCorotational,
-                    std::make_unique<TetElements>(
-                        rest, tetrahedra, fixed, materials, deviatoricParameters,
-                        BlockPattern::forElements(DilatationPatches::nodesOf(tetrahedra, patch_of), fixed))),
+                    std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, deviatoricParameters,
+                                                  BlockPattern::forElements(patch_nodes, fixed))),
       corotational_(materials.materials.at(0).model == ElasticModel::kCorotational),
-      averaged_(tetrahedra, fixed, materials, patch_of, tets()) {}
+      averaged_(tetrahedra, fixed, materials, patch_of, std::move(patch_nodes), tets()) {}
 
 MeanDilatation::~MeanDilatation() = default;
 
-std::unique_ptr<Elasticity::State> MeanDilatation::makeState() const {
+std::unique_ptr<Elasticity::State> MeanDilatation::makeState() const { return makeState(nullptr); }
+
+std::unique_ptr<Elasticity::State> MeanDilatation::makeStateAt(const NodalVectors& x) const { return makeState(&x); }
+
+std::unique_ptr<Elasticity::State> MeanDilatation::makeState(const NodalVectors* x) const {
   auto state = std::make_unique<PatchState>();
-  prepare(*state);
+  prepare(x, *state);
   state->gradients.assign(averaged_.nodeCount(), Vector3::Zero());
   for (const Patch& patch : averaged_.patches) {
     addGradients(patch, *state, &state->gradients[patch.first]);

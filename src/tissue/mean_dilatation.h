@@ -29,6 +29,7 @@ class MeanDilatation : public TetElasticity {
   ~MeanDilatation() override;
 
   std::unique_ptr<State> makeState() const override;
+  std::unique_ptr<State> makeStateAt(const NodalVectors& x) const override;
   void update(const NodalVectors& x, State& state, NodalVectors& forces) const override;
   void holdStill(const std::vector<bool>& still, const NodalVectors& x, State& state) const override;
   double energy(const NodalVectors& x) const override;
@@ -37,6 +38,10 @@ class MeanDilatation : public TetElasticity {
   using Patch = DilatationPatches::Patch;
   struct PatchState;
 
+  MeanDilatation(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
+                 const ElementMaterials& materials, const std::vector<int>& patch_of,
+                 std::vector<std::vector<int>> patch_nodes);
+  std::unique_ptr<State> makeState(const NodalVectors* x) const;
   void addGradients(const Patch& patch, const RotationState& state, Vector3* gradients) const;
   static double dilatation(const Patch& patch, const Vector3* gradients, const NodalVectors& x);
   void refreshStiffness(const std::vector<BatchRange>& ranges, PatchState& state) const;

@@ -146,14 +146,15 @@ NeoHookean::NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>&
     tets_ = std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, modelParameters);
     return;
   }
-  auto couplings = BlockPattern::forElements(DilatationPatches::nodesOf(tetrahedra, patch_of), fixed);
+  auto nodes = DilatationPatches::nodesOf(tetrahedra, patch_of);
+  auto couplings = BlockPattern::forElements(nodes, fixed);
   tets_ = std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, shapeParameters, std::move(couplings));
-  patches_ = std::make_unique<DilatationPatches>(tetrahedra, fixed, materials, patch_of, *tets_);
+  patches_ = std::make_unique<DilatationPatches>(tetrahedra, fixed, materials, patch_of, std::move(nodes), *tets_);
 }
 
 NeoHookean::~NeoHookean() = default;
 
-std::unique_ptr<Elasticity::State> NeoHookean::makeState() const {
+std::unique_ptr<NeoHookean::DeformationState> NeoHookean::undeformed() const {
   MatrixBatch identity{};
   for (const std::size_t i : {0, 4, 8}) identity[i].fill(1.0);
   auto state = std::make_unique<DeformationState>();
@@ -170,6 +171,24 @@ std::unique_ptr<Elasticity::State> NeoHookean::makeState() const {
     state->held_patches = patches_->nothingHeld();
   }
   tets_->prepare(*state);
+  return state;
+}
+
+std::unique_ptr<Elasticity::State> NeoHookean::makeState() const {
+  auto state = undeformed();
+  rebuildStiffness(*state);
+  return state;
+}
+
+std::unique_ptr<Elasticity::State> NeoHookean::makeStateAt(const NodalVectors& x) const {
+  auto state = undeformed();
+  NodalVectors forces = NodalVectors::Zero(3, x.cols());
+  evaluate(x, state->held.moving, *state, forces);
+  state->tangent_deformations = state->deformations;
+  if (patches_) {
+    patches_->meanPressures(tets_->batches, state->held.moving, state->volume_ratios, 1.0, false, state->held_patches,
+                            state->tangent_pressures);
+  }
   rebuildStiffness(*state);
   return state;
 }

@@ -50,6 +50,7 @@ class NeoHookean : public Elasticity {
   ~NeoHookean() override;
 
   std::unique_ptr<State> makeState() const override;
+  std::unique_ptr<State> makeStateAt(const NodalVectors& x) const override;
 
   /// An element's share of the stiffness is recomputed only when its F has changed by more than kTangentChange since, that of
   /// a patch when the F of one of its elements or Jbar has;
@@ -67,6 +68,7 @@ class NeoHookean : public Elasticity {
  private:
   struct DeformationState;
 
+  std::unique_ptr<DeformationState> undeformed() const;  ///< without stiffness
   void evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, DeformationState& state,
                 NodalVectors& forces) const;
   void addPatches(const std::vector<BatchRange>& ranges, bool still, DeformationState& state,

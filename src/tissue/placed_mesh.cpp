@@ -34,12 +34,41 @@ void tellSize(const NodalVectors& positions, std::size_t elements, const MeshSiz
   if (on_size) on_size(static_cast<std::size_t>(positions.cols()), elements);
 }
 
-void setVolume(TetMesh mesh, const std::string& source, const MeshSizeCheck& on_size, PlacedMesh& placed) {
-  tellSize(mesh.positions, mesh.tetrahedra.size(), on_size);
-  checkTetMesh(mesh, source);
-  placed.surface = boundaryTriangles(mesh.tetrahedra);
+struct VolumeMesh {
+  TetMesh mesh;
+  std::vector<int> patch_of;
+};
+
+VolumeMesh volumeMesh(const TissueDescription& description, const std::string& source, const MeshSizeCheck& on_size) {
+  VolumeMesh made;
+  const auto check = [&](const std::string& owner) {
+    tellSize(made.mesh.positions, made.mesh.tetrahedra.size(), on_size);
+    checkTetMesh(made.mesh, owner);
+  };
+  if (const auto* block = std::get_if<BlockDescription>(&description.geometry)) {
+    const bool follows = description.refinement.mode != RefinementDescription::Mode::kNever;
+    const BlockSplit split = follows ? BlockSplit::kSix : BlockSplit::kFive;
+    atEntry("block", [&] {
+      made.mesh = makeBlockMesh(*block, split);
+      check(source);
+    });
+    made.patch_of = patchesByCells(made.mesh.tetrahedra.size(), static_cast<int>(split));
+  } else {
+    const auto& mesh = std::get<MeshDescription>(description.geometry);
+    atEntry("mesh.file", [&] {
+      made.mesh = loadTetMesh(mesh);
+      check(source + ", mesh file '" + mesh.file + "'");
+    });
+    made.patch_of = patchesByFaces(made.mesh.positions, made.mesh.tetrahedra);
+  }
+  return made;
+}
+
+void setVolume(TetMesh mesh, std::vector<Triangle> surface, std::vector<int> patch_of, PlacedMesh& placed) {
+  placed.surface = std::move(surface);
   placed.rest = std::move(mesh.positions);
   placed.tetrahedra = std::move(mesh.tetrahedra);
+  placed.patch_of = std::move(patch_of);
 }
 
 void setSheet(TriangleMesh mesh, double thickness, const std::string& source, const MeshSizeCheck& on_size,
@@ -57,19 +86,17 @@ void setSheet(TriangleMesh mesh, double thickness, const std::string& source, co
 
 void setGeometry(const TissueDescription& description, const std::string& source, const MeshSizeCheck& on_size,
                  PlacedMesh& placed) {
-  const auto inFile = [&](const std::string& file) { return source + ", mesh file '" + file + "'"; };
-  if (const auto* block = std::get_if<BlockDescription>(&description.geometry)) {
-    atEntry("block", [&] { setVolume(makeBlockMesh(*block), source, on_size, placed); });
-    placed.patch_of = patchesByCells(placed.tetrahedra.size(), kTetrahedraPerCell);
-  } else if (const auto* mesh = std::get_if<MeshDescription>(&description.geometry)) {
-    atEntry("mesh.file", [&] { setVolume(loadTetMesh(*mesh), inFile(mesh->file), on_size, placed); });
-    placed.patch_of = patchesByFaces(placed.rest, placed.tetrahedra);
+  if (!isMembrane(description)) {
+    VolumeMesh made = volumeMesh(description, source, on_size);
+    std::vector<Triangle> surface = boundaryTriangles(made.mesh.tetrahedra);
+    setVolume(std::move(made.mesh), std::move(surface), std::move(made.patch_of), placed);
   } else if (const auto* sheet = std::get_if<SheetDescription>(&description.geometry)) {
     atEntry("sheet", [&] { setSheet(makeSheetMesh(*sheet), sheet->thickness_m, source, on_size, placed); });
   } else {
     const auto& shell = std::get<ShellDescription>(description.geometry);
     TriangleMesh read = atEntry("shell.file", [&] { return loadShellMesh(shell); });
-    atEntry("shell", [&] { setSheet(std::move(read), shell.thickness_m, inFile(shell.file), on_size, placed); });
+    const std::string owner = source + ", mesh file '" + shell.file + "'";
+    atEntry("shell", [&] { setSheet(std::move(read), shell.thickness_m, owner, on_size, placed); });
   }
 }
 
@@ -101,7 +128,7 @@ void setRegions(const TissueDescription& description, const std::string& source,
   placed.surface_regions = regionsOf(centroids(placed.rest, placed.surface));
   placed.element_regions =
       placed.isVolume() ? regionsOf(centroids(placed.rest, placed.tetrahedra)) : placed.surface_regions;
-  for (std::size_t r = 0; r < description.regions.size(); ++r) {
+  for (std::size_t r = 0; r < description.regions.size() && !placed.is_refined; ++r) {
     const auto anyIn = [r](const std::vector<int>& regions) {
       return std::find(regions.begin(), regions.end(), static_cast<int>(r)) != regions.end();
     };
@@ -130,20 +157,25 @@ Vector2 fibreIn(const NodalVectors& x, const Triangle& triangle, const Vector3& 
   return gram.inverse() * (edges.transpose() * along.normalized());
 }
 
+std::vector<bool> held(const PlacedMesh& placed, const NodalVectors& points, const std::vector<Region>& where,
+                       const std::string& entry, const std::string& what, const std::string& source) {
+  return placed.is_refined ? heldPoints(points, where) : heldPoints(points, where, entry, what, source);
+}
+
 /// What an attachment adds to the springs, N/m per node, positions being in T.
 void addAttachment(const Attachment& attachment, const std::string& entry, const std::string& source,
                    const PlacedMesh& placed, VectorX& stiffness) {
   if (attachment.stiffness_n_per_m > 0.0) {
-    const std::vector<bool> held = heldPoints(placed.rest, attachment.where, entry, "node", source);
-    for (std::size_t i = 0; i < held.size(); ++i) {
-      if (held[i]) stiffness[static_cast<Eigen::Index>(i)] += attachment.stiffness_n_per_m;
+    const std::vector<bool> nodes = held(placed, placed.rest, attachment.where, entry, "node", source);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (nodes[i]) stiffness[static_cast<Eigen::Index>(i)] += attachment.stiffness_n_per_m;
     }
     return;
   }
-  const std::vector<bool> held =
-      heldPoints(centroids(placed.rest, placed.surface), attachment.where, entry, kCentroid, source);
-  for (std::size_t t = 0; t < held.size(); ++t) {
-    if (!held[t]) continue;
+  const NodalVectors middles = centroids(placed.rest, placed.surface);
+  const std::vector<bool> triangles = held(placed, middles, attachment.where, entry, kCentroid, source);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (!triangles[t]) continue;
     const double third = attachment.stiffness_pa_per_m * triangleArea(placed.rest, placed.surface[t]) / 3.0;
     for (const int node : placed.surface[t]) stiffness[node] += third;
   }
@@ -160,7 +192,7 @@ void setSprings(const TissueDescription& description, const std::string& source,
     for (Eigen::Index i = 0; i < stiffness.size(); ++i) {
       if (placed.fixed[static_cast<std::size_t>(i)]) stiffness[i] = 0.0;
     }
-    if (stiffness.isZero(0.0)) {
+    if (stiffness.isZero(0.0) && !placed.is_refined) {
       throw EntryError(entry + ".where", source + ": all nodes that attachment " + std::to_string(a) +
                                              " holds are fixed already; remove it, or enlarge its region");
     }
@@ -177,10 +209,11 @@ void setPressed(const TissueDescription& description, const std::string& source,
     placed.pressed = placed.surface;
     return;
   }
-  const std::vector<bool> held = heldPoints(centroids(placed.rest, placed.surface), description.pressure_where,
-                                            "pressure_where", kCentroid, source);
-  for (std::size_t t = 0; t < held.size(); ++t) {
-    if (held[t]) placed.pressed.push_back(placed.surface[t]);
+  const NodalVectors middles = centroids(placed.rest, placed.surface);
+  const std::vector<bool> triangles =
+      held(placed, middles, description.pressure_where, "pressure_where", kCentroid, source);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (triangles[t]) placed.pressed.push_back(placed.surface[t]);
   }
 }
 
@@ -207,22 +240,46 @@ void setFibres(const TissueDescription& description, const std::string& source, 
   }
 }
 
-}  // namespace
-
-std::string tissueLabel(const TissueDescription& description) { return "tissue '" + description.name + "'"; }
-
-PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size) {
-  checkTissue(description);
+/// What a description says about nodes, elements and surface of the mesh it is given, in T; then the mesh goes to the world.
+void finish(const TissueDescription& description, const Pose& X_WT, PlacedMesh& placed) {
   const std::string source = tissueLabel(description);
-  PlacedMesh placed;
-  setGeometry(description, source, on_size, placed);
-  placed.fixed = fixedNodes(placed.rest, description.fixed, source);
+  if (!placed.is_refined) placed.fixed = fixedNodes(placed.rest, description.fixed, source);
   setRegions(description, source, placed);
   placed.patch_of = cutAtRegions(placed.patch_of, placed.element_regions);
   setFibres(description, source, placed);
   setSprings(description, source, placed);
   setPressed(description, source, placed);
   placed.rest = (X_WT.linear() * placed.rest).colwise() + X_WT.translation();
+}
+
+}  // namespace
+
+std::string tissueLabel(const TissueDescription& description) { return "tissue '" + description.name + "'"; }
+
+PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size) {
+  checkTissue(description);
+  PlacedMesh placed;
+  setGeometry(description, tissueLabel(description), on_size, placed);
+  finish(description, X_WT, placed);
+  return placed;
+}
+
+Bisection refinableMesh(const TissueDescription& description, const MeshSizeCheck& on_size) {
+  checkTissue(description);
+  const VolumeMesh made = volumeMesh(description, tissueLabel(description), on_size);
+  return {made.mesh, made.patch_of};
+}
+
+PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const BisectedMesh& mesh) {
+  PlacedMesh placed;
+  setVolume(mesh.mesh, mesh.surface, mesh.patch_of, placed);
+  placed.is_refined = !mesh.parents.empty();
+  if (placed.is_refined) {  // a node between two that move would be held back from where it is
+    const NodalVectors unrefined = placed.rest.leftCols(mesh.unrefinedNodes());
+    placed.fixed = fixedNodes(unrefined, description.fixed, tissueLabel(description));
+    for (const auto& [a, b] : mesh.parents) placed.fixed.push_back(placed.fixed[a] && placed.fixed[b]);
+  }
+  finish(description, X_WT, placed);
   return placed;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/bisection.h"
 #include "tissue/attached_elasticity.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/tissue/tissue.h"
@@ -26,12 +27,23 @@ struct PlacedMesh {
   std::vector<NodeSpring> springs;  ///< of attachments, at free nodes, each node at most once
   std::vector<Triangle> pressed;    ///< surface triangles under the tissue's pressure
 
+  /// Further nodes have come to the mesh of the start, of which all was refused that held nothing: small places may come to hold none
+  /// of the smaller elements.
+  bool is_refined = false;
+
   bool isVolume() const { return !tetrahedra.empty(); }
   std::size_t elementCount() const { return isVolume() ? tetrahedra.size() : surface.size(); }
 };
 
 /// @throws std::invalid_argument naming the tissue: see Tissue.
 PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size);
+
+/// The mesh that a volume's description asks for, to be refined. A block's cells are split into six tetrahedra.
+/// @throws std::invalid_argument naming the tissue: see Tissue.
+Bisection refinableMesh(const TissueDescription& description, const MeshSizeCheck& on_size);
+
+/// The same as placeMesh() above with that mesh, refined.
+PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const BisectedMesh& mesh);
 
 /// How messages begin: "tissue '<name>'".
 std::string tissueLabel(const TissueDescription& description);

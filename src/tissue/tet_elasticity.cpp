@@ -18,6 +18,10 @@ Quaternion rotationBySvd(const Matrix3& F) {
   return Quaternion(U * svd.matrixV().transpose());
 }
 
+Quaternion rotationInLane(const RotationBatch& q, std::size_t lane) {
+  return Quaternion(q[0][lane], q[1][lane], q[2][lane], q[3][lane]).normalized();
+}
+
 /// Of small turns: sin(angle/2) = |vec q| / |q|.
 double largestTurnSquared(const std::vector<RotationBatch>& rotations) {
   double largest = 0.0;
@@ -81,11 +85,17 @@ TetElasticity::~TetElasticity() = default;
 
 std::unique_ptr<Elasticity::State> TetElasticity::makeState() const {
   auto state = std::make_unique<RotationState>();
-  prepare(*state);
+  prepare(nullptr, *state);
   return state;
 }
 
-void TetElasticity::prepare(RotationState& state) const {
+std::unique_ptr<Elasticity::State> TetElasticity::makeStateAt(const NodalVectors& x) const {
+  auto state = std::make_unique<RotationState>();
+  prepare(&x, *state);
+  return state;
+}
+
+void TetElasticity::prepare(const NodalVectors* x, RotationState& state) const {
   RotationBatch identity{};
   identity[0].fill(1.0);
   state.rotations.assign(tets_->batches.size(), identity);
@@ -93,7 +103,21 @@ void TetElasticity::prepare(RotationState& state) const {
   state.turned.assign(tets_->batches.size(), 0);
   state.held = tets_->nothingHeld();
   tets_->prepare(state);
-  for (std::size_t e = 0; e < tets_->elements.size(); ++e) addStiffness(e, Quaternion::Identity(), 1.0, state);
+  if (x != nullptr && corotational_) findRotations(*x, state);
+  for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
+    addStiffness(e, rotationInLane(state.tangent_rotations[e / kLanes], e % kLanes), 1.0, state);
+  }
+}
+
+/// Those of update(), from none; nothing has been assembled with others yet.
+void TetElasticity::findRotations(const NodalVectors& x, RotationState& state) const {
+  NodalVectors forces = NodalVectors::Zero(3, x.cols());
+  const auto find = [&](const auto& material) {
+    addCorotationalForces(tets_->batches, {0, tets_->batches.size()}, material, kTangentAngle, 1.0, x.data(),
+                          state.tangent_rotations, state.rotations, state.turned, nullptr, forces.data());
+  };
+  tets_->batch_materials.empty() ? find(tets_->material) : find(tets_->batch_materials);
+  state.tangent_rotations = state.rotations;
 }
 
 void TetElasticity::addStiffness(std::size_t e, const Quaternion& rotation, double sign, State& state) const {
@@ -112,15 +136,11 @@ void TetElasticity::addStiffness(std::size_t e, const Quaternion& rotation, doub
 }
 
 void TetElasticity::refreshStiffness(std::size_t batch, RotationState& state) const {
-  const auto rotation = [batch](const std::vector<RotationBatch>& rotations, std::size_t lane) {
-    const RotationBatch& q = rotations[batch];
-    return Quaternion(q[0][lane], q[1][lane], q[2][lane], q[3][lane]).normalized();
-  };
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::size_t e = batch * kLanes + lane;
     if ((state.turned[batch] >> lane & 1) == 0 || e >= tets_->elements.size()) continue;
-    addStiffness(e, rotation(state.tangent_rotations, lane), -1.0, state);
-    addStiffness(e, rotation(state.rotations, lane), 1.0, state);
+    addStiffness(e, rotationInLane(state.tangent_rotations[batch], lane), -1.0, state);
+    addStiffness(e, rotationInLane(state.rotations[batch], lane), 1.0, state);
     for (std::size_t i = 0; i < 4; ++i) state.tangent_rotations[batch][i][lane] = state.rotations[batch][i][lane];
   }
 }

@@ -64,6 +64,26 @@ void checkModel(const TissueDescription& description) {
   }
 }
 
+/// What a refined mesh would not leave as it is: springs along edges, and stress that elements remember.
+void checkRefinement(const TissueDescription& description) {
+  if (description.refinement.mode == RefinementDescription::Mode::kNever) return;
+  const char* obstacle = nullptr;
+  if (isMembrane(description)) {
+    obstacle = "a sheet or shell, of which only even meshes bend alike everywhere";
+  } else if (!isContinuum(description.material.model)) {
+    obstacle = "a mass-spring volume, whose stiffness is that of the edges it has";
+  } else if (!description.material.prony_series.empty()) {
+    obstacle = "tissue whose stress relaxes, since new elements would not know what it was";
+  } else if (std::any_of(description.attachments.begin(), description.attachments.end(),
+                         [](const Attachment& one) { return one.stiffness_n_per_m > 0.0; })) {
+    obstacle =
+        "tissue attached by stiffness_n_per_m, which would grow with the number of nodes: give stiffness_pa_per_m";
+  }
+  if (obstacle == nullptr) return;
+  throw EntryError("refinement", tissueLabel(description) + ": refinement is asked for of " + obstacle +
+                                     "; remove the key, or make it never");
+}
+
 void checkNumbers(const MaterialDescription& material, double damping_stiffness_s, const std::string& owner) {
   checkMaterial(material, owner);
   requirePositive(owner + "density_kg_per_m3", material.density_kg_per_m3, "kg/m^3");
@@ -129,6 +149,7 @@ void checkLoads(const TissueDescription& description) {
 
 void checkTissue(const TissueDescription& description) {
   checkModel(description);
+  checkRefinement(description);
   atEntry("material", [&] {
     checkNumbers(description.material, description.damping.stiffness_s, tissueLabel(description) + ": ");
   });
@@ -188,6 +209,9 @@ VectorX lumpedMasses(const PlacedMesh& placed, const ElementMaterials& materials
 
 Tissue::Tissue(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size)
     : Tissue(description, placeMesh(description, X_WT, on_size)) {}
+
+Tissue::Tissue(const TissueDescription& description, const Pose& X_WT, const BisectedMesh& mesh)
+    : Tissue(description, placeMesh(description, X_WT, mesh)) {}
 
 Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
     : name_(description.name),

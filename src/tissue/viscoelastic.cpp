@@ -50,7 +50,7 @@ Overstress::~Overstress() = default;
 
 std::unique_ptr<Elasticity::State> Overstress::makeState() const {
   auto state = std::make_unique<MaxwellState>();
-  prepare(*state);
+  prepare(nullptr, *state);
   state->steps.resize(terms_.size());
   state->strains.assign(tets().batches.size(), StrainBatch{});
   state->held.assign(tets().batches.size() * terms_.size(), StrainBatch{});

@@ -76,6 +76,11 @@ class BadStartup(harness.TestCase):
                 self.assert_refused(["_scene:=" + harness.SCENE, "_%s:=%s" % (name, bad)], "/tissue_contact/" + name)
             rospy.delete_param("/tissue_contact/" + name)
 
+    def test_bad_mesh_to_publish(self):
+        for bad in ["coarse", "1"]:
+            self.assert_refused(["_scene:=" + harness.SCENE, "_publish_mesh:=" + bad],
+                                "parameter '/tissue_contact/publish_mesh' is \"%s\"" % bad, "refined or unrefined")
+
     def test_misspelt_argument(self):
         self.assert_refused(["_sceen:=" + harness.SCENE], "/tissue_contact/sceen", "'scene'", "_sceen:=")
         self.assertFalse(rospy.has_param("/tissue_contact/sceen"))  # the next start must not meet it
@@ -124,7 +129,7 @@ class BadStartup(harness.TestCase):
         with open(os.path.join(harness.PACKAGE, "urdf", "probe.urdf"), encoding="utf-8") as stream:
             rospy.set_param("/tissue_contact/arm/description", stream.read())
         rospy.set_param("/tissue_contact_of_another/sceen", "x")
-        for name, value in [("diagnostic_period", 1.0), ("tf_timeout_s", 1.0),
+        for name, value in [("diagnostic_period", 1.0), ("publish_mesh", "unrefined"), ("tf_timeout_s", 1.0),
                             ("markers/force_arrow_m_per_n", 0.1), ("markers/displacement_full_scale_m", 0.01)]:
             rospy.set_param("/tissue_contact/" + name, value)
         arguments = ["__log:=" + self.path("log"), "chatter:=elsewhere", "/tissue_contact/status:=/s"]

@@ -73,6 +73,11 @@ class TestCase(unittest.TestCase):
         self.assertEqual(code, 0, errors)
         return errors
 
+    def refined_scene(self, refinement="auto", name="refined.yaml"):
+        """press.yaml with a mesh, of 10 mm cells, that follows the probe."""
+        damping = "    damping: {stiffness_s: 0.003}\n"
+        return self.changed_scene({damping: damping + "    refinement: %s\n" % refinement}, name=name)
+
     def changed_scene(self, changes, source=SCENE, name="scene.yaml"):
         """A scene of test/ros, or one with a path, each of whose `changes` {old text: new one} was made once."""
         with open(os.path.join(os.path.dirname(SCENE), source), encoding="utf-8") as stream:
@@ -150,6 +155,16 @@ def press(count=100, start_s=START_S, depth_m=0.005):
         down = 1.0 - abs(2.0 * i / (count - 1) - 1.0)
         stamp = rospy.Time(start_s) + rospy.Duration.from_sec(0.01) * i
         samples.append((stamp, (0.0001 * i, 0.0, -(0.001 + depth_m) * down)))
+    return samples
+
+
+def press_and_drag(count=50, start_s=START_S):
+    """(stamp, positions) at 100 Hz for the scene of press(): down 2.5 mm, 1.5 mm deep, in a fifth of them, then 12 mm along x."""
+    samples = []
+    for i in range(count):
+        way = 5.0 * i / (count - 1)
+        stamp = rospy.Time(start_s) + rospy.Duration.from_sec(0.01) * i
+        samples.append((stamp, (-0.006 + 0.003 * max(way - 1.0, 0.0), 0.0, -0.0025 * min(way, 1.0))))
     return samples
 
 

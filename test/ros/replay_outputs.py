@@ -29,6 +29,15 @@ class ReplayOutputs(harness.TestCase):
         scene = self.changed_scene({"material: {": "material: {model: neo_hookean, dilatation: patch, "})
         self.assertNotIn("beyond the range", self.replay("neo.csv", scene=scene))
 
+    def test_cells_longer_than_asked_for_are_told_with_the_fix(self):
+        few = "{cell_m: 0.0015, nodes_at_most: 250}"  # 147 unrefined
+        harness.write_bag(self.bag, harness.press_and_drag(20))
+        errors = self.replay("few.csv", scene=self.refined_scene(few))
+        self.assertEqual(errors.count("times as long as its refinement asks for, since"), 1, errors)
+        for words in ["warning: ", "Raise tissues[].refinement.nodes_at_most", "cells of tissue 'block' up to ", "such cells in 19 intervals"]:
+            self.assertIn(words, errors)
+        self.assertNotIn("its refinement asks", self.replay("enough.csv", scene=self.refined_scene(name="auto.yaml")))
+
     def test_times_go_to_a_file_of_their_own(self):
         self.replay("out.csv", "--timing", self.path("timing.csv"))
         self.replay("without.csv")

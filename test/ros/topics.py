@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Wrenches, topology (latched, once), mesh, contacts, status, markers and tf: what they hold and how often they come."""
+"""Wrenches, topology (latched, once for each mesh), mesh, contacts, status, markers and tf: what they hold and how often they come."""
 import unittest
 
 import rospy
@@ -24,7 +24,7 @@ class Topics(unittest.TestCase):
         cls.last = cls.samples[-1][0]
         listeners = {name: harness.Listener(NODE + name, kind) for name, kind in [
             ("probe/wrench", WrenchStamped), ("block/mesh", TissueMesh), ("contacts", ContactArray), ("status", Status),
-            ("markers", MarkerArray)]}
+            ("markers", MarkerArray), ("block/topology", TissueTopology)]}
         tf = harness.Listener("/tf", TFMessage)
         diagnostics = harness.diagnostics()
         harness.JointSource().send_all(cls.samples)
@@ -32,6 +32,7 @@ class Topics(unittest.TestCase):
         for name, rate in RATES_HZ.items():
             listeners[name].wait(lambda all, count=2 * rate: len(all) >= count, "2 s of messages")
         newest = rospy.Duration.from_sec(0.11)  # markers come every 0.1 s
+        listeners["block/topology"].wait(len, "the topology")
         listeners["markers"].wait(lambda all: all and cls.last - all[-1].markers[0].header.stamp < newest, "the end")
         cls.transforms = tf.wait(lambda all: all and all[-1].transforms[0].header.stamp == cls.last, "the last transform")
         cls.diagnostics = diagnostics.wait(lambda all: all and faults.figures(all[-1]).get(ACCEPTED) == "200", "200 states")[-1]
@@ -61,12 +62,19 @@ class Topics(unittest.TestCase):
         self.assertLess(deepest.x, 0.0)  # dragged in +x, so friction pulls the probe back
         self.assertAlmostEqual(last.z, 0.0, delta=1e-9)
 
+    def test_every_mesh_has_its_topology(self):
+        nodes = {t.revision: len(t.rest_positions) for t in self.listeners["block/topology"].messages}
+        self.assertEqual(len(nodes), len(self.listeners["block/topology"].messages))
+        for mesh in self.listeners["block/mesh"].messages:
+            self.assertEqual(len(mesh.positions), nodes[mesh.revision])
+
     def test_topology_is_latched_and_published_once(self):
         late = harness.Listener(NODE + "block/topology", TissueTopology)
         topology = late.wait(len, "the latched message")[0]
         self.assertEqual(topology.header.stamp, self.samples[0][0])
         self.assertEqual(topology.header.frame_id, "world")
         self.assertEqual(topology.tissue, "block")
+        self.assertEqual(topology.revision, 0)
         nodes = len(topology.rest_positions)
         self.assertEqual(nodes, 7 * 7 * 3)
         self.assertEqual(len(topology.tetrahedra), 4 * 5 * 6 * 6 * 2)

@@ -24,6 +24,17 @@ struct Approach {
   double distance_m = std::numeric_limits<double>::infinity();  ///< < 0: the surface is inside the shape
 };
 
+/// Where a tissue's surface is nearest to a shape, or deepest in it.
+struct NearPlace {
+  int tissue = -1;
+  int instrument = -1;
+  int contact_link = -1;
+  int shape = -1;
+  Triangle nodes = {0, 0, 0};
+  Vector3 weights = Vector3::UnitX();  ///< barycentric
+  double distance_m = 0.0;             ///< < 0: in the shape
+};
+
 class ContactDetector {
  public:
   /// Mesh shapes are prepared here, which takes some tenths of a second each unless they are in the cache.
@@ -73,6 +84,15 @@ class ContactDetector {
   /// next to nothing, so keep `closest` from call to call. Sizes as for detect(). Not thread-safe.
   void lowerClosestApproach(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL,
                             Approach& closest);
+
+  /// For every shape and tissue nearer to each other than `within_m` where they are nearest, in order of tissues and shapes.
+  /// @param within_m one per tissue; < 0: not looked for on that one.
+  void findNear(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL,
+                const std::vector<double>& within_m, std::vector<NearPlace>& near);
+
+  /// Goes on with another surface of a tissue, as do all that share it.
+  /// @param rest positions at rest, m, world frame.
+  void setSurface(int tissue, TissueSurface surface, const NodalVectors& rest);
 
  private:
   struct Implementation;

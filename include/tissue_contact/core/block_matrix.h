@@ -43,15 +43,15 @@ struct BlockPattern {
   /// diagonal.
   template <typename Elements>
   static std::shared_ptr<const BlockPattern> forElements(const Elements& elements, const std::vector<bool>& fixed) {
-    std::vector<std::vector<int>> neighbours(fixed.size());
+    std::vector<int> first = {0};  // of the free nodes of each element
+    std::vector<int> nodes;
     for (const auto& element : elements) {
-      for (const int a : element) {
-        for (const int b : element) {
-          if (a != b && !fixed[a] && !fixed[b]) neighbours[a].push_back(b);
-        }
+      for (const int node : element) {
+        if (!fixed[node]) nodes.push_back(node);
       }
+      first.push_back(static_cast<int>(nodes.size()));
     }
-    return fromNeighbours(neighbours);
+    return fromElements(first, nodes, fixed.size());
   }
 
   int slices() const { return static_cast<int>(first.size()) - 1; }               ///< of four rows each
@@ -74,8 +74,9 @@ struct BlockPattern {
   static int placeOf(int entry, int lane, bool mirrored) { return 2 * (kRows * entry + lane) + (mirrored ? 1 : 0); }
 
  private:
-  /// @param neighbours of each node, mutual; may name a node twice. Sorted on the way.
-  static std::shared_ptr<const BlockPattern> fromNeighbours(std::vector<std::vector<int>>& neighbours);
+  /// @param first offsets of the elements in `nodes`, and the end.
+  static std::shared_ptr<const BlockPattern> fromElements(const std::vector<int>& first, const std::vector<int>& nodes,
+                                                          std::size_t node_count);
 };
 
 /// Blocks of one entry. Element (r, c) of the block in lane l: at[r + 3 c][l].

@@ -16,17 +16,21 @@ struct TetMesh {
   std::vector<Tetrahedron> tetrahedra;
 };
 
-/// Structured block: (cells+1) nodes per axis, x fastest; 5 tetrahedra per cell, mirrored in every other cell so that
+/// Into how many tetrahedra a cell of a block is split. Six stay alike when their longest edges are cut (bisection.h); five
+/// err less with as many nodes.
+enum class BlockSplit { kFive = 5, kSix = 6 };
+
+/// Structured block: (cells+1) nodes per axis, x fastest; 5 or 6 tetrahedra per cell, mirrored in every other cell so that
 /// faces match and no direction is preferred; spacing graded as described. The outer nodes lie exactly on the faces,
-/// and even or centred spacing is symmetric to the last bit.
+/// and even or centred spacing is symmetric to the last bit. Tetrahedra come cell by cell.
 /// @throws std::invalid_argument for a size or growth out of range, more than kMostElements, or growth that makes the
 ///   longest cell over 10 000 times the shortest.
-TetMesh makeBlockMesh(const BlockDescription& block);
+TetMesh makeBlockMesh(const BlockDescription& block, BlockSplit split = BlockSplit::kFive);
 
 /// What makeBlockMesh() would refuse. @throws EntryError of an entry of the block, "cells" or "grading.x.growth".
 void checkBlock(const BlockDescription& block);
 
-/// Of makeBlockMesh(), whose tetrahedra come cell by cell.
+/// Of makeBlockMesh() where nothing else is said.
 constexpr int kTetrahedraPerCell = 5;
 
 /// Reads Gmsh .msh (2.x, 4.0, 4.1) or legacy VTK (1 to 5), ASCII and binary; the contents decide which, not the name.

@@ -44,6 +44,13 @@ struct LawError {
   double relative = 0.0;
 };
 
+/// What is left of the cells that a tissue's refinement asks for when its mesh may have no more nodes
+/// (`tissues[].refinement.nodes_at_most`), at the end of an interval: of the tissue whose are longest. -1 and 1 where all are as asked for.
+struct CoarseCells {
+  int tissue = -1;
+  double factor = 1.0;  ///< the newest refined cells are longer by it than asked for
+};
+
 /// How the last step went.
 struct StepReport {
   int substeps = 0;          ///< implicit steps taken for the last advance
@@ -61,6 +68,7 @@ struct StepReport {
   int pinched_contacts = 0;          ///< left out of the last step: shapes that touch each other leave them no room
   ImplausibleLoad implausible_load;  ///< of its last step
   LawError law_error;                ///< likewise
+  CoarseCells coarse_cells;          ///< likewise
 };
 
 /// Bounds on the work of one advance, for a caller that has to keep up with time.
@@ -85,7 +93,13 @@ class Simulator {
 
   const Scene& scene() const;
   const std::vector<Instrument>& instruments() const;
+  /// With the meshes they have now, see meshRevision(); names and order never change. Meshes change within advance() and reset()
+  /// only; the first nodes of each are those of the mesh at the start, in its order.
   const std::vector<Tissue>& tissues() const;
+
+  /// How often the mesh of a tissue has changed since the start: nodes, tetrahedra and surface of tissues()[tissue] are those of
+  /// this revision. Never decreases, not by reset() either. The nodes of the unrefined mesh are the first of every other.
+  int meshRevision(int tissue) const;
 
   /// Which models were chosen for the scene and why, a line for each choice; for a log.
   std::vector<std::string> advice() const;
@@ -154,5 +168,8 @@ std::string implausibleLoadText(const Simulator& simulator);
 
 /// The same about the law error of the last advance, where there is one.
 std::string lawErrorText(const Simulator& simulator);
+
+/// The same about the coarse cells of the last advance, where there are any.
+std::string coarseCellsText(const Simulator& simulator);
 
 }  // namespace tissue_contact

@@ -31,6 +31,10 @@ class Elasticity {
   /// State of the undeformed body; allocates.
   virtual std::unique_ptr<State> makeState() const = 0;
 
+  /// The same for a body that is at positions x, m, already: models whose tangent follows x assemble it there at once, and not
+  /// undeformed first. Allocates.
+  virtual std::unique_ptr<State> makeStateAt(const NodalVectors& /*x*/) const { return makeState(); }
+
   /// Elastic forces (N, overwritten) at positions x (m), and the matrices brought up to date. No allocation.
   virtual void update(const NodalVectors& x, State& state, NodalVectors& forces) const = 0;
 

@@ -37,6 +37,7 @@ class TetElasticity : public Elasticity {
   ~TetElasticity() override;
 
   std::unique_ptr<State> makeState() const override;
+  std::unique_ptr<State> makeStateAt(const NodalVectors& x) const override;
 
   /// An element's share of the stiffness is recomputed only when it has turned by more than kTangentAngle since; forces
   /// are always exact.
@@ -64,13 +65,15 @@ class TetElasticity : public Elasticity {
   TetElasticity(bool corotational, std::unique_ptr<const TetElements> tets);
 
   const TetElements& tets() const { return *tets_; }
-  void prepare(RotationState& state) const;
+  /// @param x null: undeformed.
+  void prepare(const NodalVectors* x, RotationState& state) const;
   /// Of the elements of a batch that have turned.
   void refreshStiffness(std::size_t batch, RotationState& state) const;
 
  private:
   void evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, RotationState& state,
                 NodalVectors& forces) const;
+  void findRotations(const NodalVectors& x, RotationState& state) const;
   void addStiffness(std::size_t element, const Quaternion& rotation, double sign, State& state) const;
   void adaptRotations(const NodalVectors& x, RotationState& state) const;
 

@@ -23,6 +23,7 @@ using MeshSizeCheck = std::function<void(std::size_t nodes, std::size_t elements
 void checkTissue(const TissueDescription& description);
 
 struct PlacedMesh;
+struct BisectedMesh;
 
 /// Const after construction.
 class Tissue {
@@ -33,6 +34,8 @@ class Tissue {
   /// holds no node, a material region that holds no element, an attachment or pressure that would have no effect.
   /// @param on_size called once the mesh is known and before anything is built from it; may throw to refuse it.
   Tissue(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size = nullptr);
+  /// The same volume with its mesh refined (src/tissue/placed_mesh.h, refinableMesh()).
+  Tissue(const TissueDescription& description, const Pose& X_WT, const BisectedMesh& mesh);
 
   const std::string& name() const { return name_; }
   int nodeCount() const { return static_cast<int>(rest_.cols()); }

@@ -9,6 +9,7 @@
 #include "tissue_contact/core/placed_pose.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/mesh/mesh_description.h"
+#include "tissue_contact/mesh/refinement_description.h"
 #include "tissue_contact/mesh/region_description.h"
 #include "tissue_contact/tissue/material_description.h"
 
@@ -38,7 +39,8 @@ struct Attachment {
 struct TissueDescription {
   std::string name;
   std::variant<BlockDescription, MeshDescription, SheetDescription, ShellDescription> geometry;
-  PoseDescription pose;  ///< of the tissue frame T
+  RefinementDescription refinement;  ///< of a volume
+  PoseDescription pose;              ///< of the tissue frame T
   MaterialDescription material;
   DampingDescription damping;
   Vector3 fibre_direction = Vector3::Zero();  ///< at rest, in T, any length; zero: none. Carried by the deformation

@@ -49,6 +49,9 @@ void addFigures(const LiveFigures& figures, double worst_lag_s, diagnostic_updat
   status.add("law error, likely", figures.law_error);
   status.add("largest law error, likely", figures.largest_law_error);
   status.add("strain under the tool at that", figures.largest_law_strain);
+  status.add("refined cells, times longer than asked for", figures.coarse_cells);
+  status.add("largest of that", figures.coarsest_cells);
+  status.add("intervals with such cells", figures.coarse);
   status.add("intervals with pinched contacts", figures.pinched);
   status.add("snapshots dropped", figures.snapshots_dropped);
 }
@@ -56,7 +59,7 @@ void addFigures(const LiveFigures& figures, double worst_lag_s, diagnostic_updat
 }  // namespace
 
 Health::Health(const Simulator& simulator, const JointStatePlayer& player, const JointStateInbox& inbox)
-    : simulator_(simulator), player_(player), inbox_(inbox) {}
+    : simulator_(simulator), player_(player), inbox_(inbox), nodes_(nodesOf(simulator)) {}
 
 bool Health::Throttle::pass() {
   constexpr std::chrono::seconds kPeriod(5);
@@ -78,6 +81,7 @@ bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
   warn(played, steps);
   const bool accepted = played.verdict == Verdict::kAccepted;
   const bool finite = accepted && isFinite(simulator_);
+  if (accepted) nodes_ = nodesOf(simulator_);
   const std::string not_converged = accepted && steps > 0 ? notConvergedText(played) : std::string();
   std::unique_lock<std::mutex> lock(mutex_);
   for (int v = 0; v < kVerdictCount; ++v) {
@@ -122,7 +126,14 @@ void Health::warn(const PlayedSample& played, int steps) {
                                                                      << " s: simulated as "
                                                                      << simulator_.scene().step.max_gap_s << " s");
   }
-  if (steps == 0) return;  // the report is that of an interval before, and told
+  if (played.was_reset) {
+    law_alarm_ = LawAlarm();
+    told_of_cells_ = false;
+  }
+  if (steps > 0) warnOfResult(played);  // else the report is that of an interval before, and told
+}
+
+void Health::warnOfResult(const PlayedSample& played) {
   if (simulator_.report().jumped && jumps_.pass()) {
     ROS_WARN_STREAM("an instrument moved too far before " << toTime(played.stamp_ns)
                                                           << " s to be swept: it was placed at its new position");
@@ -130,9 +141,11 @@ void Health::warn(const PlayedSample& played, int steps) {
   if (simulator_.report().implausible_load.found && implausible_loads_.pass()) {
     ROS_WARN_STREAM(toTime(played.stamp_ns) << " s: " << implausibleLoadText(simulator_));
   }
-  if (played.was_reset) law_alarm_ = LawAlarm();
   if (law_alarm_.leaves(simulator_.report().law_error.relative)) {
     ROS_WARN_STREAM(toTime(played.stamp_ns) << " s: " << lawErrorText(simulator_));
+  }
+  if (simulator_.report().coarse_cells.tissue >= 0 && !std::exchange(told_of_cells_, true)) {
+    ROS_WARN_STREAM(toTime(played.stamp_ns) << " s: " << coarseCellsText(simulator_));
   }
 }
 
@@ -167,6 +180,7 @@ bool Health::noteSteps(const PlayedSample& played, int steps, bool finite) {
     figures_.largest_law_error = report.law_error.relative;
     figures_.largest_law_strain = report.law_error.strain;
   }
+  noteCells(report.coarse_cells);
   if (report.implausible_load.found) {
     ++figures_.implausible;
     std::ostringstream text;
@@ -180,6 +194,15 @@ bool Health::noteSteps(const PlayedSample& played, int steps, bool finite) {
   if (!report.discarded && finite) return false;
   ++figures_.not_finite;
   return !std::exchange(figures_.broken, true);
+}
+
+/// The lock is held.
+void Health::noteCells(const CoarseCells& cells) {
+  figures_.coarse_cells = cells.factor;
+  if (cells.tissue < 0) return;
+  ++figures_.coarse;
+  figures_.coarsest_cells = std::max(figures_.coarsest_cells, cells.factor);
+  figures_.last_coarse = coarseCellsText(simulator_);
 }
 
 void Health::tellBroken(const PlayedSample& played, bool finite) {
@@ -283,6 +306,8 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
                     "wrenches late by up to %.3g s, more than %.3g s", worst_lag_s, bound_s);
   } else if (now.implausible > told_.implausible) {
     status.summary(Level::WARN, "forces that no tissue bears: " + now.last_implausible);
+  } else if (now.coarse > told_.coarse) {
+    status.summary(Level::WARN, now.last_coarse);
   } else if (is_strained) {
     status.summary(Level::WARN, "steps lengthened, since the machine does not keep up with max_step_s");
   } else if (now.troubles() > told_.troubles()) {
@@ -292,7 +317,7 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   }
   if (advised_ || (lag == LagVerdict::kWithinBound && !is_strained)) return;
   advised_ = true;
-  ROS_WARN_STREAM("does not keep up: " << keepUpAdvice(now, step.max_step_s, step.max_lag_s, nodesOf(simulator_)));
+  ROS_WARN_STREAM("does not keep up: " << keepUpAdvice(now, step.max_step_s, step.max_lag_s, nodes_));
 }
 
 }  // namespace tissue_contact

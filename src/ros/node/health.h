@@ -5,6 +5,7 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -60,8 +61,8 @@ class Health {
   // ------------------------------------------------------------------------------------ the diagnostics thread
 
   /// Summary and counts. ERROR when a step gave no finite answer since the last reset, or when since the last call
-  /// the lag was far over its bound or joint states came by two clocks; WARN when it was over it, forces were such as no tissue bears, steps were lengthened to
-  /// hold the lag, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their
+  /// the lag was far over its bound or joint states came by two clocks; WARN when it was over it, forces were such as no tissue bears, refined cells
+  /// were longer than asked for, steps were lengthened to hold the lag, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their
   /// iterations are counted but are no alarm: a fixed budget per step is how the solver keeps real time. The log says
   /// once what to change when the machine does not keep up.
   /// @param missing see Receiver::missing().
@@ -82,8 +83,10 @@ class Health {
   };
 
   void warn(const PlayedSample& played, int steps);
+  void warnOfResult(const PlayedSample& played);
   std::string notConvergedText(const PlayedSample& played);
   bool noteSteps(const PlayedSample& played, int steps, bool finite);
+  void noteCells(const CoarseCells& cells);
   static void tellBroken(const PlayedSample& played, bool finite);
   double worstLag(const LiveFigures& figures);
   void summarize(const LiveFigures& now, double worst_lag_s, diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -102,6 +105,9 @@ class Health {
   Throttle implausible_loads_;
   Throttle not_converged_{5};
   LawAlarm law_alarm_;
+  bool told_of_cells_ = false;
+
+  std::atomic<int> nodes_;  ///< of all tissues now
 
   mutable std::mutex mutex_;  ///< guards the six below
   LiveFigures figures_;

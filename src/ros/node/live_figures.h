@@ -33,11 +33,15 @@ struct LiveFigures {
   std::string last_not_converged = "never";
   std::int64_t implausible = 0;  ///< intervals that ended with loads that no tissue bears
   std::string last_implausible = "never";
-  double law_error = 0.0;           ///< of the last interval, likely and relative
-  double largest_law_error = 0.0;   ///< by size
-  double largest_law_strain = 0.0;  ///< that goes with it
-  std::int64_t pinched = 0;         ///< intervals whose last step left out contacts without room
-  bool broken = false;              ///< not finite since the last reset
+  double law_error = 0.0;             ///< of the last interval, likely and relative
+  double largest_law_error = 0.0;     ///< by size
+  double largest_law_strain = 0.0;    ///< that goes with it
+  double coarse_cells = 1.0;          ///< factor by which refined cells are longer than asked for, now
+  double coarsest_cells = 1.0;        ///< the largest of it
+  std::int64_t coarse = 0;            ///< intervals that ended with such cells
+  std::string last_coarse = "never";  ///< what is to be done about them
+  std::int64_t pinched = 0;           ///< intervals whose last step left out contacts without room
+  bool broken = false;                ///< not finite since the last reset
 
   bool newest_state = false;   ///< policy: else every state
   double lag_s = 0.0;          ///< of the last wrench behind the receipt of its state; of a step that runs, so far

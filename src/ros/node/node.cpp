@@ -36,6 +36,8 @@ private parameters
   ~robot_description   text of a URDF, for scenes that take it from this parameter (or from another that they name);
                        looked for here, then in every namespace up to /
   ~tf_timeout_s        how long to wait for tf frames that the scene names, s; default 10
+  ~publish_mesh        refined (default) or unrefined: the mesh of a tissue that is refined while it is touched, as it is
+                       or as it was at the start
   ~markers/...         force_arrow_m_per_n, displacement_full_scale_m: sizes in RViz
   any other argument, also _parameter:=value, is refused; of what is set on the parameter server, misspelt names only
 
@@ -44,7 +46,7 @@ subscribed topics
 
 published topics
   ~INSTRUMENT/wrench   geometry_msgs/WrenchStamped of the tissue on the instrument, one per state of the arm stepped to
-  ~TISSUE/topology     tissue_contact/TissueTopology, latched
+  ~TISSUE/topology     tissue_contact/TissueTopology, latched; again when the mesh has changed
   ~TISSUE/mesh         tissue_contact/TissueMesh
   ~contacts            tissue_contact/ContactArray
   ~status              tissue_contact/Status

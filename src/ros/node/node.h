@@ -26,9 +26,9 @@
 
 namespace tissue_contact {
 
-/// Private parameters: ~scene (path of the scene file, required), ~tf_timeout_s (see environment.h),
-/// ~markers/displacement_full_scale_m and ~markers/force_arrow_m_per_n (see scene_markers.h), and the URDF parameters
-/// that the scene names. Topics: see outputs.h; diagnostics on /diagnostics once per second of wall time.
+/// Private parameters: ~scene (path of the scene file, required), ~tf_timeout_s (see environment.h), ~publish_mesh (see
+/// publish_options.h), ~markers/displacement_full_scale_m and ~markers/force_arrow_m_per_n (see scene_markers.h), and the
+/// URDF parameters that the scene names. Topics: see outputs.h; diagnostics on /diagnostics once per second of wall time.
 ///
 /// Threads, and what is between them:
 ///   receiving    Receiver: joint states into inbox_, which is locked for a move at a time

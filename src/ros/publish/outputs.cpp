@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "ros/number_parameter.h"
+#include "ros/parameter.h"
 
 namespace tissue_contact {
 namespace {
@@ -26,6 +26,11 @@ MarkerStyle markerStyle(const ros::NodeHandle& node) {
   style.force_arrow_m_per_n =
       numberParameter(node, "markers/force_arrow_m_per_n", style.force_arrow_m_per_n, kForceArrowRange);
   return style;
+}
+
+PublishedMesh publishedMesh(const ros::NodeHandle& node) {
+  const std::string name = "publish_mesh";
+  return toPublishedMesh("parameter '" + node.resolveName(name) + "'", textParameter(node, name, "refined"));
 }
 
 void checkTopicName(const std::string& kind, const std::string& name) {
@@ -69,6 +74,8 @@ Outputs::Outputs(const ros::NodeHandle& private_node, const Simulator& simulator
       options_(options),
       complete_(std::move(complete)),
       bulky_(simulator, options, markerStyle(node_)),
+      meshes_(shownMeshes(simulator, publishedMesh(node_))),
+      told_revisions_(meshes_.size(), -1),
       mesh_rate_(options.mesh_rate_hz),
       contacts_rate_(options.contacts_rate_hz),
       status_rate_(options.status_rate_hz),
@@ -84,9 +91,6 @@ void Outputs::start(std::function<void()> on_newcomer) {
   for (const Instrument& instrument : simulator_.instruments()) {
     wrench_publishers_.push_back(
         node_.advertise<geometry_msgs::WrenchStamped>(instrument.name() + "/wrench", kWrenchQueue));
-  }
-  for (const Tissue& tissue : simulator_.tissues()) {
-    topology_publishers_.push_back(node_.advertise<TissueTopology>(tissue.name() + "/topology", 1, true));
   }
   if (options_.tf) broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
   bulky_.start(node_, std::move(on_newcomer));
@@ -106,23 +110,26 @@ void Outputs::publishState(const PlayedSample& played, int substeps, double step
   }
   const bool is_new_stamp = played.stamp_ns != last_stamp_ns_;
   last_stamp_ns_ = played.stamp_ns;
-  if (!topologies_published_) publishTopologies(played.stamp_ns);
   publishSnapshot(played.stamp_ns, substeps, step_time_s);
   if (broadcaster_ && is_new_stamp) publishTransforms(played.stamp_ns);  // tf2 warns about repeated stamps
 }
 
 void Outputs::publishSnapshot(std::int64_t stamp_ns, int substeps, double step_time_s) {
-  const bool mesh = mesh_rate_.due(stamp_ns) && bulky_.meshIsWanted();
+  const bool mesh_is_due = mesh_rate_.due(stamp_ns);
+  // Of meshes that nobody is shown none needs a topology; where none is shown at all, the newest is told as soon as it is there.
+  const bool topologies = (mesh_is_due || !(options_.mesh_rate_hz > 0.0)) && topologiesChange();
+  const bool mesh = mesh_is_due && bulky_.meshIsWanted();
   const bool contacts = contacts_rate_.due(stamp_ns) && bulky_.contactsAreWanted();
   const bool status = status_rate_.due(stamp_ns) && bulky_.statusIsWanted() && isFinite(simulator_.residuals());
   const bool markers = markers_rate_.due(stamp_ns) && bulky_.markersAreWanted();
-  if (!mesh && !contacts && !status && !markers) return;
+  if (!topologies && !mesh && !contacts && !status && !markers) return;
   std::unique_ptr<SceneSnapshot> snapshot = bulky_.queue().buffer();
+  snapshot->topologies = topologies;
   snapshot->mesh = mesh;
   snapshot->contact_array = contacts;
   snapshot->with_status = status;
   snapshot->markers = markers;
-  takeSnapshot(simulator_, stamp_ns, *snapshot);
+  takeSnapshot(simulator_, meshes_, stamp_ns, *snapshot);
   if (status) {
     snapshot->status.header.frame_id = simulator_.scene().world_frame;
     fillStatus(simulator_, player_, stamp_ns, snapshot->status);
@@ -139,19 +146,19 @@ void Outputs::showToNewcomer() {
   if (!bulky_.takeNewcomer() || !isFinite(simulator_)) return;
   std::unique_ptr<SceneSnapshot> snapshot = bulky_.queue().buffer();
   snapshot->markers = true;
-  takeSnapshot(simulator_, last_stamp_ns_, *snapshot);
+  takeSnapshot(simulator_, meshes_, last_stamp_ns_, *snapshot);
   bulky_.queue().put(std::move(snapshot));
 }
 
-void Outputs::publishTopologies(std::int64_t stamp_ns) {
-  TissueTopology message;
-  message.header.stamp = toTime(stamp_ns);
-  message.header.frame_id = simulator_.scene().world_frame;
-  for (std::size_t t = 0; t < topology_publishers_.size(); ++t) {
-    fillTopology(simulator_.tissues()[t], message);
-    topology_publishers_[t].publish(message);
+/// Whether the mesh of a tissue is another than when last asked.
+bool Outputs::topologiesChange() {
+  bool change = false;
+  for (std::size_t t = 0; t < meshes_.size(); ++t) {
+    const int revision =
+        meshes_[t].follow(simulator_.tissues()[t], simulator_.meshRevision(static_cast<int>(t)))->revision;
+    change |= std::exchange(told_revisions_[t], revision) != revision;
   }
-  topologies_published_ = true;
+  return change;
 }
 
 void Outputs::publishTransforms(std::int64_t stamp_ns) {

@@ -23,17 +23,17 @@ namespace tissue_contact {
 
 /// Topics, all below the node's private namespace:
 ///   <instrument>/wrench  one for every arm state the simulator was stepped to; at and in the tip link
-///   <tissue>/topology    once, latched, with the first joint state
+///   <tissue>/topology    latched, with the first joint state and after changes of the mesh, no more often than meshes
 ///   <tissue>/mesh, contacts, status, markers   at the scene's rates of message time (0: not advertised)
 ///   /tf                  on request, every moment stepped to: world -> root link -> every link
-/// What nobody subscribes to is not even filled in. The stepping thread calls all but start(); wrenches, topologies and
-/// /tf leave from it, the others from the thread of SnapshotPublisher.
+/// What nobody subscribes to is not even filled in. The stepping thread calls all but start(); wrenches and /tf
+/// leave from it, the others from the thread of SnapshotPublisher.
 class Outputs {
  public:
   /// Refuses the scene before anything is advertised. Simulator and player must outlive this.
   /// @param complete fills in what only its caller knows of a Status.
   /// @throws std::invalid_argument: a name that cannot be part of a topic, tf of two links with one name, a bad private
-  ///   parameter ~markers/displacement_full_scale_m or ~markers/force_arrow_m_per_n.
+  ///   parameter ~publish_mesh, ~markers/displacement_full_scale_m or ~markers/force_arrow_m_per_n.
   Outputs(const ros::NodeHandle& private_node, const Simulator& simulator, const JointStatePlayer& player,
           const PublishOptions& options, std::function<void(Status&)> complete);
 
@@ -56,7 +56,7 @@ class Outputs {
 
  private:
   void publishSnapshot(std::int64_t stamp_ns, int substeps, double step_time_s);
-  void publishTopologies(std::int64_t stamp_ns);
+  bool topologiesChange();
   void publishTransforms(std::int64_t stamp_ns);
 
   ros::NodeHandle node_;
@@ -65,13 +65,13 @@ class Outputs {
   const PublishOptions options_;
   const std::function<void(Status&)> complete_;
   SnapshotPublisher bulky_;
+  std::vector<ShownMesh> meshes_;    ///< one per tissue
+  std::vector<int> told_revisions_;  ///< of the last topology of each tissue put into a snapshot; -1: none
   std::int64_t last_stamp_ns_ = 0;
 
   std::vector<ros::Publisher> wrench_publishers_;               ///< one per instrument
-  std::vector<ros::Publisher> topology_publishers_;             ///< one per tissue
   std::unique_ptr<tf2_ros::TransformBroadcaster> broadcaster_;  ///< null: not asked for
 
-  bool topologies_published_ = false;
   MessageTimeRate mesh_rate_;
   MessageTimeRate contacts_rate_;
   MessageTimeRate status_rate_;

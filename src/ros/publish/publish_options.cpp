@@ -1,9 +1,11 @@
 #include "ros/publish/publish_options.h"
 
+#include <stdexcept>
 #include <utility>
 
 #include "scene/yaml_reader.h"
 #include "tissue_contact/core/range.h"
+#include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 
@@ -20,6 +22,12 @@ PublishOptions parsePublish(const YamlMap& file) {
   }
   if (const YamlCursor* value = map.find("tf")) publish.tf = value->boolean();
   return publish;
+}
+
+PublishedMesh toPublishedMesh(const std::string& what, const std::string& name) {
+  if (name == "refined") return PublishedMesh::kRefined;
+  if (name == "unrefined") return PublishedMesh::kUnrefined;
+  throw std::invalid_argument(what + " is " + inQuotes(name) + "; it must be refined or unrefined");
 }
 
 }  // namespace tissue_contact

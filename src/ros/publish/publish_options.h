@@ -1,6 +1,8 @@
 /// @file
-/// Room `ros`, private: what a scene file says of publishing.
+/// Room `ros`, private: what a scene file says of publishing, and which mesh is published.
 #pragma once
+
+#include <string>
 
 namespace tissue_contact {
 
@@ -14,6 +16,16 @@ struct PublishOptions {
   double markers_rate_hz = 30.0;
   bool tf = false;  ///< publish the instrument links' transforms
 };
+
+/// Which mesh of tissues that are refined while the simulator runs. A parameter of the node and not of the scene: who looks on, and how
+/// well connected, is no matter of what is simulated.
+enum class PublishedMesh {
+  kRefined,    ///< the one computed with; nodes and surface change
+  kUnrefined,  ///< for ever the one at the start, its nodes where those of the refined mesh are
+};
+
+/// @return the mesh of that name; @throws std::invalid_argument beginning with `what`.
+PublishedMesh toPublishedMesh(const std::string& what, const std::string& name);
 
 /// The section `publish`, defaults for what it does not name.
 /// @throws as loadScene(), which may call it (scene/read_more.h).

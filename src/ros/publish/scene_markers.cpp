@@ -98,39 +98,36 @@ std_msgs::ColorRGBA displacementColor(double fraction) {
 }
 
 SceneMarkers::SceneMarkers(const Simulator& simulator, const MarkerStyle& style, bool is_shown)
-    : simulator_(simulator), style_(style) {
+    : simulator_(simulator),
+      style_(style),
+      laid_out_(simulator.scene().tissues.size(), -1),
+      edges_(laid_out_.size()),
+      normals_(laid_out_.size()) {
   addTissues();
   for (std::size_t i = 0; i < simulator.instruments().size(); ++i) addInstrument(static_cast<int>(i), is_shown);
   first_arrow_ = message_.markers.size();
 }
 
 void SceneMarkers::addTissues() {
-  for (std::size_t t = 0; t < simulator_.tissues().size(); ++t) {
-    const Tissue& tissue = simulator_.tissues()[t];
+  for (const TissueDescription& tissue : simulator_.scene().tissues) {
     Marker marker;
     marker.header.frame_id = simulator_.scene().world_frame;
-    marker.ns = tissue.name();
+    marker.ns = tissue.name;
     marker.type = Marker::TRIANGLE_LIST;
     marker.pose.orientation.w = 1.0;
     marker.scale = scale(1.0, 1.0, 1.0);
     marker.color = color(1.0F, 1.0F, 1.0F);
-    marker.points.resize(3 * tissue.surface().size());
-    marker.colors.resize(marker.points.size());
     message_.markers.push_back(marker);
-    std::vector<std::array<int, 2>>& edges = edges_.emplace_back();
-    for (const EdgeTable::Edge& edge : EdgeTable(tissue.surface())) edges.push_back(edge.nodes);
-    normals_.emplace_back(3, tissue.nodeCount());
   }
-  for (std::size_t t = 0; t < simulator_.tissues().size(); ++t) {
+  for (const TissueDescription& tissue : simulator_.scene().tissues) {
     Marker marker;
     marker.header.frame_id = simulator_.scene().world_frame;
-    marker.ns = simulator_.tissues()[t].name();
+    marker.ns = tissue.name;
     marker.id = 1;
     marker.type = Marker::LINE_LIST;
     marker.pose.orientation.w = 1.0;
     marker.scale.x = 0.00015;  // m: thin beside elements of some millimetres
     marker.color = color(0.25F, 0.1F, 0.1F, 0.5F);
-    marker.points.resize(2 * edges_[t].size());
     message_.markers.push_back(marker);
   }
 }
@@ -170,7 +167,11 @@ void SceneMarkers::addShape(int instrument, int link, const ShapeDescription& sh
 }
 
 const visualization_msgs::MarkerArray& SceneMarkers::update(const SceneSnapshot& snapshot) {
-  for (std::size_t t = 0; t < snapshot.positions.size(); ++t) updateTissue(static_cast<int>(t), snapshot.positions[t]);
+  for (std::size_t t = 0; t < laid_out_.size(); ++t) {
+    const MeshRevision& mesh = *snapshot.revisions[t];
+    if (mesh.revision != laid_out_[t]) layOut(t, mesh);
+    updateTissue(t, mesh, snapshot.positions[t]);
+  }
   for (const ShapeMarker& shape : shapes_) {
     const Pose& X_WL =
         snapshot.link_poses[static_cast<std::size_t>(shape.instrument)][static_cast<std::size_t>(shape.link)];
@@ -181,23 +182,34 @@ const visualization_msgs::MarkerArray& SceneMarkers::update(const SceneSnapshot&
   return message_;
 }
 
-void SceneMarkers::updateTissue(int tissue, const NodalVectors& x) {
-  const auto t = static_cast<std::size_t>(tissue);
-  const Tissue& model = simulator_.tissues()[t];
-  sumNormals(model.surface(), x, normals_[t]);
-  Marker& marker = message_.markers[t];
+void SceneMarkers::layOut(std::size_t tissue, const MeshRevision& mesh) {
+  std::vector<std::array<int, 2>>& edges = edges_[tissue];
+  edges.clear();
+  for (const EdgeTable::Edge& edge : EdgeTable(mesh.surface)) edges.push_back(edge.nodes);
+  normals_[tissue].resize(3, mesh.nodeCount());
+  Marker& triangles = message_.markers[tissue];
+  triangles.points.resize(3 * mesh.surface.size());
+  triangles.colors.resize(triangles.points.size());
+  message_.markers[laid_out_.size() + tissue].points.resize(2 * edges.size());
+  laid_out_[tissue] = mesh.revision;
+}
+
+void SceneMarkers::updateTissue(std::size_t tissue, const MeshRevision& mesh, const NodalVectors& x) {
+  NodalVectors& normals = normals_[tissue];
+  sumNormals(mesh.surface, x, normals);
+  Marker& marker = message_.markers[tissue];
   std::size_t corner = 0;
-  for (const Triangle& triangle : model.surface()) {
+  for (const Triangle& triangle : mesh.surface) {
     for (const int node : triangle) {
-      const double displacement = (x.col(node) - model.restPositions().col(node)).norm();
+      const double displacement = (x.col(node) - mesh.rest_positions.col(node)).norm();
       marker.points[corner] = toPoint(x.col(node));
       marker.colors[corner] = displacementColor(displacement / style_.displacement_full_scale_m);
-      shade(normals_[t].col(node), marker.colors[corner++]);
+      shade(normals.col(node), marker.colors[corner++]);
     }
   }
-  Marker& lines = message_.markers[simulator_.tissues().size() + t];
+  Marker& lines = message_.markers[laid_out_.size() + tissue];
   std::size_t end = 0;
-  for (const std::array<int, 2>& edge : edges_[t]) {
+  for (const std::array<int, 2>& edge : edges_[tissue]) {
     for (const int node : edge) lines.points[end++] = toPoint(x.col(node));
   }
 }

@@ -52,13 +52,15 @@ class SceneMarkers {
   void addTissues();
   void addInstrument(int instrument, bool is_shown);
   void addShape(int instrument, int link, const ShapeDescription& shape, const TriangleMesh* mesh, bool touches);
-  void updateTissue(int tissue, const NodalVectors& x);
+  void layOut(std::size_t tissue, const MeshRevision& mesh);
+  void updateTissue(std::size_t tissue, const MeshRevision& mesh, const NodalVectors& x);
   void updateForces(const std::vector<SolvedContact>& contacts);
   void setArrow(std::size_t index, const SolvedContact& contact);
 
   const Simulator& simulator_;
   MarkerStyle style_;
-  visualization_msgs::MarkerArray message_;             ///< tissue surfaces, tissue edges, instrument shapes, arrows
+  visualization_msgs::MarkerArray message_;  ///< tissue surfaces, tissue edges, instrument shapes, arrows
+  std::vector<int> laid_out_;  ///< per tissue: revision of the mesh that its markers have room for; -1: none
   std::vector<std::vector<std::array<int, 2>>> edges_;  ///< per tissue: nodes of each surface edge
   std::vector<NodalVectors> normals_;                   ///< per tissue: scratch for shading
   std::vector<ShapeMarker> shapes_;

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <vector>
 
+#include "ros/publish/mesh_revision.h"
 #include "tissue_contact/Status.h"
 #include "tissue_contact/simulation/simulator.h"
 
@@ -19,12 +20,15 @@ namespace tissue_contact {
 struct SceneSnapshot {
   std::int64_t stamp_ns = 0;
   long step = 0;
+  /// Per tissue: the mesh whose nodes the positions are. Only with `topologies`, `mesh` or `markers`.
+  std::vector<std::shared_ptr<const MeshRevision>> revisions;
   std::vector<NodalVectors> positions;        ///< per tissue, m, world frame
   std::vector<std::vector<Pose>> link_poses;  ///< per instrument: X_WL of every link
   std::vector<SolvedContact> contacts;
   Status status;
 
   /// What is to be published of it; the rest need not be filled in.
+  bool topologies = false;  ///< where they have changed
   bool mesh = false;
   bool contact_array = false;
   bool markers = false;
@@ -32,10 +36,16 @@ struct SceneSnapshot {
 };
 
 /// Copies what the snapshot wants, all but the status.
-void takeSnapshot(const Simulator& simulator, std::int64_t stamp_ns, SceneSnapshot& snapshot);
+/// @param meshes one for each tissue.
+void takeSnapshot(const Simulator& simulator, std::vector<ShownMesh>& meshes, std::int64_t stamp_ns,
+                  SceneSnapshot& snapshot);
+
+/// What to take snapshots with of a simulator that has not been advanced.
+std::vector<ShownMesh> shownMeshes(const Simulator& simulator, PublishedMesh which);
 
 /// Snapshots between the stepping thread and the publishing one: bounded, buffers reused; the stepping thread never
-/// waits. When the publishing thread does not keep up the oldest is dropped and counted. Thread-safe.
+/// waits. When the publishing thread does not keep up the oldest is dropped and counted; topologies it was to show, the next one shows.
+/// Thread-safe.
 class SnapshotQueue {
  public:
   /// @param most snapshots that wait at most, > 0.
@@ -55,6 +65,9 @@ class SnapshotQueue {
   std::int64_t dropped() const;
 
  private:
+  void drop();
+  void putAside(std::unique_ptr<SceneSnapshot> snapshot);
+
   const std::size_t most_;
   mutable std::mutex mutex_;  ///< guards all below
   std::condition_variable changed_;

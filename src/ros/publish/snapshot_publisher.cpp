@@ -23,12 +23,8 @@ SnapshotPublisher::SnapshotPublisher(const Simulator& simulator, const PublishOp
     : simulator_(simulator),
       options_(options),
       queue_(kMostSnapshots),
-      scene_markers_(simulator, style, options.markers_rate_hz > 0.0) {
-  for (const Tissue& tissue : simulator.tissues()) {
-    meshes_.emplace_back();
-    meshes_.back().header.frame_id = simulator.scene().world_frame;
-    meshes_.back().tissue = tissue.name();
-  }
+      scene_markers_(simulator, style, options.markers_rate_hz > 0.0),
+      mesh_messages_(simulator.scene(), meshSink()) {
   contacts_.header.frame_id = simulator.scene().world_frame;
 }
 
@@ -37,11 +33,22 @@ SnapshotPublisher::~SnapshotPublisher() {
   if (thread_.joinable()) thread_.join();
 }
 
+MeshSink SnapshotPublisher::meshSink() {
+  MeshSink sink;
+  sink.topology = [this](std::size_t t, const TissueTopology& message) { topology_publishers_[t].publish(message); };
+  sink.wants_mesh = [this](std::size_t t) {
+    return t < mesh_publishers_.size() && mesh_publishers_[t].getNumSubscribers() > 0;
+  };
+  sink.mesh = [this](std::size_t t, const TissueMesh& message) { mesh_publishers_[t].publish(message); };
+  return sink;
+}
+
 void SnapshotPublisher::start(ros::NodeHandle private_node, std::function<void()> on_newcomer) {
-  if (options_.mesh_rate_hz > 0.0) {
-    for (const Tissue& tissue : simulator_.tissues()) {
-      mesh_publishers_.push_back(private_node.advertise<TissueMesh>(tissue.name() + "/mesh", kStateQueue));
-    }
+  for (const TissueDescription& tissue : simulator_.scene().tissues) {
+    topology_publishers_.push_back(
+        private_node.advertise<TissueTopology>(tissue.name + "/topology", kStateQueue, true));
+    if (!(options_.mesh_rate_hz > 0.0)) continue;
+    mesh_publishers_.push_back(private_node.advertise<TissueMesh>(tissue.name + "/mesh", kStateQueue));
   }
   if (options_.contacts_rate_hz > 0.0) {
     contacts_publisher_ = private_node.advertise<ContactArray>("contacts", kStateQueue);
@@ -75,11 +82,7 @@ void SnapshotPublisher::publish(const SceneSnapshot& snapshot) {
     fillContacts(simulator_, snapshot, contacts_);
     contacts_publisher_.publish(contacts_);
   }
-  for (std::size_t t = 0; snapshot.mesh && t < mesh_publishers_.size(); ++t) {
-    if (mesh_publishers_[t].getNumSubscribers() == 0) continue;
-    fillMesh(snapshot, static_cast<int>(t), meshes_[t]);
-    mesh_publishers_[t].publish(meshes_[t]);
-  }
+  mesh_messages_.tell(snapshot);
   if (snapshot.markers) markers_publisher_.publish(scene_markers_.update(snapshot));
 }
 

@@ -12,16 +12,16 @@
 #include <thread>
 #include <vector>
 
+#include "ros/publish/mesh_messages.h"
 #include "ros/publish/publish_options.h"
 #include "ros/publish/scene_markers.h"
 #include "ros/publish/scene_snapshot.h"
 #include "tissue_contact/ContactArray.h"
-#include "tissue_contact/TissueMesh.h"
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
 
-/// Topics <tissue>/mesh, contacts, status and markers, each where its rate is not 0.
+/// Topics <tissue>/topology (latched), and <tissue>/mesh, contacts, status and markers, each where its rate is not 0.
 class SnapshotPublisher {
  public:
   /// Advertises nothing yet.
@@ -47,6 +47,7 @@ class SnapshotPublisher {
   SnapshotQueue& queue() { return queue_; }
 
  private:
+  MeshSink meshSink();
   void run();
   void publish(const SceneSnapshot& snapshot);
 
@@ -54,14 +55,15 @@ class SnapshotPublisher {
   const PublishOptions options_;
   SnapshotQueue queue_;
   std::atomic<bool> newcomer_{false};
-  std::vector<ros::Publisher> mesh_publishers_;  ///< one per tissue; empty: not advertised
+  std::vector<ros::Publisher> topology_publishers_;  ///< one per tissue
+  std::vector<ros::Publisher> mesh_publishers_;      ///< one per tissue; empty: not advertised
   ros::Publisher contacts_publisher_;
   ros::Publisher status_publisher_;
   ros::Publisher markers_publisher_;
 
   // The publishing thread's alone.
   SceneMarkers scene_markers_;
-  std::vector<TissueMesh> meshes_;
+  MeshMessages mesh_messages_;
   ContactArray contacts_;
 
   std::thread thread_;

@@ -196,6 +196,7 @@ class Replay {
     not_converged_ += static_cast<long>(report.stop != StopReason::kTolerance);
     pinched_ += static_cast<long>(report.pinched_contacts > 0);
     noteLaw(played);
+    noteCells(played);
     if (!report.implausible_load.found) return;
     if (++implausible_ > 1) return;
     std::cerr << kPrefix << "warning: " << stampText(played.stamp_ns) << " s: " << implausibleLoadText(simulator_)
@@ -219,6 +220,25 @@ class Replay {
               << 100.0 * law_error_.relative << " %, at a strain of " << law_error_.strain << "\n";
   }
 
+  void noteCells(const PlayedSample& played) {
+    const CoarseCells& cells = simulator_.report().coarse_cells;
+    if (cells.tissue < 0) return;
+    if (++coarse_ == 1) {
+      std::cerr << kPrefix << "warning: " << stampText(played.stamp_ns) << " s: " << coarseCellsText(simulator_)
+                << "\n";
+    }
+    if (cells.factor > coarsest_cells_.factor) coarsest_cells_ = cells;
+  }
+
+  /// Of cells that are not as small as the scene asks for.
+  void summarizeCells() const {
+    if (coarse_ == 0) return;
+    std::cerr << kPrefix << "cells of tissue '" << scene_.tissues[static_cast<std::size_t>(coarsest_cells_.tissue)].name
+              << "' up to " << coarsest_cells_.factor
+              << " times as long as its refinement asks for, to keep to nodes_at_most; such "
+              << "cells in " << coarse_ << " intervals\n";
+  }
+
   void summarize() const {
     std::cerr << kPrefix << player_.count(Verdict::kAccepted) << " joint states accepted";
     for (int v = 1; v < kVerdictCount; ++v) {
@@ -233,6 +253,7 @@ class Replay {
     if (!first_refusal_.empty())
       std::cerr << kPrefix << "first refusal in bag '" << options_.bag_file << "': " << first_refusal_ << "\n";
     summarizeLaw();
+    summarizeCells();
     if (!touched_) summarizeApproach();
   }
 
@@ -274,6 +295,8 @@ class Replay {
   LawAlarm law_alarm_;
   long law_alarms_ = 0;  ///< how often the law left its range
   LawError law_error_;   ///< largest
+  long coarse_ = 0;      ///< intervals with cells longer than asked for
+  CoarseCells coarsest_cells_;
 };
 
 }  // namespace

@@ -187,5 +187,16 @@ TEST(BlockMesh, RefusesGrowthThatFlattensCells) {
   EXPECT_NO_THROW(checkTetMesh(makeBlockMesh(block), "block"));
 }
 
+TEST(BlockMesh, OfSixTetrahedraPerCellFillsTheBlockAndMirrorsNeighbours) {
+  const TetMesh mesh = makeBlockMesh(makeBlock({0.3, 0.2, 0.1}, {3, 2, 2}), BlockSplit::kSix);
+  ASSERT_EQ(mesh.tetrahedra.size(), 72U);
+  for (const Tetrahedron& tet : mesh.tetrahedra) EXPECT_NEAR(signedVolume(mesh.positions, tet), 0.006 / 72.0, 1e-15);
+  EXPECT_NO_THROW(checkTetMesh(mesh, "six"));
+  const std::vector<Triangle> surface = boundaryTriangles(mesh.tetrahedra);
+  EXPECT_EQ(surface.size(), 2U * 2U * (3 * 2 + 3 * 2 + 2 * 2));  // no face within: neighbours agree on their diagonals
+  expectClosed(surface);
+  EXPECT_NEAR(volumeByDivergenceTheorem(mesh.positions, surface), 0.006, 1e-15);
+}
+
 }  // namespace
 }  // namespace tissue_contact

@@ -36,6 +36,7 @@ TEST(PrivateParameters, UnknownNamesAreThoseBelowTheNamespace) {
 
 TEST(PrivateParameters, MisspeltIsWhatCanMeanNothingElse) {
   EXPECT_EQ(misspelt("sceen"), "scene");
+  EXPECT_EQ(misspelt("publish_meshes"), "publish_mesh");
   EXPECT_EQ(misspelt("tf_timeout"), "tf_timeout_s");
   EXPECT_EQ(misspelt("tf_timout_s"), "tf_timeout_s");
   EXPECT_EQ(misspelt("marker/force_arrow_m_per_n"), "markers/force_arrow_m_per_n");

@@ -55,5 +55,14 @@ TEST_F(PublishTest, RefusesBadValuesWithTheirPlace) {
   EXPECT_EQ(refusal("30").find("scene.yaml:9: publish: is \"30\"; it must be a map"), 0U);
 }
 
+TEST(PublishedMesh, IsOneOfTwoWords) {
+  EXPECT_EQ(toPublishedMesh("p", "refined"), PublishedMesh::kRefined);
+  EXPECT_EQ(toPublishedMesh("p", "unrefined"), PublishedMesh::kUnrefined);
+  for (const char* bad : {"", "Refined", "coarse", "0", "unrefined "}) {
+    EXPECT_EQ(refusal([&] { toPublishedMesh("parameter 'p'", bad); }),
+              "parameter 'p' is \"" + std::string(bad) + "\"; it must be refined or unrefined");
+  }
+}
+
 }  // namespace
 }  // namespace tissue_contact

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -32,7 +33,8 @@ Simulator makeScene() {
 SceneSnapshot snapshotOf(const Simulator& simulator, std::int64_t stamp_ns) {
   SceneSnapshot snapshot;
   snapshot.markers = true;
-  takeSnapshot(simulator, stamp_ns, snapshot);
+  std::vector<ShownMesh> meshes = shownMeshes(simulator, PublishedMesh::kRefined);
+  takeSnapshot(simulator, meshes, stamp_ns, snapshot);
   return snapshot;
 }
 
@@ -101,6 +103,33 @@ TEST(SceneMarkers, ArrowsVanishWhenTheContactIsLost) {
             arrows);
   EXPECT_EQ(countByNamespace(markers.update(snapshotOf(simulator, kSecond)), Marker::DELETE).count("contact_forces"),
             0U);
+}
+
+/// A snapshot with another mesh of the block, at rest.
+void changeMesh(SceneSnapshot& snapshot, const std::string& cells, int revision) {
+  const Simulator other = makeSimulator(blockScene("[0.06, 0.06, 0.02]", cells));
+  snapshot.revisions = {std::make_shared<MeshRevision>(other.tissues()[0], revision)};
+  snapshot.positions = {other.tissues()[0].restPositions()};
+}
+
+TEST(SceneMarkers, FollowTheMeshOfTheSnapshot) {
+  const Simulator simulator = makeScene();
+  SceneMarkers markers(simulator, MarkerStyle());
+  SceneSnapshot snapshot = snapshotOf(simulator, kSecond);
+  int revision = 0;
+  for (const char* cells : {"[4, 4, 2]", "[7, 5, 4]", "[2, 3, 1]", "[7, 5, 4]"}) {
+    changeMesh(snapshot, cells, revision++);
+    const visualization_msgs::MarkerArray& shown = markers.update(snapshot);
+    const MeshRevision& mesh = *snapshot.revisions[0];
+    const Marker& triangles = shown.markers[0];
+    ASSERT_EQ(triangles.points.size(), 3 * mesh.surface.size());
+    ASSERT_EQ(triangles.colors.size(), triangles.points.size());
+    EXPECT_EQ(shown.markers[1].points.size(), 2 * mesh.surface.size() * 3 / 2);  // closed: two triangles share an edge
+    for (std::size_t i = 0; i < triangles.points.size(); ++i) {
+      EXPECT_EQ(triangles.points[i], toPoint(mesh.rest_positions.col(mesh.surface[i / 3][i % 3])));
+      EXPECT_GT(triangles.colors[i].r, 0.5F);  // not displaced: light, whatever the mesh before
+    }
+  }
 }
 
 TEST(DisplacementColor, FallsInLightnessAndStaysInRange) {

@@ -37,13 +37,34 @@ TEST(SnapshotQueue, ReusesItsBuffersAndTheirMemory) {
   for (int i = 0; i < 100; ++i) {
     std::unique_ptr<SceneSnapshot> snapshot = queue.buffer();
     buffers.insert(snapshot.get());
-    EXPECT_FALSE(snapshot->mesh || snapshot->contact_array || snapshot->markers || snapshot->with_status);
+    EXPECT_FALSE(snapshot->topologies || snapshot->mesh || snapshot->contact_array || snapshot->markers ||
+                 snapshot->with_status);
     snapshot->mesh = snapshot->with_status = true;
     snapshot->positions.resize(1);
     queue.put(std::move(snapshot));
     if (i % 3 == 0) queue.recycle(queue.take());
   }
   EXPECT_LE(buffers.size(), 4U);  // those that wait, one that is filled in, one that is read
+}
+
+/// What a subscriber who comes late is to find must not get lost with a snapshot that nobody had time for.
+TEST(SnapshotQueue, TopologiesOfADroppedSnapshotAreShownByTheNext) {
+  SnapshotQueue queue(1);
+  std::unique_ptr<SceneSnapshot> with_mesh = queue.buffer();
+  with_mesh->topologies = true;
+  with_mesh->revisions.resize(1);
+  queue.put(std::move(with_mesh));
+  put(queue, 2);
+  put(queue, 3);
+  EXPECT_EQ(queue.dropped(), 2);
+  std::unique_ptr<SceneSnapshot> newest = queue.take();
+  EXPECT_EQ(newest->stamp_ns, 3);
+  EXPECT_TRUE(newest->topologies);
+  EXPECT_EQ(newest->revisions.size(), 1U);
+  queue.recycle(std::move(newest));
+  newest = queue.buffer();
+  EXPECT_FALSE(newest->topologies);
+  EXPECT_TRUE(newest->revisions.empty());  // a buffer that waits keeps no mesh alive
 }
 
 TEST(SnapshotQueue, CloseEndsTheWait) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 #include "simulation/build_scene.h"
@@ -29,7 +30,8 @@ instruments: []
 
 struct Pressed {
   Scene scene = parseScene(kTissues, "test scene", {});
-  std::vector<Tissue> tissues = buildTissues(scene, {});
+  std::vector<std::unique_ptr<TissueRefinement>> refinements;
+  std::vector<Tissue> tissues = buildTissues(scene, {}, refinements);
   ContactPressure pressure{tissues};
   std::vector<NodalVectors> x = {tissues[0].restPositions(), tissues[1].restPositions()};
 

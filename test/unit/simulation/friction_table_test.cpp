@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -48,6 +49,7 @@ struct Table {
   SceneEnvironment environment;
   Scene scene;
   std::vector<Instrument> instruments;
+  std::vector<std::unique_ptr<TissueRefinement>> refinements;
   std::vector<Tissue> tissues;
   FrictionTable table;
   std::vector<NodalVectors> x;
@@ -57,7 +59,7 @@ struct Table {
       : environment(ownEnvironment({{"probe", twoLinkUrdf()}})),
         scene(parseScene(kTissues + friction, "test scene", environment.package_path)),
         instruments(buildInstruments(scene, environment)),
-        tissues(buildTissues(scene, environment)),
+        tissues(buildTissues(scene, environment, refinements)),
         table(scene, instruments, tissues) {
     for (const Tissue& tissue : tissues) x.push_back(tissue.restPositions());
     X_WL.emplace_back(instruments[0].model().links().size(), Pose::Identity());

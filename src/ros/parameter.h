@@ -1,5 +1,5 @@
 /// @file
-/// Room `ros`, private: numbers from the parameter server.
+/// Room `ros`, private: numbers and words from the parameter server.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -13,5 +13,8 @@ namespace tissue_contact {
 /// A parameter that is a number; `otherwise` where it is not set.
 /// @throws std::invalid_argument naming it, what was given, and the range.
 double numberParameter(const ros::NodeHandle& node, const std::string& name, double otherwise, const Range& range);
+
+/// A parameter as text, also where it is set to something else; `otherwise` where it is not set.
+std::string textParameter(const ros::NodeHandle& node, const std::string& name, const std::string& otherwise);
 
 }  // namespace tissue_contact

@@ -1,4 +1,4 @@
-#include "ros/number_parameter.h"
+#include "ros/parameter.h"
 
 #include <xmlrpcpp/XmlRpcValue.h>
 
@@ -19,6 +19,15 @@ double numberParameter(const ros::NodeHandle& node, const std::string& name, dou
     throw std::invalid_argument(what + " is " + inQuotes(text.str()) + "; it must be a number " + range.text());
   }
   return range.require(what, value);
+}
+
+std::string textParameter(const ros::NodeHandle& node, const std::string& name, const std::string& otherwise) {
+  std::string value = otherwise;
+  XmlRpc::XmlRpcValue given;
+  if (!node.getParam(name, given) || node.getParam(name, value)) return value;
+  std::ostringstream text;
+  text << given;
+  return text.str();
 }
 
 }  // namespace tissue_contact

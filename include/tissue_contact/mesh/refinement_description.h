@@ -1,0 +1,29 @@
+/// @file
+/// Room `mesh`: how fine a tissue's mesh becomes where something touches it, in SI units.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+namespace tissue_contact {
+
+/// Refinement that follows whatever touches a volume. Away from contacts the mesh is that of the scene.
+struct RefinementDescription {
+  /// Whether the mesh follows: never; with cells that the advisor chooses from the shapes that touch; with those given.
+  enum class Mode { kNever, kAuto, kGiven };
+  Mode mode = Mode::kNever;
+  double cell_m = 0.0;    ///< edge of the finest cells; 0: chosen
+  double reach_m = 0.0;   ///< how far they reach beyond what touches; 0: three times cell_m
+  int nodes_at_most = 0;  ///< of the refined mesh: cells grow until it has no more; 0: kDefaultNodes
+
+  /// Or one and a half times those of the unrefined mesh if that is more. One ball on a block of 605 takes 1500.
+  static constexpr int kDefaultNodes = 3000;
+};
+
+/// How many nodes the refined mesh may have. @param unrefined nodes of the mesh before.
+inline std::size_t mostNodes(const RefinementDescription& refinement, std::size_t unrefined) {
+  if (refinement.nodes_at_most > 0) return static_cast<std::size_t>(refinement.nodes_at_most);
+  return std::max(static_cast<std::size_t>(RefinementDescription::kDefaultNodes), unrefined * 3 / 2);
+}
+
+}  // namespace tissue_contact

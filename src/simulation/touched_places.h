@@ -1,0 +1,47 @@
+/// @file
+/// Room `simulation`, private: where instruments and tissues touch refined tissues or are about to, and how fine cells are to be
+/// there. Contacts of the last step and near surfaces in; places at rest out.
+#pragma once
+
+#include <vector>
+
+#include "simulation/tissue_refinement.h"
+#include "tissue_contact/contact/contact_detector.h"
+#include "tissue_contact/instrument/instrument.h"
+#include "tissue_contact/simulation/scene.h"
+#include "tissue_contact/simulation/solved_contact.h"
+
+namespace tissue_contact {
+
+class TouchedPlaces {
+ public:
+  /// Cells along the smallest half extent of a shape, where the advisor chooses: a ball that is pressed in by most of its radius
+  /// errs by 3 to 4 % with them (doc/accuracy.md).
+  static constexpr double kCellsPerHalfExtent = 3.4;
+
+  TouchedPlaces(const Scene& scene, const std::vector<Instrument>& instruments);
+
+  /// Edge of the finest cells under a shape, m; 0: they are not refined for it.
+  double cellUnder(int tissue, int instrument, int contact_link, int shape) const;
+  /// Of all shapes on a tissue, m, ascending; none: it is refined for none.
+  std::vector<double> cellsOn(int tissue) const;
+
+  /// Begins with the places of one tissue where contacts carry force.
+  /// @param rest its nodes at rest, m.
+  void begin(int tissue, const std::vector<SolvedContact>& contacts, const NodalVectors& rest);
+  /// Adds those that shapes without such a contact are near to. @param ahead_m beyond the reach of the cells under a shape.
+  void addNear(const std::vector<NearPlace>& near, const TissueRefinement& refinement, double ahead_m,
+               const NodalVectors& rest);
+  const std::vector<TouchedPlace>& places() const { return places_; }
+
+ private:
+  void add(const std::array<int, 3>& nodes, const Vector3& weights, double cell_m, const NodalVectors& rest);
+
+  std::vector<RefinementDescription> refinements_;              ///< per tissue
+  std::vector<std::vector<std::vector<double>>> half_extents_;  ///< [instrument][contact link][shape], m
+  int tissue_ = -1;
+  std::vector<ContactKey> touching_;  ///< shapes that carry force there
+  std::vector<TouchedPlace> places_;
+};
+
+}  // namespace tissue_contact

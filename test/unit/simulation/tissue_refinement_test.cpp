@@ -1,0 +1,256 @@
+/// @file
+/// TissueRefinement: when a mesh changes, that it keeps to its nodes, and what goes over from mesh to mesh.
+#include "simulation/tissue_refinement.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "support/refusal.h"
+#include "support/temporary_directory.h"
+#include "tissue_contact/mesh/tet_mesh.h"
+
+namespace tissue_contact {
+namespace {
+
+TissueDescription block(const RefinementDescription& refinement = {RefinementDescription::Mode::kAuto, 0.0, 0.0, 0}) {
+  TissueDescription description;
+  description.name = "block";
+  description.geometry = BlockDescription{Vector3(0.1, 0.1, 0.04), {10, 10, 4}, {}};
+  description.material.youngs_modulus_pa = 5000.0;
+  description.material.poissons_ratio = 0.45;
+  description.material.density_kg_per_m3 = 1000.0;
+  description.fixed = {PlaneRegion{Vector3::Zero(), Vector3::UnitZ()}};
+  description.refinement = refinement;
+  return description;
+}
+
+Pose somewhere() {
+  Pose X_WT = Pose::Identity();
+  X_WT.translate(Vector3(0.3, -0.2, 0.1));
+  X_WT.rotate(Eigen::AngleAxisd(0.4, Vector3(1.0, 2.0, 3.0).normalized()));
+  return X_WT;
+}
+
+/// On the upper face.
+TouchedPlace at(double x, double y, double cell_m = 0.00125) { return {somewhere() * Vector3(x, y, 0.04), cell_m}; }
+
+TEST(TissueRefinement, BeginsUnrefined) {
+  const TissueDescription description = block();
+  const TissueRefinement refinement(description, somewhere(), nullptr);
+  EXPECT_EQ(refinement.tissue().nodeCount(), 605);
+  EXPECT_EQ(refinement.tissue().tetrahedra().size(), 2400U);
+  EXPECT_EQ(refinement.revision(), 0);
+}
+
+TEST(TissueRefinement, RefinesWhereTouchedAndStaysWhileThatIsWellWithin) {
+  const TissueDescription description = block();
+  TissueRefinement refinement(description, somewhere(), nullptr);
+  EXPECT_FALSE(refinement.follow({}));
+  ASSERT_TRUE(refinement.follow({at(0.0, 0.0)}));
+  EXPECT_EQ(refinement.revision(), 1);
+  const int nodes = refinement.tissue().nodeCount();
+  EXPECT_GT(nodes, 700);
+  EXPECT_LT(nodes, 1500);
+  for (const double x : {0.0, 0.0005, 0.001, -0.001}) EXPECT_FALSE(refinement.follow({at(x, 0.0)})) << x;
+  EXPECT_FALSE(refinement.follow({})) << "nothing touches: it may come back";
+  EXPECT_TRUE(refinement.follow({at(0.004, 0.0)}));
+  EXPECT_EQ(refinement.revision(), 2);
+}
+
+TEST(TissueRefinement, FindsTheSameMeshAgainOnTheWayBack) {
+  const TissueDescription description = block();
+  TissueRefinement refinement(description, somewhere(), nullptr);
+  refinement.follow({at(0.01, 0.003)});
+  const NodalVectors first = refinement.tissue().restPositions();
+  refinement.follow({at(-0.02, 0.003)});
+  EXPECT_NE(refinement.tissue().restPositions(), first);
+  refinement.follow({at(0.01, 0.003)});
+  EXPECT_EQ(refinement.tissue().restPositions(), first);
+}
+
+TEST(TissueRefinement, SeveralPlacesMergeAndPart) {
+  const TissueDescription description = block();
+  TissueRefinement refinement(description, somewhere(), nullptr);
+  refinement.follow({at(0.0, 0.0)});
+  const int one = refinement.tissue().nodeCount();
+  refinement.follow({at(-0.03, 0.0), at(0.03, 0.0)});
+  const int apart = refinement.tissue().nodeCount();
+  refinement.follow({at(-0.002, 0.02), at(0.002, 0.02)});
+  const int together = refinement.tissue().nodeCount();
+  EXPECT_GT(apart, 605 + 3 * (one - 605) / 2);
+  EXPECT_LT(together, apart);
+}
+
+TEST(TissueRefinement, CellsGrowUntilThereAreNoMoreNodesThanAllowed) {
+  const TissueDescription description = block({RefinementDescription::Mode::kGiven, 0.0002, 0.0, 900});
+  TissueRefinement refinement(description, somewhere(), nullptr);
+  ASSERT_TRUE(refinement.follow({at(0.0, 0.0, 0.0002)}));
+  EXPECT_LE(refinement.tissue().nodeCount(), 900);
+  EXPECT_GT(refinement.tissue().nodeCount(), 700);
+  EXPECT_GT(refinement.coarsening(), 2.0);
+}
+
+TEST(TissueRefinement, CellsOfAMicrometreGrowAsWell) {
+  const TissueDescription description = block({RefinementDescription::Mode::kGiven, 1e-6, 0.0, 900});
+  TissueRefinement refinement(description, somewhere(), nullptr);
+  std::vector<TouchedPlace> places;
+  for (int i = 0; i < 400; ++i) places.push_back(at(0.0002 * (i % 20), 0.0002 * (i / 20), 1e-6));
+  ASSERT_TRUE(refinement.follow(places));
+  EXPECT_LE(refinement.tissue().nodeCount(), 900);
+  EXPECT_GT(refinement.tissue().nodeCount(), 650);
+  EXPECT_FALSE(refinement.follow(places)) << "they are covered by cells as long as they had to be";
+}
+
+TEST(TissueRefinement, WithFewerNodesAllowedThanThereAreNothingIsRefined) {
+  const TissueDescription description = block({RefinementDescription::Mode::kGiven, 0.001, 0.0, 100});
+  TissueRefinement refinement(description, somewhere(), nullptr);
+  EXPECT_FALSE(refinement.follow({at(0.0, 0.0, 0.001)}));
+  EXPECT_EQ(refinement.tissue().nodeCount(), 605);
+  EXPECT_EQ(refinement.revision(), 0);
+}
+
+TEST(TissueRefinement, CarriesNodesAndLinearFieldsFromMeshToMesh) {
+  const TissueDescription description = block();
+  TissueRefinement refinement(description, somewhere(), nullptr);
+  const Matrix3 gradient = (Matrix3() << 1.1, 0.2, 0.0, 0.1, 0.9, -0.3, 0.2, 0.1, 1.2).finished();
+  NodalVectors field = gradient * refinement.tissue().restPositions();
+  for (const double x : {0.0, 0.006, 0.03, -0.04}) {
+    const NodalVectors before = field;
+    const auto transfer = refinement.follow({at(x, 0.5 * x)});
+    ASSERT_TRUE(transfer) << x;
+    field = transfer->carried(before);
+    const NodalVectors rest = refinement.tissue().restPositions();
+    ASSERT_EQ(field.cols(), rest.cols());
+    EXPECT_LT((field - gradient * rest).cwiseAbs().maxCoeff(), 1e-15);
+    for (std::size_t old = 0; old < transfer->to_new.size(); ++old) {
+      const int now = transfer->to_new[old];
+      if (now < 0) continue;
+      EXPECT_EQ(transfer->from_old[now], static_cast<int>(old));
+      EXPECT_EQ(field.col(now), before.col(static_cast<Eigen::Index>(old)));
+    }
+    EXPECT_EQ(transfer->to_new[604], 604) << "nodes of the unrefined mesh come first and stay";
+  }
+}
+
+TEST(TissueRefinement, GoesBackToTheUnrefinedMesh) {
+  const TissueDescription description = block();
+  TissueRefinement refinement(description, somewhere(), nullptr);
+  EXPECT_FALSE(refinement.reset());
+  refinement.follow({at(0.0, 0.0)});
+  EXPECT_TRUE(refinement.reset());
+  EXPECT_EQ(refinement.tissue().nodeCount(), 605);
+  EXPECT_EQ(refinement.revision(), 2) << "never less, so that nobody takes this mesh for the one before";
+  EXPECT_TRUE(refinement.follow({at(0.0, 0.0)}));
+}
+
+/// The centroid of an element, or surface triangle, near to the upper face's middle.
+template <std::size_t N>
+Vector3 centroidNear(const NodalVectors& x, const std::vector<std::array<int, N>>& elements) {
+  Vector3 nearest = Vector3::Zero();
+  for (const std::array<int, N>& element : elements) {
+    Vector3 middle = Vector3::Zero();
+    for (const int node : element) middle += x.col(node) / N;
+    if ((middle - Vector3(0, 0, 0.04)).norm() < (nearest - Vector3(0, 0, 0.04)).norm()) nearest = middle;
+  }
+  return nearest;
+}
+
+// It held a large element; of the small ones it holds none. That must not end a simulation.
+TEST(TissueRefinement, APlaceThatHoldsNothingAnyMoreIsLeftEmpty) {
+  const TetMesh mesh = makeBlockMesh({Vector3(0.1, 0.1, 0.04), {10, 10, 4}, {}}, BlockSplit::kSix);
+  const SphereRegion in_element{centroidNear(mesh.positions, mesh.tetrahedra), 0.0001};
+  const SphereRegion on_surface{centroidNear(mesh.positions, boundaryTriangles(mesh.tetrahedra)), 0.0001};
+  TissueDescription description = block();
+  description.regions.resize(1);
+  description.regions[0].name = "nodule";
+  description.regions[0].where = {in_element};
+  description.regions[0].material = description.material;
+  description.regions[0].material.youngs_modulus_pa = 20000.0;
+  description.attachments = {{{on_surface}, 1e6, 0.0}};
+  description.pressure_pa = 100.0;
+  description.pressure_where = {on_surface};
+  TissueRefinement refinement(description, Pose::Identity(), nullptr);
+  const auto held = [&] {
+    const Tissue tissue = refinement.tissue();
+    return std::count(tissue.elementRegions().begin(), tissue.elementRegions().end(), 0);
+  };
+  EXPECT_EQ(held(), 1);
+  ASSERT_TRUE(refinement.follow({{Vector3(0, 0, 0.04), 0.001}}));
+  EXPECT_NO_THROW(refinement.tissue());
+}
+
+TEST(TissueRefinement, FixesNoNodeBetweenOnesThatMove) {
+  TissueDescription description = block();
+  description.fixed = {SphereRegion{Vector3(0.0, 0.0, 0.04), 0.006}};
+  TissueRefinement refinement(description, Pose::Identity(), nullptr);
+  const auto fixed = [&] {
+    const Tissue tissue = refinement.tissue();
+    return std::count(tissue.fixed().begin(), tissue.fixed().end(), true);
+  };
+  EXPECT_EQ(fixed(), 1);
+  ASSERT_TRUE(refinement.follow({{Vector3(0.008, 0, 0.04), 0.00125}}));
+  EXPECT_EQ(fixed(), 1);
+}
+
+// Two lips of a slit have nodes at one place, which are not the same.
+TEST(TissueRefinement, KeepsNodesApartThatLieAtOnePlace) {
+  const TemporaryDirectory folder;
+  const std::string file = (folder.path() / "slit.msh").string();
+  std::ofstream(file) << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+                         "5 0 0 0\n6 1 0 0\n7 0 1 0\n8 0 0 -1\n$EndNodes\n$Elements\n2\n1 4 2 1 1 1 2 3 4\n"
+                         "2 4 2 1 1 5 7 6 8\n$EndElements\n";
+  TissueDescription description = block();
+  MeshDescription mesh;
+  mesh.file = file;
+  description.geometry = mesh;
+  description.fixed.clear();
+  TissueRefinement refinement(description, Pose::Identity(), nullptr);
+  for (const double x : {0.1, 0.6}) {
+    const auto transfer = refinement.follow({{Vector3(x, 0.1, 0.0), 0.1}});
+    ASSERT_TRUE(transfer);
+    for (int node = 0; node < 8; ++node) EXPECT_EQ(transfer->to_new[node], node);
+    for (std::size_t old = 0; old < transfer->to_new.size(); ++old) {
+      if (transfer->to_new[old] >= 0) {
+        EXPECT_EQ(transfer->from_old[transfer->to_new[old]], static_cast<int>(old));
+      }
+    }
+  }
+}
+
+TEST(TissueRefinement, WhereNodesRunOutAllCellsBecomeAlike) {
+  const TissueDescription description = block({RefinementDescription::Mode::kGiven, 0.0015, 0.0, 1100});
+  TissueRefinement refinement(description, somewhere(), nullptr);
+  ASSERT_TRUE(refinement.follow({at(0.0, 0.0, 0.0015)}));
+  std::vector<TouchedPlace> patch;
+  for (int i = 0; i < 25; ++i) patch.push_back(at(0.002 * (i % 5) - 0.004, 0.002 * (i / 5) - 0.004, 0.0015));
+  ASSERT_TRUE(refinement.follow(patch));
+  EXPECT_LT(refinement.coarsening(), 3.0) << "not the unrefined mesh beside a fine one";
+  EXPECT_LE(refinement.tissue().nodeCount(), 1100);
+  refinement.follow({});
+  EXPECT_EQ(refinement.coarsening(), 1.0) << "nothing touches";
+}
+
+TEST(TissueRefinement, IsRefusedWhereMeshesCannotChange) {
+  const auto refused = [](TissueDescription description) { return refusal([&] { checkTissue(description); }); };
+  TissueDescription sheet = block();
+  sheet.geometry = SheetDescription{Vector2(0.1, 0.1), {4, 4}, 0.001};
+  sheet.material.model = ElasticModel::kMembrane;
+  expectContains(refused(sheet), {"tissue 'block'", "refinement", "sheet or shell", "never"});
+  TissueDescription springs = block();
+  springs.material.model = ElasticModel::kMassSpring;
+  expectContains(refused(springs), {"mass-spring", "edges"});
+  TissueDescription relaxing = block();
+  relaxing.material.prony_series = {{0.5, 0.1}};
+  expectContains(refused(relaxing), {"relaxes"});
+  TissueDescription attached = block();
+  attached.attachments = {{{SphereRegion{Vector3::Zero(), 0.01}}, 0.0, 20.0}};
+  expectContains(refused(attached), {"stiffness_n_per_m", "give stiffness_pa_per_m"});
+}
+
+}  // namespace
+}  // namespace tissue_contact
