@@ -1,8 +1,11 @@
 /// One run of a scene of tissue_contact_benchmark on a mesh of one's own: forces on the last instrument over time, in tip
-/// axes, as CSV. benchmark/truth/make_truth.py makes truths of many of them.
+/// axes, as CSV. benchmark/truth/make_truth.py makes truths of many of them. To the error stream: how far the forces are from the stored
+/// truth, where there is one, and how well the simulator's own estimate (Simulator::forceErrors()) tells it.
 /// usage: truth_run SCENE MESH STEP_S TOLERANCE SECONDS [BAG]
 ///   SCENE press-drag, grasp, partial-slip or robot (with its BAG); MESH a file in the tissue's frame, - for the scene's
 ///   own, refined for that one with refinement: auto, or CELL_MM,REACH_MM,NODES for it refined so; SECONDS of the motion, 0: all
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -11,6 +14,7 @@
 #include <vector>
 
 #include "benchmark/scenes.h"
+#include "benchmark/truth_table.h"
 
 namespace {
 
@@ -51,11 +55,61 @@ void prepare(const std::vector<std::string>& words, Scene& scene) {
   scene.advisor.sleep = scene.advisor.adapt_rotations = false;
 }
 
+/// Forces found against true ones, and the errors that the simulator expects.
+class EstimateJudge {
+ public:
+  explicit EstimateJudge(const std::string& table) {
+    if (!table.empty()) truth_ = readTruthTable(table);
+  }
+
+  void add(double time_s, const Vector3& force, const ForceErrorEstimate& expected) {
+    const auto& times = truth_.run.times_s;
+    const auto same = std::find_if(times.begin(), times.end(), [&](double t) { return std::abs(t - time_s) < 1e-6; });
+    if (same == times.end()) return;
+    const Vector3 truth = truth_.run.wrenches[static_cast<std::size_t>(same - times.begin())].back().force;
+    samples_.push_back({truth.norm(), (force - truth).norm(), expected.total_n()});
+  }
+
+  /// Of samples with a tenth of the largest force at least, since the share of next to nothing says nothing.
+  void print() const {
+    double largest = 0.0;
+    for (const Sample& sample : samples_) largest = std::max(largest, sample.force_n);
+    double force = 0.0, found = 0.0, expected = 0.0;
+    std::vector<double> ratios;
+    for (const Sample& sample : samples_) {
+      if (sample.force_n < 0.1 * largest) continue;
+      force += sample.force_n * sample.force_n;
+      found += sample.found_n * sample.found_n;
+      expected += sample.expected_n * sample.expected_n;
+      ratios.push_back(sample.expected_n / sample.found_n);
+    }
+    if (ratios.empty()) return;
+    std::sort(ratios.begin(), ratios.end());
+    const auto within = std::count_if(ratios.begin(), ratios.end(), [](double r) { return r >= 0.5 && r <= 2.0; });
+    const auto at = [&](double share) {
+      return ratios[static_cast<std::size_t>(share * static_cast<double>(ratios.size() - 1))];
+    };
+    std::fprintf(stderr,
+                 "error %.3f, expected %.3f of the force, RMS; expected over found %.2f %.2f %.2f (5th, 50th, 95th of "
+                 "100), .5 to 2 in %.2f of the samples\n",
+                 std::sqrt(found / force), std::sqrt(expected / force), at(0.05), at(0.5), at(0.95),
+                 static_cast<double>(within) / static_cast<double>(ratios.size()));
+  }
+
+ private:
+  struct Sample {
+    double force_n, found_n, expected_n;
+  };
+  TruthTable truth_;
+  std::vector<Sample> samples_;
+};
+
 void run(const std::vector<std::string>& words) {
   const ScenePlan plan = planOf(words[0], words.size() > 5 ? words[5] : "");
   Scene scene = plan.scene.scene;
   prepare(words, scene);
   const double seconds = std::stod(words[4]);
+  EstimateJudge judge(plan.truth.table);
   Simulator simulator(scene, plan.scene.environment);
   const int last = static_cast<int>(simulator.instruments().size()) - 1;
   int steps = 0;
@@ -69,6 +123,7 @@ void run(const std::vector<std::string>& words) {
     plan.scene.motion(simulator, [&](double time_s) {
       const Vector3 force = simulator.wrench(last).force;
       std::printf("%.9g,%.9g,%.9g,%.9g\n", time_s, force.x(), force.y(), force.z());
+      judge.add(time_s, force, simulator.forceErrors()[static_cast<std::size_t>(last)]);
       if (seconds > 0.0 && time_s > seconds - 1e-9) throw Enough();
     });
   } catch (const Enough&) {
@@ -76,6 +131,7 @@ void run(const std::vector<std::string>& words) {
   std::fprintf(stderr, "%d meshes, ", simulator.meshRevision(0));
   std::fprintf(stderr, "%d nodes, %d steps, %d of them to the tolerance\n", simulator.tissues()[0].nodeCount(), steps,
                met);
+  judge.print();
 }
 
 }  // namespace

@@ -154,6 +154,25 @@ void fillContacts(const Simulator& simulator, const SceneSnapshot& snapshot, Con
   }
 }
 
+namespace {
+
+void fillForceErrors(const Simulator& simulator, Status& message) {
+  const std::vector<ForceErrorEstimate>& errors = simulator.forceErrors();
+  message.force_errors.resize(errors.size());
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    auto& error = message.force_errors[i];
+    error.instrument = simulator.instruments()[i].name();
+    error.force = simulator.wrench(static_cast<int>(i)).force.norm();
+    error.error = errors[i].total_n();
+    error.knows_mesh = static_cast<std::uint8_t>(errors[i].knows_mesh);
+    error.mesh = errors[i].mesh_n;
+    error.step = errors[i].step_n;
+    error.solver = errors[i].solver_n;
+  }
+}
+
+}  // namespace
+
 void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std::int64_t stamp_ns, Status& message) {
   const StepReport& report = simulator.report();
   message.header.stamp = toTime(stamp_ns);
@@ -169,6 +188,7 @@ void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std:
   message.contact_pressure = load.pressure_pa;
   message.strain = report.law_error.strain;
   message.law_error = report.law_error.relative;
+  fillForceErrors(simulator, message);
   message.pinched_contacts = static_cast<std::uint32_t>(report.pinched_contacts);
   message.open_contacts = static_cast<std::uint32_t>(report.open_contacts);
   message.static_contacts = static_cast<std::uint32_t>(report.static_contacts);

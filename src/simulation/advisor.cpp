@@ -1,7 +1,10 @@
 #include "simulation/advisor.h"
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
+#include "tissue_contact/simulation/force_error.h"
 #include "tissue_contact/simulation/simulator.h"
 #include "tissue_contact/tissue/element_materials.h"
 #include "tissue_contact/tissue/make_elasticity.h"
@@ -79,6 +82,36 @@ std::string frictionLine(const Scene& scene, const FrictionDescription& pair) {
   return line + "isotropic friction, one coefficient for all directions";
 }
 
+/// Mean edge of the triangles that a square cell is cut into.
+constexpr double kEdgePerCell = 1.138;
+
+std::string rangeText(double from, double to) {
+  std::ostringstream text;
+  text.precision(2);
+  text << from;
+  if (to > from) text << " to " << to;
+  return text.str();
+}
+
+std::string expectedErrorText(double edge_m, const HalfExtents& shapes) {
+  if (!(shapes.smallest_m > 0.0)) return {};
+  constexpr double kWorthAWord = 0.1;
+  constexpr double kCompared = 3.0;  // edges over half extents that expectedMeshError() was compared with
+  const auto percent = [&](double half_extent_m) {
+    return std::round(100.0 * expectedMeshError(std::min(edge_m, kCompared * half_extent_m), half_extent_m));
+  };
+  const double least = percent(shapes.largest_m);
+  const double most = percent(shapes.smallest_m);
+  std::ostringstream text;
+  text << "; forces on shapes of " << rangeText(1e3 * shapes.smallest_m, 1e3 * shapes.largest_m)
+       << " mm half extent, pressed in by most of that, likely off by some " << least;
+  if (most > least) text << " to " << most;
+  if (edge_m > kCompared * shapes.smallest_m) text << " (or more)";
+  text << " %";
+  if (most > 100.0 * kWorthAWord) text << ": smaller cells help (tissues[].refinement)";
+  return text.str();
+}
+
 }  // namespace
 
 bool advisedSleep(const Scene& scene) {
@@ -91,7 +124,31 @@ bool advisedSleepByParts(const Scene& scene) {
          !(scene.solver.time_budget_s > 0.0);
 }
 
-std::string refinementLine(const TissueDescription& tissue, double cell_m, double reach_m, int nodes_at_most) {
+double shortSurfaceEdge(const Tissue& tissue) {
+  std::vector<double> edges;
+  edges.reserve(tissue.surface().size());
+  for (const Triangle& triangle : tissue.surface()) {
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      sum += (tissue.restPositions().col(triangle[i]) - tissue.restPositions().col(triangle[(i + 1) % 3])).norm();
+    }
+    edges.push_back(sum / 3.0);
+  }
+  const auto tenth = edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 10);
+  std::nth_element(edges.begin(), tenth, edges.end());
+  return *tenth;
+}
+
+std::string meshLine(const Tissue& tissue, double edge_m, const HalfExtents& shapes) {
+  std::ostringstream line;
+  line.precision(2);
+  line << "mesh of tissue " << quoted(tissue.name()) << ": as it is, surface edges from " << 1e3 * edge_m << " mm";
+  line << expectedErrorText(edge_m, shapes);
+  return line.str();
+}
+
+std::string refinementLine(const TissueDescription& tissue, double cell_m, double reach_m, int nodes_at_most,
+                           const HalfExtents& shapes) {
   std::ostringstream line;
   line << "mesh of tissue " << quoted(tissue.name) << ": ";
   if (!(cell_m > 0.0)) {
@@ -101,7 +158,7 @@ std::string refinementLine(const TissueDescription& tissue, double cell_m, doubl
   line.precision(3);
   line << "refined to cells of " << 1e3 * cell_m << " mm, " << 1e3 * reach_m
        << " mm around what touches it, and moved along with that; at most " << nodes_at_most
-       << " nodes, for which cells grow";
+       << " nodes, for which cells grow" << expectedErrorText(kEdgePerCell * cell_m, shapes);
   return line.str();
 }
 

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "simulation/fold_watch.h"
+#include "simulation/touched_places.h"
 #include "tissue_contact/simulation/scene.h"
+#include "tissue_contact/tissue/tissue.h"
 
 namespace tissue_contact {
 
@@ -24,7 +26,15 @@ bool advisedSleepByParts(const Scene& scene);
 std::vector<std::string> adviceLines(const Scene& scene, const FoldWatch& folds,
                                      const std::vector<std::string>& meshes);
 
-/// What a refined mesh will be like. @param cell_m of the finest cells, 0: nothing asks for any.
-std::string refinementLine(const TissueDescription& tissue, double cell_m, double reach_m, int nodes_at_most);
+/// What the mesh of a volume is, and what it is likely to do to the forces of shapes that may touch it.
+/// @param edge_m of the shorter triangles of the surface.
+std::string meshLine(const Tissue& tissue, double edge_m, const HalfExtents& shapes);
+
+/// The same of a mesh that follows. @param cell_m of the finest cells, 0: nothing asks for any.
+std::string refinementLine(const TissueDescription& tissue, double cell_m, double reach_m, int nodes_at_most,
+                           const HalfExtents& shapes);
+
+/// Of a tenth of the surface's triangles the mean edge is shorter, m.
+double shortSurfaceEdge(const Tissue& tissue);
 
 }  // namespace tissue_contact

@@ -39,6 +39,19 @@ std::vector<double> TouchedPlaces::cellsOn(int tissue) const {
   return cells;
 }
 
+HalfExtents TouchedPlaces::halfExtents() const {
+  HalfExtents all;
+  for (const auto& links : half_extents_) {
+    for (const auto& shapes : links) {
+      for (const double half_extent : shapes) {
+        all.smallest_m = all.smallest_m > 0.0 ? std::min(all.smallest_m, half_extent) : half_extent;
+        all.largest_m = std::max(all.largest_m, half_extent);
+      }
+    }
+  }
+  return all;
+}
+
 void TouchedPlaces::add(const std::array<int, 3>& nodes, const Vector3& weights, double cell_m,
                         const NodalVectors& rest) {
   if (cell_m > 0.0) places_.push_back({pointOf(rest, nodes, weights), cell_m});

@@ -13,6 +13,12 @@
 
 namespace tissue_contact {
 
+/// Of shapes, each counted with the smallest of its three, m; zeros: there are none.
+struct HalfExtents {
+  double smallest_m = 0.0;
+  double largest_m = 0.0;
+};
+
 class TouchedPlaces {
  public:
   /// Cells along the smallest half extent of a shape, where the advisor chooses: a ball that is pressed in by most of its radius
@@ -25,6 +31,8 @@ class TouchedPlaces {
   double cellUnder(int tissue, int instrument, int contact_link, int shape) const;
   /// Of all shapes on a tissue, m, ascending; none: it is refined for none.
   std::vector<double> cellsOn(int tissue) const;
+
+  HalfExtents halfExtents() const;
 
   /// Begins with the places of one tissue where contacts carry force.
   /// @param rest its nodes at rest, m.

@@ -29,6 +29,18 @@ class ReplayOutputs(harness.TestCase):
         scene = self.changed_scene({"material: {": "material: {model: neo_hookean, dilatation: patch, "})
         self.assertNotIn("beyond the range", self.replay("neo.csv", scene=scene))
 
+    def test_likely_errors_of_the_force_are_columns_and_a_line(self):
+        errors = self.replay("out.csv")
+        rows = harness.read_table(self.path("out.csv"))
+        for row in rows:
+            parts = [float(row[name]) for name in ["mesh_error_n", "step_error_n", "solver_error_n"]]
+            self.assertAlmostEqual(float(row["force_error_n"]), sum(p ** 2 for p in parts) ** 0.5, delta=1e-5)
+        size = [sum(float(row["force_%s_n" % axis]) ** 2 for axis in "xyz") for row in rows]
+        share = (sum(float(row["force_error_n"]) ** 2 for row in rows) / sum(size)) ** 0.5
+        self.assertIn("force on 'probe' likely wrong by %.2g %% (RMS; mesh " % (100 * share), errors)
+        self.assertGreater(share, 0.1)
+        self.assertIn("tissues[].refinement: auto", errors)
+
     def test_cells_longer_than_asked_for_are_told_with_the_fix(self):
         few = "{cell_m: 0.0015, nodes_at_most: 250}"  # 147 unrefined
         harness.write_bag(self.bag, harness.press_and_drag(20))

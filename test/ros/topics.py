@@ -138,6 +138,24 @@ class Topics(unittest.TestCase):
         figures = faults.figures(self.diagnostics)
         self.assertLessEqual(float(figures["largest law error, likely"]), worst.law_error + 1e-3)
 
+    def test_status_tells_how_wrong_the_force_likely_is(self):
+        messages = self.listeners["status"].messages
+        wrench_at = {w.header.stamp: w.wrench for w in self.listeners["probe/wrench"].messages}
+        for message in messages:
+            self.assertEqual([e.instrument for e in message.force_errors], ["probe"])
+            error = message.force_errors[0]
+            force = wrench_at[message.header.stamp].force
+            self.assertAlmostEqual(error.force, (force.x ** 2 + force.y ** 2 + force.z ** 2) ** 0.5, delta=1e-12)
+            self.assertTrue(error.knows_mesh)
+            self.assertAlmostEqual(error.error, (error.mesh ** 2 + error.step ** 2 + error.solver ** 2) ** 0.5, delta=1e-12)
+        self.assertEqual(messages[0].force_errors[0].error, 0.0)  # nothing touches yet
+        pressed = max((m.force_errors[0] for m in messages), key=lambda e: e.force)
+        self.assertGreater(pressed.mesh, 0.2 * pressed.force)  # cells as wide as the ball
+        self.assertLess(pressed.error, pressed.force)
+        figures = faults.figures(self.diagnostics)
+        self.assertEqual(figures["likely force error, of"], "probe")
+        self.assertGreater(float(figures["largest likely force error_n"]), 0.0)
+
     def test_markers(self):
         for message in self.listeners["markers"].messages:
             self.assertEqual({m.header.frame_id for m in message.markers}, {"world"})

@@ -13,6 +13,7 @@
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/instrument/instrument.h"
 #include "tissue_contact/mesh/triangle_mesh.h"
+#include "tissue_contact/simulation/force_error.h"
 #include "tissue_contact/simulation/scene.h"
 #include "tissue_contact/simulation/scene_environment.h"
 #include "tissue_contact/simulation/solved_contact.h"
@@ -141,6 +142,9 @@ class Simulator {
   /// Of the last step: how far its answer is from its contact problem. Computed when first asked for, at the price of about half a
   /// sweep forth and back; zeros before the first step, and where the step had no finite answer. Two threads may not ask at once.
   const Residuals& residuals() const;
+  /// How wrong wrench() is likely to be, per instrument: an estimate for the end of the last advance, computed when first asked for, at the
+  /// price of about a tenth of a step. Of torques the same share. Two threads may not ask at once.
+  const std::vector<ForceErrorEstimate>& forceErrors() const;
   long stepCount() const;  ///< implicit steps since the last reset
 
   /// Lowers `closest` to where an instrument is nearest to a tissue's surface now, if that is nearer than what it

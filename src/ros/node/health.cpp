@@ -49,6 +49,10 @@ void addFigures(const LiveFigures& figures, double worst_lag_s, diagnostic_updat
   status.add("law error, likely", figures.law_error);
   status.add("largest law error, likely", figures.largest_law_error);
   status.add("strain under the tool at that", figures.largest_law_strain);
+  status.add("likely force error_n", figures.force_error_n);
+  status.add("likely force error, of a force_n", figures.inaccurate_force_n);
+  status.add("likely force error, of", figures.inaccurate);
+  status.add("largest likely force error_n", figures.largest_force_error_n);
   status.add("refined cells, times longer than asked for", figures.coarse_cells);
   status.add("largest of that", figures.coarsest_cells);
   status.add("intervals with such cells", figures.coarse);
@@ -203,6 +207,22 @@ void Health::noteCells(const CoarseCells& cells) {
   ++figures_.coarse;
   figures_.coarsest_cells = std::max(figures_.coarsest_cells, cells.factor);
   figures_.last_coarse = coarseCellsText(simulator_);
+}
+
+void Health::noteForceErrors() {
+  if (!force_errors_.pass() || !isFinite(simulator_.residuals())) return;
+  const std::vector<ForceErrorEstimate>& errors = simulator_.forceErrors();
+  if (errors.empty()) return;
+  const auto is_less = [](const ForceErrorEstimate& a, const ForceErrorEstimate& b) {
+    return a.total_n() < b.total_n();
+  };
+  const auto largest = std::max_element(errors.begin(), errors.end(), is_less);
+  const auto instrument = static_cast<std::size_t>(largest - errors.begin());
+  const std::lock_guard<std::mutex> lock(mutex_);
+  figures_.inaccurate = simulator_.instruments()[instrument].name();
+  figures_.force_error_n = largest->total_n();
+  figures_.inaccurate_force_n = simulator_.wrench(static_cast<int>(instrument)).force.norm();
+  figures_.largest_force_error_n = std::max(figures_.largest_force_error_n, figures_.force_error_n);
 }
 
 void Health::tellBroken(const PlayedSample& played, bool finite) {

@@ -48,6 +48,9 @@ class Health {
   /// `count` wrenches went out, `lag_s` after the receipt of the state they answer.
   void noteWrenches(std::size_t count, std::optional<double> lag_s);
 
+  /// Looks at the likely errors of the forces, which cost something, now and then: once the wrenches are out.
+  void noteForceErrors();
+
   void noteSnapshotsDropped(std::int64_t dropped);
   void notePolicy(bool newest_state);
 
@@ -104,6 +107,7 @@ class Health {
   Throttle jumps_;
   Throttle implausible_loads_;
   Throttle not_converged_{5};
+  Throttle force_errors_{5};
   LawAlarm law_alarm_;
   bool told_of_cells_ = false;
 

@@ -33,9 +33,13 @@ struct LiveFigures {
   std::string last_not_converged = "never";
   std::int64_t implausible = 0;  ///< intervals that ended with loads that no tissue bears
   std::string last_implausible = "never";
-  double law_error = 0.0;             ///< of the last interval, likely and relative
-  double largest_law_error = 0.0;     ///< by size
-  double largest_law_strain = 0.0;    ///< that goes with it
+  double law_error = 0.0;           ///< of the last interval, likely and relative
+  double largest_law_error = 0.0;   ///< by size
+  double largest_law_strain = 0.0;  ///< that goes with it
+  std::string inaccurate = "none";  ///< instrument whose force has the largest likely error, lately
+  double force_error_n = 0.0;       ///< of that force
+  double inaccurate_force_n = 0.0;  ///< its size
+  double largest_force_error_n = 0.0;
   double coarse_cells = 1.0;          ///< factor by which refined cells are longer than asked for, now
   double coarsest_cells = 1.0;        ///< the largest of it
   std::int64_t coarse = 0;            ///< intervals that ended with such cells

@@ -119,6 +119,7 @@ void Stepper::publish(const PlayedSample& played, const std::optional<Receipt>& 
                          receipt ? std::optional(steadySeconds() - receipt->received_s) : std::nullopt);
   }
   outputs_.publishState(played, steps, step_time_s);
+  health_.noteForceErrors();
   health_.noteSnapshotsDropped(outputs_.snapshotsDropped());
 }
 

@@ -17,6 +17,7 @@
 #include "ros/bag/joint_state_bag.h"
 #include "ros/conversions.h"
 #include "ros/publish/publish_options.h"
+#include "ros/replay/force_error_summary.h"
 #include "ros/replay/replay_progress.h"
 #include "ros/replay/replay_table.h"
 #include "scene/read_more.h"
@@ -93,7 +94,8 @@ class Replay {
       : options_(options),
         scene_(loadReplayedScene(options)),
         simulator_(scene_, bagEnvironment(scene_, options.bag_file, options.urdf_file)),
-        player_(simulator_) {
+        player_(simulator_),
+        force_errors_(simulator_.instruments().size()) {
     requireModelsKept(options, simulator_);
     for (const std::string& line : simulator_.advice()) std::cerr << kPrefix << "advisor: " << line << "\n";
     simulator_.setStepObserver([this] { stepTaken(); });
@@ -175,6 +177,7 @@ class Replay {
       }
       if (!touched_) noteApproach(played->stamp_ns);
       table.add(simulator_, *played, steps);
+      noteForceErrors(*played);
       if (timing_ && steps > 0) timing_->add(played->stamp_ns, elapsed.count(), steps);
     }
   }
@@ -220,6 +223,21 @@ class Replay {
               << 100.0 * law_error_.relative << " %, at a strain of " << law_error_.strain << "\n";
   }
 
+  void noteForceErrors(const PlayedSample& played) {
+    for (const int instrument : played.instruments) {
+      const auto index = static_cast<std::size_t>(instrument);
+      force_errors_[index].add(simulator_.wrench(instrument).force.norm(), simulator_.forceErrors()[index]);
+    }
+  }
+
+  void summarizeForceErrors() const {
+    for (std::size_t i = 0; i < force_errors_.size(); ++i) {
+      const std::string text = force_errors_[i].text();
+      if (!text.empty())
+        std::cerr << kPrefix << "force on '" << simulator_.instruments()[i].name() << "' " << text << "\n";
+    }
+  }
+
   void noteCells(const PlayedSample& played) {
     const CoarseCells& cells = simulator_.report().coarse_cells;
     if (cells.tissue < 0) return;
@@ -252,6 +270,7 @@ class Replay {
               << kPrefix << length_s_ << " s of recording in " << wallTime() << " s\n";
     if (!first_refusal_.empty())
       std::cerr << kPrefix << "first refusal in bag '" << options_.bag_file << "': " << first_refusal_ << "\n";
+    summarizeForceErrors();
     summarizeLaw();
     summarizeCells();
     if (!touched_) summarizeApproach();
@@ -292,6 +311,7 @@ class Replay {
   long not_converged_ = 0;
   long implausible_ = 0;
   long pinched_ = 0;
+  std::vector<ForceErrorSummary> force_errors_;  ///< per instrument
   LawAlarm law_alarm_;
   long law_alarms_ = 0;  ///< how often the law left its range
   LawError law_error_;   ///< largest

@@ -24,13 +24,21 @@ void addInstrument(const Simulator& simulator, int instrument, std::ostream& out
       << wrench.torque.x() << ',' << wrench.torque.y() << ',' << wrench.torque.z() << ',' << held << ',' << sliding;
 }
 
+void addForceError(const ForceErrorEstimate& error, std::ostream& out) {
+  out << ',' << error.total_n() << ',';
+  if (error.knows_mesh) out << error.mesh_n;
+  out << ',' << error.step_n << ',' << error.solver_n << '\n';
+}
+
 }  // namespace
 
 ReplayTable::ReplayTable(const std::string& file) : WholeFile(file) {
   stream() << "stamp_s,instrument,tip_x_m,tip_y_m,tip_z_m,tip_qx,tip_qy,tip_qz,tip_qw,force_x_n,force_y_n,force_z_n,"
               "torque_x_nm,torque_y_nm,torque_z_nm,static_contacts,kinetic_contacts,momentum_residual,penetration_m,"
               "adhesion_n,complementarity_w,cone_violation_n,static_slip_m_per_s,kinetic_angle_rad,discarded,jumped,"
-              "implausible_load,inverted_elements,contact_pressure_pa,pinched_contacts\n";
+              "implausible_load,inverted_elements,contact_pressure_pa,pinched_contacts,force_error_n,mesh_error_n,step_"
+              "error_n,"
+              "solver_error_n\n";
 }
 
 void ReplayTable::add(const Simulator& simulator, const PlayedSample& played, long steps) {
@@ -45,7 +53,8 @@ void ReplayTable::add(const Simulator& simulator, const PlayedSample& played, lo
         << ',' << residuals.kinetic_angle_rad << ',' << static_cast<int>(steps > 0 && report.discarded) << ','
         << static_cast<int>(steps > 0 && report.jumped) << ',' << static_cast<int>(report.implausible_load.found) << ','
         << report.implausible_load.inverted_elements << ',' << report.implausible_load.pressure_pa << ','
-        << report.pinched_contacts << '\n';
+        << report.pinched_contacts;
+    addForceError(simulator.forceErrors()[static_cast<std::size_t>(instrument)], out);
   }
 }
 

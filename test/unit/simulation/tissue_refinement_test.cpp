@@ -68,8 +68,11 @@ TEST(TissueRefinement, FindsTheSameMeshAgainOnTheWayBack) {
   refinement.follow({at(0.01, 0.003)});
   const NodalVectors first = refinement.tissue().restPositions();
   refinement.follow({at(-0.02, 0.003)});
-  EXPECT_NE(refinement.tissue().restPositions(), first);
+  // Eigen compares matrices of one size only.
+  const NodalVectors& other = refinement.tissue().restPositions();
+  EXPECT_TRUE(other.cols() != first.cols() || other != first);
   refinement.follow({at(0.01, 0.003)});
+  ASSERT_EQ(refinement.tissue().restPositions().cols(), first.cols());
   EXPECT_EQ(refinement.tissue().restPositions(), first);
 }
 

@@ -1,0 +1,26 @@
+/// @file
+/// Room `simulation`, private: the likely error of the force on each instrument (force_error.h). The answer of a step in;
+/// one estimate per instrument out.
+#pragma once
+
+#include <vector>
+
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/simulation/force_error.h"
+#include "tissue_contact/simulation/scene.h"
+#include "tissue_contact/simulation/solved_contact.h"
+#include "tissue_contact/tissue/tissue.h"
+
+namespace tissue_contact {
+
+/// @param x per tissue: positions, m.
+/// @param contacts of the step, sorted by key.
+/// @param changes_n per instrument: what the force on it has changed by in the step, N.
+/// @param momentum_residual of the step, see Residuals.
+/// @return as many as `changes_n`. Allocates.
+std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const std::vector<Tissue>& tissues,
+                                                    const std::vector<NodalVectors>& x,
+                                                    const std::vector<SolvedContact>& contacts,
+                                                    const std::vector<double>& changes_n, double momentum_residual);
+
+}  // namespace tissue_contact

@@ -1,0 +1,40 @@
+/// The line about likely errors at the end of a replay.
+#include "ros/replay/force_error_summary.h"
+
+#include <gtest/gtest.h>
+
+namespace tissue_contact {
+namespace {
+
+ForceErrorEstimate estimate(double mesh_n, double step_n, double solver_n, bool knows_mesh = true) {
+  return {knows_mesh, mesh_n, step_n, solver_n};
+}
+
+TEST(ForceErrorSummary, SaysNothingOfNoForce) {
+  ForceErrorSummary summary;
+  EXPECT_EQ(summary.text(), "");
+  summary.add(0.0, estimate(0.0, 0.0, 0.0));
+  EXPECT_EQ(summary.text(), "");
+}
+
+TEST(ForceErrorSummary, ComparesRootsOfSumsOfSquares) {
+  ForceErrorSummary summary;
+  summary.add(3.0, estimate(0.03, 0.04, 0.0));
+  summary.add(4.0, estimate(0.0, 0.0, 0.0));
+  EXPECT_EQ(summary.text(), "likely wrong by 1 % (RMS; mesh 0.6 %, step 0.8 %, solver 0 %)");
+}
+
+TEST(ForceErrorSummary, NamesTheKeyThatLowersTheLargestPart) {
+  const auto text = [](const ForceErrorEstimate& error) {
+    ForceErrorSummary summary;
+    summary.add(1.0, error);
+    return summary.text();
+  };
+  EXPECT_NE(text(estimate(0.5, 0.1, 0.1)).find("tissues[].refinement: auto"), std::string::npos);
+  EXPECT_NE(text(estimate(0.1, 0.5, 0.1)).find("step.max_step_s"), std::string::npos);
+  EXPECT_NE(text(estimate(0.1, 0.1, 0.5)).find("solver.tolerance"), std::string::npos);
+  EXPECT_NE(text(estimate(0.0, 0.1, 0.1, false)).find("the mesh's part is not known, step 10 %"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tissue_contact
