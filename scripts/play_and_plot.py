@@ -2,7 +2,7 @@
 """Plays a bag into tissue_contact_node and plots the force it gives: what launch/*.launch run beside the node.
 
 Waits for the node, plays those topics of the bag that the node listens to, and writes into the output folder
-  <instrument>_force.png     force on the instrument over time, in its tip frame
+  <instrument>_force.png     force on the instrument over time, in its tip frame, and how wrong it likely is
   <instrument>_friction.png  tangential over normal contact force (sums over contacts) over time
 Prints one line per second where there is no display. With `--show true` it first waits for RViz, and repeats the bag
 until RViz is closed. When the plots are written it creates the file that TISSUE_CONTACT_DONE_FILE in the environment
@@ -28,7 +28,7 @@ import yaml
 from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import JointState
 
-from tissue_contact.msg import ContactArray, ContactPoint, TissueMesh, TissueTopology
+from tissue_contact.msg import ContactArray, ContactPoint, Status, TissueMesh, TissueTopology
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
 from whole_file import whole_file
@@ -83,6 +83,7 @@ class Recorder:
     def __init__(self, node, graph, joint_topics):
         self.lock = threading.Lock()
         self.forces = {}  # instrument -> list of (time, force in the tip frame)
+        self.errors = {}  # instrument -> list of (time, size of the force, its likely error)
         self.ratios = {}  # instrument -> list of (time, sum |Ft|, sum Fn)
         self.last_joint_state = None
         self.last_wrench = None
@@ -100,6 +101,7 @@ class Recorder:
                 rospy.Subscriber(topic, TissueTopology, self._take_topology)
             elif name.endswith("/mesh"):
                 rospy.Subscriber(topic, TissueMesh, self._take_mesh)
+        rospy.Subscriber(node + "/status", Status, self._take_status)
         rospy.Subscriber(node + "/contacts", ContactArray, self._take_contacts, tcp_nodelay=True)
 
     def _take_joint_state(self, message):
@@ -112,6 +114,11 @@ class Recorder:
             if self.open:
                 self.forces.setdefault(instrument, []).append(
                     (message.header.stamp.to_sec(), vector(message.wrench.force)))
+
+    def _take_status(self, message):
+        with self.lock:
+            for error in message.force_errors if self.open else ():
+                self.errors.setdefault(error.instrument, []).append((message.header.stamp.to_sec(), error.force, error.error))
 
     def _take_contacts(self, message):
         sums = {}
@@ -171,6 +178,10 @@ def plot(recorder, friction, folder):
         times = numpy.array([t for t, _ in samples]) - begin
         force = numpy.array([f for _, f in samples])
         axes.plot(times, numpy.linalg.norm(force, axis=1), "k", linewidth=1.5, label="|F|")
+        errors = numpy.array(recorder.errors.get(instrument, []))
+        if len(errors):
+            axes.fill_between(errors[:, 0] - begin, numpy.maximum(errors[:, 1] - errors[:, 2], 0.0), errors[:, 1] + errors[:, 2],
+                              color="k", alpha=0.12, linewidth=0.0, label="|F|, its likely error")
         for axis, name in enumerate("xyz"):
             axes.plot(times, force[:, axis], linewidth=1.0, label="F%s (tip frame)" % name)
         axes.set_ylabel("force (N)")

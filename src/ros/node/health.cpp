@@ -210,7 +210,11 @@ void Health::noteCells(const CoarseCells& cells) {
 }
 
 void Health::noteForceErrors() {
-  if (!force_errors_.pass() || !isFinite(simulator_.residuals())) return;
+  constexpr std::chrono::milliseconds kPeriod(100);
+  const Clock::time_point now = Clock::now();
+  if (looked_at_force_errors_ && now - *looked_at_force_errors_ < kPeriod) return;
+  looked_at_force_errors_ = now;
+  if (!isFinite(simulator_.residuals())) return;
   const std::vector<ForceErrorEstimate>& errors = simulator_.forceErrors();
   if (errors.empty()) return;
   const auto is_less = [](const ForceErrorEstimate& a, const ForceErrorEstimate& b) {

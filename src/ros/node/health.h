@@ -48,7 +48,7 @@ class Health {
   /// `count` wrenches went out, `lag_s` after the receipt of the state they answer.
   void noteWrenches(std::size_t count, std::optional<double> lag_s);
 
-  /// Looks at the likely errors of the forces, which cost something, now and then: once the wrenches are out.
+  /// Looks at the likely errors of the forces, which cost something, ten times a second: once the wrenches are out.
   void noteForceErrors();
 
   void noteSnapshotsDropped(std::int64_t dropped);
@@ -107,7 +107,7 @@ class Health {
   Throttle jumps_;
   Throttle implausible_loads_;
   Throttle not_converged_{5};
-  Throttle force_errors_{5};
+  std::optional<Clock::time_point> looked_at_force_errors_;
   LawAlarm law_alarm_;
   bool told_of_cells_ = false;
 
