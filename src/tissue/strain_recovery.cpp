@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "tissue_contact/mesh/tet_mesh.h"
 
@@ -13,14 +14,17 @@ struct StrainedElement {
   int region;   ///< index into shear_moduli
   bool counts;  ///< else only its nodes' means need it
   double volume;
-  Matrix3 strain;
+  Vector6 strain;  ///< xx, yy, zz and sqrt(2) times yz, zx, xy: its norm is the tensor's
 };
 
-Matrix3 deviatoricGreenStrain(const NodalVectors& rest, const NodalVectors& x, const Tetrahedron& element) {
-  const Matrix3 F = edgeMatrix(x, element) * edgeMatrix(rest, element).inverse();
-  Matrix3 E = 0.5 * (F.transpose() * F - Matrix3::Identity());
-  E.diagonal().array() -= E.trace() / 3.0;
-  return E;
+/// @param D edges at rest.
+Vector6 deviatoricGreenStrain(const Matrix3& D, const NodalVectors& x, const Tetrahedron& element) {
+  const Matrix3 F = edgeMatrix(x, element) * D.inverse();
+  const Matrix3 C = F.transpose() * F;
+  const double mean = C.trace() / 3.0;
+  Vector6 twice;
+  twice << C(0, 0) - mean, C(1, 1) - mean, C(2, 2) - mean, M_SQRT2 * C(2, 1), M_SQRT2 * C(0, 2), M_SQRT2 * C(1, 0);
+  return 0.5 * twice;
 }
 
 /// Those that count and all that share a node with them.
@@ -42,8 +46,9 @@ std::vector<StrainedElement> strainedElements(const Tissue& tissue, const NodalV
   for (std::size_t e = 0; e < elements.size(); ++e) {
     const auto is_needed = [&](int node) { return is_of_them[static_cast<std::size_t>(node)]; };
     if (std::none_of(elements[e].begin(), elements[e].end(), is_needed)) continue;
-    strained.push_back({static_cast<int>(e), regions.empty() ? 0 : regions[e] + 1, counts[e],
-                        signedVolume(rest, elements[e]), deviatoricGreenStrain(rest, x, elements[e])});
+    const Matrix3 D = edgeMatrix(rest, elements[e]);
+    strained.push_back({static_cast<int>(e), regions.empty() ? 0 : regions[e] + 1, counts[e], D.determinant() / 6.0,
+                        deviatoricGreenStrain(D, x, elements[e])});
   }
   return strained;
 }
@@ -53,12 +58,12 @@ std::vector<StrainedElement> strainedElements(const Tissue& tissue, const NodalV
 double recoveredStrainError(const Tissue& tissue, const std::vector<double>& shear_moduli, const NodalVectors& x,
                             const Vector3& center_W, double radius_m) {
   const std::vector<StrainedElement> strained = strainedElements(tissue, x, center_W, radius_m);
-  std::vector<Matrix3> mean(static_cast<std::size_t>(tissue.nodeCount()));
+  std::vector<Vector6> mean(static_cast<std::size_t>(tissue.nodeCount()));
   std::vector<double> volume(mean.size());
   double error = 0.0;
   double energy = 0.0;
   for (std::size_t region = 0; region < shear_moduli.size(); ++region) {
-    std::fill(mean.begin(), mean.end(), Matrix3(Matrix3::Zero()));
+    std::fill(mean.begin(), mean.end(), Vector6(Vector6::Zero()));
     std::fill(volume.begin(), volume.end(), 0.0);
     const auto is_of_region = [&](const StrainedElement& one) { return one.region == static_cast<int>(region); };
     if (std::none_of(strained.begin(), strained.end(), is_of_region)) continue;
@@ -69,13 +74,16 @@ double recoveredStrainError(const Tissue& tissue, const std::vector<double>& she
         volume[static_cast<std::size_t>(node)] += one.volume;
       }
     }
+    for (std::size_t node = 0; node < mean.size(); ++node) {
+      if (volume[node] > 0.0) mean[node] /= volume[node];
+    }
     for (const StrainedElement& one : strained) {
       if (!one.counts || !is_of_region(one)) continue;
       // Of a field d that is linear in a tetrahedron: int |d|^2 = V / 20 (sum_i |d_i|^2 + |sum_i d_i|^2).
-      Matrix3 sum = Matrix3::Zero();
+      Vector6 sum = Vector6::Zero();
       double squares = 0.0;
       for (const int node : tissue.tetrahedra()[static_cast<std::size_t>(one.element)]) {
-        const Matrix3 d = mean[static_cast<std::size_t>(node)] / volume[static_cast<std::size_t>(node)] - one.strain;
+        const Vector6 d = mean[static_cast<std::size_t>(node)] - one.strain;
         sum += d;
         squares += d.squaredNorm();
       }
