@@ -22,9 +22,17 @@ Tetrahedron replaced(Tetrahedron nodes, int node, int by) {
   return nodes;
 }
 
-unsigned char bitOf(const Tetrahedron& tetrahedron, int node) {
-  return static_cast<unsigned char>(
-      1 << (std::find(tetrahedron.begin(), tetrahedron.end(), node) - tetrahedron.begin()));
+/// Of one half of a tetrahedron: the new face between the halves lies opposite to the end of the cut edge that the half keeps.
+std::array<int, 4> outerOfHalf(const Tetrahedron& whole, const std::array<int, 4>& outer, int kept) {
+  std::array<int, 4> half = outer;
+  half[static_cast<std::size_t>(std::find(whole.begin(), whole.end(), kept) - whole.begin())] = -1;
+  return half;
+}
+
+NodalVectors columns(const std::vector<int>& indices, const std::vector<Vector3>& of) {
+  NodalVectors result(3, static_cast<Eigen::Index>(indices.size()));
+  for (std::size_t i = 0; i < indices.size(); ++i) result.col(static_cast<Eigen::Index>(i)) = of[indices[i]];
+  return result;
 }
 
 }  // namespace
@@ -33,8 +41,15 @@ Bisection::Bisection(const TetMesh& base, const std::vector<int>& patch_of)
     : base_nodes_(static_cast<std::size_t>(base.positions.cols())), base_patch_of_(patch_of) {
   for (Eigen::Index i = 0; i < base.positions.cols(); ++i) x_.emplace_back(base.positions.col(i));
   uncut_at_.resize(base_nodes_);
-  for (const Tetrahedron& tetrahedron : base.tetrahedra) add(tetrahedron, 0);
-  for (const OuterFace& face : outerFaces(base.tetrahedra)) elements_[face.tetrahedron].outer |= 1 << face.opposite;
+  for (std::size_t e = 0; e < base.tetrahedra.size(); ++e) {
+    add(base.tetrahedra[e], static_cast<int>(e), {-1, -1, -1, -1});
+    base_elements_.push_back(centroid(elements_.back()));
+  }
+  for (const OuterFace& face : outerFaces(base.tetrahedra)) {
+    elements_[face.tetrahedron].outer[face.opposite] = static_cast<int>(base_triangles_.size());
+    const Triangle nodes = outwardFace(elements_[face.tetrahedron].nodes, face.opposite);
+    base_triangles_.emplace_back((x_[nodes[0]] + x_[nodes[1]] + x_[nodes[2]]) / 3.0);
+  }
   base_patches_.resize(patch_of.empty() ? 0 : 1 + *std::max_element(patch_of.begin(), patch_of.end()));
   for (std::size_t e = 0; e < patch_of.size(); ++e) base_patches_[patch_of[e]].push_back(static_cast<int>(e));
 }
@@ -75,9 +90,10 @@ void Bisection::findLongest(Element& element) const {
   if (element.longest[0] > element.longest[1]) std::swap(element.longest[0], element.longest[1]);
 }
 
-int Bisection::add(const Tetrahedron& nodes, unsigned char outer) {
+int Bisection::add(const Tetrahedron& nodes, int whole, const std::array<int, 4>& outer) {
   Element element;
   element.nodes = nodes;
+  element.whole = whole;
   element.outer = outer;
   findLongest(element);
   const int index = static_cast<int>(elements_.size());
@@ -143,14 +159,15 @@ void Bisection::cutRing(const std::array<int, 2>& edge) {
   if (uncut_at_.size() < x_.size()) uncut_at_.emplace_back();
   for (const int whole : ring_) {
     const Tetrahedron nodes = elements_[whole].nodes;
-    const unsigned char outer = elements_[whole].outer;
+    const std::array<int, 4> outer = elements_[whole].outer;
+    const int unrefined = elements_[whole].whole;
     for (const int node : nodes) {
       std::vector<int>& there = uncut_at_[node];
       there.erase(std::find(there.begin(), there.end(), whole));
     }
-    // Each half has the new face between them opposite to its end of the edge.
-    elements_[whole].first_child = add(replaced(nodes, edge[1], middle), outer & ~bitOf(nodes, edge[0]));
-    add(replaced(nodes, edge[0], middle), outer & ~bitOf(nodes, edge[1]));
+    const int first_child = add(replaced(nodes, edge[1], middle), unrefined, outerOfHalf(nodes, outer, edge[0]));
+    elements_[whole].first_child = first_child;
+    add(replaced(nodes, edge[0], middle), unrefined, outerOfHalf(nodes, outer, edge[1]));
   }
 }
 
@@ -169,6 +186,8 @@ void Bisection::write(BisectedMesh& result) {
   result.surface.clear();
   result.parents = parents_;
   result.patch_of.clear();
+  whole_elements_.clear();
+  whole_triangles_.clear();
   patches_ = 0;
   for (const std::vector<int>& patch : base_patches_) {
     int uncut = -1;
@@ -181,6 +200,8 @@ void Bisection::write(BisectedMesh& result) {
       }
     }
   }
+  result.whole_elements = columns(whole_elements_, base_elements_);
+  result.whole_triangles = columns(whole_triangles_, base_triangles_);
 }
 
 /// The parts of a cut element, in patches of parts that were one.
@@ -207,8 +228,12 @@ void Bisection::writeLeaves(int element, int patch, BisectedMesh& result) {
   if (child < 0) {
     const Tetrahedron& nodes = elements_[element].nodes;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      if ((elements_[element].outer >> i & 1) != 0) result.surface.push_back(outwardFace(nodes, i));
+      const int triangle = elements_[element].outer[i];
+      if (triangle < 0) continue;
+      result.surface.push_back(outwardFace(nodes, i));
+      whole_triangles_.push_back(triangle);
     }
+    whole_elements_.push_back(elements_[element].whole);
     result.mesh.tetrahedra.push_back(nodes);
     result.patch_of.push_back(patch);
     return;

@@ -64,13 +64,6 @@ bool anyHolds(const std::vector<Region>& regions, const Vector3& x, double round
   return std::any_of(regions.begin(), regions.end(), [&](const Region& region) { return holds(region, x, rounding); });
 }
 
-std::vector<bool> heldPoints(const NodalVectors& points, const std::vector<Region>& regions) {
-  std::vector<bool> held(static_cast<std::size_t>(points.cols()), false);
-  const double rounding = roundingDistance(points);
-  for (Eigen::Index i = 0; i < points.cols(); ++i) held[i] = anyHolds(regions, points.col(i), rounding);
-  return held;
-}
-
 std::vector<bool> heldPoints(const NodalVectors& points, const std::vector<Region>& regions, const std::string& entry,
                              const std::string& what, const std::string& source) {
   std::vector<bool> held(static_cast<std::size_t>(points.cols()), false);

@@ -18,9 +18,6 @@ double roundingDistance(const NodalVectors& x);
 bool anyHolds(const std::vector<Region>& regions, const Vector3& x, double rounding);
 
 /// For each point (3 x n, m, in T) whether any of the regions holds it.
-std::vector<bool> heldPoints(const NodalVectors& points, const std::vector<Region>& regions);
-
-/// The same of a mesh as it was given.
 /// @param entry of the regions in their tissue, "fixed". @param what a point is, "node".
 /// @throws EntryError naming `source`, the region and the extent of the points when a region holds none.
 std::vector<bool> heldPoints(const NodalVectors& points, const std::vector<Region>& regions, const std::string& entry,

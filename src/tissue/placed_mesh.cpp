@@ -125,10 +125,9 @@ void setRegions(const TissueDescription& description, const std::string& source,
   const auto regionsOf = [&](const NodalVectors& points) {
     return regionsOfPoints(points, description.regions, rounding);
   };
-  placed.surface_regions = regionsOf(centroids(placed.rest, placed.surface));
-  placed.element_regions =
-      placed.isVolume() ? regionsOf(centroids(placed.rest, placed.tetrahedra)) : placed.surface_regions;
-  for (std::size_t r = 0; r < description.regions.size() && !placed.is_refined; ++r) {
+  placed.surface_regions = regionsOf(placed.surface_places);
+  placed.element_regions = placed.isVolume() ? regionsOf(placed.element_places) : placed.surface_regions;
+  for (std::size_t r = 0; r < description.regions.size(); ++r) {
     const auto anyIn = [r](const std::vector<int>& regions) {
       return std::find(regions.begin(), regions.end(), static_cast<int>(r)) != regions.end();
     };
@@ -157,23 +156,17 @@ Vector2 fibreIn(const NodalVectors& x, const Triangle& triangle, const Vector3& 
   return gram.inverse() * (edges.transpose() * along.normalized());
 }
 
-std::vector<bool> held(const PlacedMesh& placed, const NodalVectors& points, const std::vector<Region>& where,
-                       const std::string& entry, const std::string& what, const std::string& source) {
-  return placed.is_refined ? heldPoints(points, where) : heldPoints(points, where, entry, what, source);
-}
-
 /// What an attachment adds to the springs, N/m per node, positions being in T.
 void addAttachment(const Attachment& attachment, const std::string& entry, const std::string& source,
                    const PlacedMesh& placed, VectorX& stiffness) {
   if (attachment.stiffness_n_per_m > 0.0) {
-    const std::vector<bool> nodes = held(placed, placed.rest, attachment.where, entry, "node", source);
+    const std::vector<bool> nodes = heldPoints(placed.rest, attachment.where, entry, "node", source);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       if (nodes[i]) stiffness[static_cast<Eigen::Index>(i)] += attachment.stiffness_n_per_m;
     }
     return;
   }
-  const NodalVectors middles = centroids(placed.rest, placed.surface);
-  const std::vector<bool> triangles = held(placed, middles, attachment.where, entry, kCentroid, source);
+  const std::vector<bool> triangles = heldPoints(placed.surface_places, attachment.where, entry, kCentroid, source);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     if (!triangles[t]) continue;
     const double third = attachment.stiffness_pa_per_m * triangleArea(placed.rest, placed.surface[t]) / 3.0;
@@ -192,7 +185,7 @@ void setSprings(const TissueDescription& description, const std::string& source,
     for (Eigen::Index i = 0; i < stiffness.size(); ++i) {
       if (placed.fixed[static_cast<std::size_t>(i)]) stiffness[i] = 0.0;
     }
-    if (stiffness.isZero(0.0) && !placed.is_refined) {
+    if (stiffness.isZero(0.0)) {
       throw EntryError(entry + ".where", source + ": all nodes that attachment " + std::to_string(a) +
                                              " holds are fixed already; remove it, or enlarge its region");
     }
@@ -209,9 +202,8 @@ void setPressed(const TissueDescription& description, const std::string& source,
     placed.pressed = placed.surface;
     return;
   }
-  const NodalVectors middles = centroids(placed.rest, placed.surface);
   const std::vector<bool> triangles =
-      held(placed, middles, description.pressure_where, "pressure_where", kCentroid, source);
+      heldPoints(placed.surface_places, description.pressure_where, "pressure_where", kCentroid, source);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     if (triangles[t]) placed.pressed.push_back(placed.surface[t]);
   }
@@ -243,7 +235,6 @@ void setFibres(const TissueDescription& description, const std::string& source, 
 /// What a description says about nodes, elements and surface of the mesh it is given, in T; then the mesh goes to the world.
 void finish(const TissueDescription& description, const Pose& X_WT, PlacedMesh& placed) {
   const std::string source = tissueLabel(description);
-  if (!placed.is_refined) placed.fixed = fixedNodes(placed.rest, description.fixed, source);
   setRegions(description, source, placed);
   placed.patch_of = cutAtRegions(placed.patch_of, placed.element_regions);
   setFibres(description, source, placed);
@@ -260,6 +251,9 @@ PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, con
   checkTissue(description);
   PlacedMesh placed;
   setGeometry(description, tissueLabel(description), on_size, placed);
+  placed.element_places = centroids(placed.rest, placed.tetrahedra);
+  placed.surface_places = centroids(placed.rest, placed.surface);
+  placed.fixed = fixedNodes(placed.rest, description.fixed, tissueLabel(description));
   finish(description, X_WT, placed);
   return placed;
 }
@@ -273,12 +267,12 @@ Bisection refinableMesh(const TissueDescription& description, const MeshSizeChec
 PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const BisectedMesh& mesh) {
   PlacedMesh placed;
   setVolume(mesh.mesh, mesh.surface, mesh.patch_of, placed);
-  placed.is_refined = !mesh.parents.empty();
-  if (placed.is_refined) {  // a node between two that move would be held back from where it is
-    const NodalVectors unrefined = placed.rest.leftCols(mesh.unrefinedNodes());
-    placed.fixed = fixedNodes(unrefined, description.fixed, tissueLabel(description));
-    for (const auto& [a, b] : mesh.parents) placed.fixed.push_back(placed.fixed[a] && placed.fixed[b]);
-  }
+  placed.element_places = mesh.whole_elements;
+  placed.surface_places = mesh.whole_triangles;
+  const NodalVectors unrefined = placed.rest.leftCols(mesh.unrefinedNodes());
+  placed.fixed = fixedNodes(unrefined, description.fixed, tissueLabel(description));
+  // A node between two that move would be held back from where it is.
+  for (const auto& [a, b] : mesh.parents) placed.fixed.push_back(placed.fixed[a] && placed.fixed[b]);
   finish(description, X_WT, placed);
   return placed;
 }

@@ -27,9 +27,9 @@ struct PlacedMesh {
   std::vector<NodeSpring> springs;  ///< of attachments, at free nodes, each node at most once
   std::vector<Triangle> pressed;    ///< surface triangles under the tissue's pressure
 
-  /// Further nodes have come to the mesh of the start, of which all was refused that held nothing: small places may come to hold none
-  /// of the smaller elements.
-  bool is_refined = false;
+  /// Where elements and surface triangles are taken to be, m, in the tissue frame: their centroids; in a refined mesh those of the whole ones
+  /// that they are parts of, so that regions do not change with the mesh.
+  NodalVectors element_places, surface_places;
 
   bool isVolume() const { return !tetrahedra.empty(); }
   std::size_t elementCount() const { return isVolume() ? tetrahedra.size() : surface.size(); }

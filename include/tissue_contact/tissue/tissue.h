@@ -46,7 +46,8 @@ class Tissue {
   /// Thickness of a membrane, m: it can be touched from both sides, at half of it from its triangles. 0: a volume.
   double thickness() const { return thickness_; }
 
-  /// Per surface triangle: index into TissueDescription::regions (by the triangle's own centroid), -1 where none.
+  /// Per surface triangle: index into TissueDescription::regions (by the triangle's own centroid; in a refined mesh that of the
+  /// triangle it is a part of), -1 where none.
   /// Empty: the tissue has no regions.
   const std::vector<int>& surfaceRegions() const { return surface_regions_; }
   /// Likewise per element, by its centroid.
