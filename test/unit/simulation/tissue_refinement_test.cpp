@@ -70,7 +70,7 @@ TEST(TissueRefinement, FindsTheSameMeshAgainOnTheWayBack) {
   const NodalVectors first = refinement.tissue().restPositions();
   refinement.follow({at(-0.02, 0.003)});
   // Eigen compares matrices of one size only.
-  const NodalVectors& other = refinement.tissue().restPositions();
+  const NodalVectors other = refinement.tissue().restPositions();
   EXPECT_TRUE(other.cols() != first.cols() || other != first);
   refinement.follow({at(0.01, 0.003)});
   ASSERT_EQ(refinement.tissue().restPositions().cols(), first.cols());
