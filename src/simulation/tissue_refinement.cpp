@@ -159,11 +159,12 @@ void TissueRefinement::refineBeside(const std::vector<Focus>& kept, BisectedMesh
   int enough = 1;
   while (!fits(enough)) enough *= 2;
   int too_few = enough / 2;
+  int tried = enough;
   while (enough - too_few > 1) {
-    const int middle = (too_few + enough) / 2;
-    (fits(middle) ? enough : too_few) = middle;
+    tried = (too_few + enough) / 2;
+    (fits(tried) ? enough : too_few) = tried;
   }
-  fits(enough);
+  if (tried != enough) fits(enough);
 }
 
 std::optional<NodeTransfer> TissueRefinement::follow(const std::vector<TouchedPlace>& places) {

@@ -11,7 +11,10 @@
 #include <vector>
 
 #include "support/refusal.h"
+#include "support/replaced.h"
+#include "support/temporary_directory.h"
 #include "support/text_scene.h"
+#include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
 namespace {
@@ -114,6 +117,63 @@ TEST(RefinedPress, RepeatsToTheBitAlsoAfterReset) {
   EXPECT_EQ(first.forces, again.forces);
   EXPECT_EQ(first.forces, third.forces);
   EXPECT_EQ(simulator.positions(0), end);
+}
+
+// Held until nodes sleep, then dragged until the mesh has moved: sleepers must wake, and be looked for anew.
+TEST(RefinedPress, AMeshThatMovesWhileNodesSleepGivesTheSameForces) {
+  std::vector<std::vector<Vector3>> forces(2);
+  const char* const advisors[] = {"advisor: {sleep: never}\n", "advisor: {sleep: auto}\n"};
+  for (int way = 0; way < 2; ++way) {
+    Simulator simulator = simulatorOf("auto", advisors[way]);
+    pressAndDrag(simulator, 0.003, 0.0, [](double) {});
+    for (int k = 0; k < 2000; ++k) simulator.advance(0.001, {Vector3(0.0, 0.0, -0.003)});
+    const int revision = simulator.meshRevision(0);
+    const int sleepers = simulator.report().sleeping_nodes;
+    bool woke_at_once = false;
+    for (int k = 1; k <= 300; ++k) {
+      const int before = simulator.meshRevision(0);
+      simulator.advance(0.001, {Vector3(2e-5 * k, 0.0, -0.003)});
+      forces[way].push_back(simulator.wrench(0).force);
+      if (before == revision && simulator.meshRevision(0) > before)
+        woke_at_once = simulator.report().sleeping_nodes == 0;
+    }
+    EXPECT_GT(simulator.meshRevision(0), revision);
+    EXPECT_EQ(sleepers > 0, way == 1);
+    EXPECT_TRUE(woke_at_once);
+  }
+  double largest = 0.0;
+  for (const Vector3& force : forces[0]) largest = std::max(largest, force.norm());
+  for (std::size_t k = 0; k < forces[0].size(); ++k) {
+    EXPECT_LT((forces[0][k] - forces[1][k]).norm(), 0.01 * largest) << k;
+  }
+}
+
+// The block's own unrefined mesh, from a file: its patches are others, its cells the same.
+TEST(RefinedPress, AMeshFromAFileGivesTheForcesOfTheBlock) {
+  const TetMesh mesh = makeBlockMesh({Vector3(0.1, 0.1, 0.04), {10, 10, 4}, {}}, BlockSplit::kSix);
+  std::ostringstream vtk;
+  vtk.precision(17);
+  vtk << "# vtk DataFile Version 2.0\nblock\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " << mesh.positions.cols()
+      << " double\n"
+      << mesh.positions.transpose() << "\nCELLS " << mesh.tetrahedra.size() << ' ' << 5 * mesh.tetrahedra.size()
+      << '\n';
+  for (const Tetrahedron& t : mesh.tetrahedra) vtk << "4 " << t[0] << ' ' << t[1] << ' ' << t[2] << ' ' << t[3] << '\n';
+  vtk << "CELL_TYPES " << mesh.tetrahedra.size() << '\n';
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) vtk << "10\n";
+  const TemporaryDirectory directory;
+  const std::string from_block = scene("auto");
+  const std::string block = "block: {size_m: [0.10, 0.10, 0.04], cells: [10, 10, 4]}";
+  ASSERT_NE(from_block.find(block), std::string::npos);
+  Simulator file =
+      makeSimulator(replaced(from_block, block, "mesh: {file: " + directory.write("block.vtk", vtk.str()) + "}"),
+                    {{"probe", probeUrdf(0.005)}});
+  const Trace trace = traceOf(file, 0.0041, 0.003);
+  Simulator generated = simulatorOf("auto");
+  const Trace expected = traceOf(generated, 0.0041, 0.003);
+  EXPECT_GE(trace.revisions.back(), 2);
+  for (std::size_t k = 100; k < trace.forces.size(); ++k) {
+    EXPECT_LT((trace.forces[k] - expected.forces[k]).norm(), 0.02 * expected.forces[k].norm()) << k;
+  }
 }
 
 TEST(RefinedPress, AnInstrumentFarAwayChangesNoMesh) {
