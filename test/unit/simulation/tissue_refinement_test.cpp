@@ -40,6 +40,18 @@ Pose somewhere() {
 /// On the upper face.
 TouchedPlace at(double x, double y, double cell_m = 0.00125) { return {somewhere() * Vector3(x, y, 0.04), cell_m}; }
 
+/// `count` by `count` places.
+std::vector<TouchedPlace> patch(int count, double spacing_m, double first_m, double cell_m) {
+  std::vector<TouchedPlace> places;
+  places.reserve(static_cast<std::size_t>(count) * static_cast<std::size_t>(count));
+  for (int row = 0; row < count; ++row) {
+    for (int column = 0; column < count; ++column) {
+      places.push_back(at(first_m + spacing_m * column, first_m + spacing_m * row, cell_m));
+    }
+  }
+  return places;
+}
+
 TEST(TissueRefinement, BeginsUnrefined) {
   const TissueDescription description = block();
   const TissueRefinement refinement(description, somewhere(), nullptr);
@@ -102,8 +114,7 @@ TEST(TissueRefinement, CellsGrowUntilThereAreNoMoreNodesThanAllowed) {
 TEST(TissueRefinement, CellsOfAMicrometreGrowAsWell) {
   const TissueDescription description = block({RefinementDescription::Mode::kGiven, 1e-6, 0.0, 900});
   TissueRefinement refinement(description, somewhere(), nullptr);
-  std::vector<TouchedPlace> places;
-  for (int i = 0; i < 400; ++i) places.push_back(at(0.0002 * (i % 20), 0.0002 * (i / 20), 1e-6));
+  const std::vector<TouchedPlace> places = patch(20, 0.0002, 0.0, 1e-6);
   ASSERT_TRUE(refinement.follow(places));
   EXPECT_LE(refinement.tissue().nodeCount(), 900);
   EXPECT_GT(refinement.tissue().nodeCount(), 650);
@@ -257,9 +268,7 @@ TEST(TissueRefinement, WhereNodesRunOutAllCellsBecomeAlike) {
   const TissueDescription description = block({RefinementDescription::Mode::kGiven, 0.0015, 0.0, 1100});
   TissueRefinement refinement(description, somewhere(), nullptr);
   ASSERT_TRUE(refinement.follow({at(0.0, 0.0, 0.0015)}));
-  std::vector<TouchedPlace> patch;
-  for (int i = 0; i < 25; ++i) patch.push_back(at(0.002 * (i % 5) - 0.004, 0.002 * (i / 5) - 0.004, 0.0015));
-  ASSERT_TRUE(refinement.follow(patch));
+  ASSERT_TRUE(refinement.follow(patch(5, 0.002, -0.004, 0.0015)));
   EXPECT_LT(refinement.coarsening(), 3.0) << "not the unrefined mesh beside a fine one";
   EXPECT_LE(refinement.tissue().nodeCount(), 1100);
   refinement.follow({});
