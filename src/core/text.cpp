@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <sstream>
 #include <system_error>
 
 namespace tissue_contact {
@@ -36,6 +37,18 @@ std::string listOf(const std::vector<std::string>& names, std::size_t most) {
   for (std::size_t i = 0; i < std::min(names.size(), most); ++i) shown.push_back(printable(names[i]));
   if (names.size() > most) shown.emplace_back("...");
   return joined(shown);
+}
+
+std::string twoDigits(double value) {
+  if (value != 0.0 && std::isfinite(value)) {
+    // Of whole powers, so that 230 is 23 times 10 and not 22.999... times it.
+    const int digits = static_cast<int>(std::floor(std::log10(std::abs(value)))) - 1;
+    const double unit = std::pow(10.0, std::abs(digits));
+    value = digits > 0 ? std::round(value / unit) * unit : std::round(value * unit) / unit;
+  }
+  std::ostringstream text;
+  text << value;
+  return text.str();
 }
 
 std::string stampText(std::int64_t stamp_ns) {

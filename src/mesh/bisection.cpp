@@ -90,10 +90,10 @@ void Bisection::findLongest(Element& element) const {
   if (element.longest[0] > element.longest[1]) std::swap(element.longest[0], element.longest[1]);
 }
 
-int Bisection::add(const Tetrahedron& nodes, int whole, const std::array<int, 4>& outer) {
+int Bisection::add(const Tetrahedron& nodes, int unrefined, const std::array<int, 4>& outer) {
   Element element;
   element.nodes = nodes;
-  element.whole = whole;
+  element.unrefined = unrefined;
   element.outer = outer;
   findLongest(element);
   const int index = static_cast<int>(elements_.size());
@@ -160,7 +160,7 @@ void Bisection::cutRing(const std::array<int, 2>& edge) {
   for (const int whole : ring_) {
     const Tetrahedron nodes = elements_[whole].nodes;
     const std::array<int, 4> outer = elements_[whole].outer;
-    const int unrefined = elements_[whole].whole;
+    const int unrefined = elements_[whole].unrefined;
     for (const int node : nodes) {
       std::vector<int>& there = uncut_at_[node];
       there.erase(std::find(there.begin(), there.end(), whole));
@@ -186,8 +186,8 @@ void Bisection::write(BisectedMesh& result) {
   result.surface.clear();
   result.parents = parents_;
   result.patch_of.clear();
-  whole_elements_.clear();
-  whole_triangles_.clear();
+  unrefined_elements_.clear();
+  unrefined_triangles_.clear();
   patches_ = 0;
   for (const std::vector<int>& patch : base_patches_) {
     int uncut = -1;
@@ -200,8 +200,8 @@ void Bisection::write(BisectedMesh& result) {
       }
     }
   }
-  result.whole_elements = columns(whole_elements_, base_elements_);
-  result.whole_triangles = columns(whole_triangles_, base_triangles_);
+  result.element_places = columns(unrefined_elements_, base_elements_);
+  result.surface_places = columns(unrefined_triangles_, base_triangles_);
 }
 
 /// The parts of a cut element, in patches of parts that were one.
@@ -231,9 +231,9 @@ void Bisection::writeLeaves(int element, int patch, BisectedMesh& result) {
       const int triangle = elements_[element].outer[i];
       if (triangle < 0) continue;
       result.surface.push_back(outwardFace(nodes, i));
-      whole_triangles_.push_back(triangle);
+      unrefined_triangles_.push_back(triangle);
     }
-    whole_elements_.push_back(elements_[element].whole);
+    unrefined_elements_.push_back(elements_[element].unrefined);
     result.mesh.tetrahedra.push_back(nodes);
     result.patch_of.push_back(patch);
     return;

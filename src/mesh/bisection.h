@@ -30,9 +30,9 @@ struct BisectedMesh {
   std::vector<std::array<int, 2>> parents;
   /// Groups of neighbouring tetrahedra as patchesByFaces() makes them. Where two limits make the same elements they are the same.
   std::vector<int> patch_of;
-  /// Per tetrahedron, and per surface triangle: centroid of the one of the unrefined mesh that it is a part of, m. What depends on
-  /// where an element is stays so with the places of the parts whose whole it was.
-  NodalVectors whole_elements, whole_triangles;
+  /// Per tetrahedron, and per surface triangle: centroid of the one of the unrefined mesh that it is a part of, m. Regions are decided by
+  /// these, so that they do not change with the mesh.
+  NodalVectors element_places, surface_places;
 
   int unrefinedNodes() const { return static_cast<int>(mesh.positions.cols()) - static_cast<int>(parents.size()); }
 };
@@ -56,13 +56,13 @@ class Bisection {
     std::array<int, 2> longest;  ///< its longest edge, lower node first
     double squared_m2;           ///< length of that
     int first_child = -1;        ///< of two that follow one another; -1: not cut
-    int whole;                   ///< the unrefined element that it is a part of
+    int unrefined;               ///< the unrefined element that it is a part of
     /// Of the face opposite to node i: the unrefined surface triangle that it is a part of; -1: a tetrahedron lies beyond.
     std::array<int, 4> outer;
     int leaves = 1;  ///< scratch: of the mesh, into which it has been cut
   };
   void start();
-  int add(const Tetrahedron& nodes, int whole, const std::array<int, 4>& outer);
+  int add(const Tetrahedron& nodes, int unrefined, const std::array<int, 4>& outer);
   bool comesBefore(const std::array<int, 2>& a, const std::array<int, 2>& b) const;
   void findLongest(Element& element) const;
   Vector3 centroid(const Element& element) const;
@@ -80,12 +80,12 @@ class Bisection {
   std::vector<int> base_patch_of_;
   std::vector<std::vector<int>> base_patches_;  ///< their elements
   std::vector<Vector3> x_;
-  std::vector<std::array<int, 2>> parents_;            ///< of nodes beyond the unrefined ones
-  std::vector<Element> elements_;                      ///< unrefined ones first; children after their parents
-  std::vector<std::vector<int>> uncut_at_;             ///< per node: elements of the mesh as it is
-  std::vector<int> ring_, waiting_;                    ///< scratch
-  int patches_ = 0;                                    ///< written so far
-  std::vector<int> whole_elements_, whole_triangles_;  ///< of what is written so far
+  std::vector<std::array<int, 2>> parents_;                    ///< of nodes beyond the unrefined ones
+  std::vector<Element> elements_;                              ///< unrefined ones first; children after their parents
+  std::vector<std::vector<int>> uncut_at_;                     ///< per node: elements of the mesh as it is
+  std::vector<int> ring_, waiting_;                            ///< scratch
+  int patches_ = 0;                                            ///< written so far
+  std::vector<int> unrefined_elements_, unrefined_triangles_;  ///< of what is written so far
 };
 
 }  // namespace tissue_contact

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "tissue_contact/core/text.h"
 #include "tissue_contact/simulation/force_error.h"
 #include "tissue_contact/simulation/simulator.h"
 #include "tissue_contact/tissue/element_materials.h"
@@ -86,30 +87,25 @@ std::string frictionLine(const Scene& scene, const FrictionDescription& pair) {
 constexpr double kEdgePerCell = 1.138;
 
 std::string rangeText(double from, double to) {
-  std::ostringstream text;
-  text.precision(2);
-  text << from;
-  if (to > from) text << " to " << to;
-  return text.str();
+  return twoDigits(from) + (twoDigits(to) != twoDigits(from) ? " to " + twoDigits(to) : "");
 }
 
-std::string expectedErrorText(double edge_m, const HalfExtents& shapes) {
+/// @param under_smallest_m, under_largest_m edges that the smallest and the largest shape meet.
+std::string expectedErrorText(double under_smallest_m, double under_largest_m, const HalfExtents& shapes) {
   if (!(shapes.smallest_m > 0.0)) return {};
   constexpr double kWorthAWord = 0.1;
   constexpr double kCompared = 3.0;  // edges over half extents that expectedMeshError() was compared with
-  const auto percent = [&](double half_extent_m) {
-    return std::round(100.0 * expectedMeshError(std::min(edge_m, kCompared * half_extent_m), half_extent_m));
+  const auto error = [&](double edge_m, double half_extent_m) {
+    return expectedMeshError(std::min(edge_m, kCompared * half_extent_m), half_extent_m);
   };
-  const double least = percent(shapes.largest_m);
-  const double most = percent(shapes.smallest_m);
-  std::ostringstream text;
-  text << "; forces on shapes of " << rangeText(1e3 * shapes.smallest_m, 1e3 * shapes.largest_m)
-       << " mm half extent, pressed in by most of that, likely off by some " << least;
-  if (most > least) text << " to " << most;
-  if (edge_m > kCompared * shapes.smallest_m) text << " (or more)";
-  text << " %";
-  if (most > 100.0 * kWorthAWord) text << ": smaller cells help (tissues[].refinement)";
-  return text.str();
+  const double most = error(under_smallest_m, shapes.smallest_m);
+  std::string text = "; forces on shapes of " + rangeText(1e3 * shapes.smallest_m, 1e3 * shapes.largest_m) +
+                     " mm half extent, pressed in by most of that, likely off by some " +
+                     rangeText(100.0 * error(under_largest_m, shapes.largest_m), 100.0 * most);
+  if (under_smallest_m > kCompared * shapes.smallest_m) text += " (or more)";
+  text += " %";
+  if (most > kWorthAWord) text += ": smaller cells help (tissues[].refinement)";
+  return text;
 }
 
 }  // namespace
@@ -141,24 +137,24 @@ double shortSurfaceEdge(const Tissue& tissue) {
 
 std::string meshLine(const Tissue& tissue, double edge_m, const HalfExtents& shapes) {
   std::ostringstream line;
-  line.precision(2);
-  line << "mesh of tissue " << quoted(tissue.name()) << ": as it is, surface edges from " << 1e3 * edge_m << " mm";
-  line << expectedErrorText(edge_m, shapes);
+  line << "mesh of tissue " << quoted(tissue.name()) << ": as it is, surface edges from " << twoDigits(1e3 * edge_m)
+       << " mm" << expectedErrorText(edge_m, edge_m, shapes);
   return line.str();
 }
 
-std::string refinementLine(const TissueDescription& tissue, double cell_m, double reach_m, int nodes_at_most,
-                           const HalfExtents& shapes) {
+std::string refinementLine(const TissueDescription& tissue, const std::vector<double>& cells_m, double reach_m,
+                           int nodes_at_most, const HalfExtents& shapes) {
   std::ostringstream line;
   line << "mesh of tissue " << quoted(tissue.name) << ": ";
-  if (!(cell_m > 0.0)) {
+  if (cells_m.empty()) {
     line << "as it is, since no instrument touches; for other tissues give refinement.cell_m";
     return line.str();
   }
   line.precision(3);
-  line << "refined to cells of " << 1e3 * cell_m << " mm, " << 1e3 * reach_m
+  line << "refined to cells of " << 1e3 * cells_m.front() << " mm, " << 1e3 * reach_m
        << " mm around what touches it, and moved along with that; at most " << nodes_at_most
-       << " nodes, for which cells grow" << expectedErrorText(kEdgePerCell * cell_m, shapes);
+       << " nodes, for which cells grow"
+       << expectedErrorText(kEdgePerCell * cells_m.front(), kEdgePerCell * cells_m.back(), shapes);
   return line.str();
 }
 

@@ -26,13 +26,14 @@ bool advisedSleepByParts(const Scene& scene);
 std::vector<std::string> adviceLines(const Scene& scene, const FoldWatch& folds,
                                      const std::vector<std::string>& meshes);
 
-/// What the mesh of a volume is, and what it is likely to do to the forces of shapes that may touch it.
+/// What the mesh of a volume is, and what it is likely to do to the forces of the instruments' shapes.
 /// @param edge_m of the shorter triangles of the surface.
 std::string meshLine(const Tissue& tissue, double edge_m, const HalfExtents& shapes);
 
-/// The same of a mesh that follows. @param cell_m of the finest cells, 0: nothing asks for any.
-std::string refinementLine(const TissueDescription& tissue, double cell_m, double reach_m, int nodes_at_most,
-                           const HalfExtents& shapes);
+/// The same of a mesh that follows. @param cells_m edges of the finest cells under all shapes, ascending; none: nothing asks for any.
+/// @param reach_m of the finest.
+std::string refinementLine(const TissueDescription& tissue, const std::vector<double>& cells_m, double reach_m,
+                           int nodes_at_most, const HalfExtents& shapes);
 
 /// Of a tenth of the surface's triangles the mean edge is shorter, m.
 double shortSurfaceEdge(const Tissue& tissue);

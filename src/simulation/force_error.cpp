@@ -12,21 +12,20 @@
 namespace tissue_contact {
 namespace {
 
-constexpr double kRadiiLookedAt =
-    4.0;  // around a contact: most of its energy; another tool's contact mostly lies beyond
+/// Around a contact, in contact radii: most of its energy, and mostly not that of another.
+constexpr double kRadiiLookedAt = 4.0;
 
-/// What one instrument does to one tissue.
+/// What one shape does to one tissue.
 struct Touch {
-  Vector3 force_n = Vector3::Zero();
+  double sum_n = 0.0;                  ///< of the magnitudes of its contact forces
   Vector3 center_W = Vector3::Zero();  ///< at rest, m, mean by force
   double slip_m = 0.0;                 ///< in the step, mean by force
   double radius_m = 0.0;
 };
 
-/// @param first, end contacts of one instrument with the tissue.
+/// @param first, end contacts of the shape with the tissue.
 Touch touchOf(const Tissue& tissue, const SolvedContact* first, const SolvedContact* end) {
   Touch touch;
-  double sum_n = 0.0;
   std::vector<bool> carries(static_cast<std::size_t>(tissue.nodeCount()), false);
   for (const SolvedContact* contact = first; contact != end; ++contact) {
     const double force_n = contact->force_on_tissue_n.norm();
@@ -39,12 +38,11 @@ Touch touchOf(const Tissue& tissue, const SolvedContact* first, const SolvedCont
       touch.center_W += force_n * weight * tissue.restPositions().col(node);
     }
     if (contact->state == ContactState::kKinetic) touch.slip_m += force_n * contact->slip_W.norm();
-    touch.force_n += contact->force_on_tissue_n;
-    sum_n += force_n;
+    touch.sum_n += force_n;
   }
-  if (!(sum_n > 0.0)) return touch;
-  touch.center_W /= sum_n;
-  touch.slip_m /= sum_n;
+  if (!(touch.sum_n > 0.0)) return touch;
+  touch.center_W /= touch.sum_n;
+  touch.slip_m /= touch.sum_n;
   double area = 0.0;
   for (const Triangle& triangle : tissue.surface()) {
     const auto carrying = std::count_if(triangle.begin(), triangle.end(),
@@ -76,34 +74,40 @@ double expectedMeshError(double surface_edge_m, double half_extent_m) {
 
 std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const std::vector<Tissue>& tissues,
                                                     const std::vector<NodalVectors>& x,
-                                                    const std::vector<SolvedContact>& contacts,
-                                                    const std::vector<double>& changes_n, double momentum_residual) {
-  std::vector<ForceErrorEstimate> errors(changes_n.size());
-  std::vector<Vector3> forces_n(errors.size(), Vector3(Vector3::Zero()));
+                                                    const std::vector<SolvedContact>& contacts, std::size_t instruments,
+                                                    double momentum_residual) {
+  std::vector<ForceErrorEstimate> errors(instruments);
+  std::vector<Vector3> forces_n(instruments, Vector3(Vector3::Zero()));
   for (std::size_t first = 0, end = 0; first < contacts.size(); first = end) {
     const ContactKey& key = contacts[first].contact.key;
-    for (end = first; end < contacts.size(); ++end) {
-      const ContactKey& other = contacts[end].contact.key;
-      if (other.tissue != key.tissue || other.instrument != key.instrument) break;
-    }
-    if (key.instrument < 0) continue;
     const auto t = static_cast<std::size_t>(key.tissue);
-    const Touch touch = touchOf(tissues[t], contacts.data() + first, contacts.data() + end);
-    if (!(touch.radius_m > 0.0)) continue;
-    ForceErrorEstimate& error = errors[static_cast<std::size_t>(key.instrument)];
-    const double force_n = touch.force_n.norm();
-    forces_n[static_cast<std::size_t>(key.instrument)] += touch.force_n;
-    error.step_n += force_n * touch.slip_m / touch.radius_m;
-    if (!isContinuum(scene.tissues[t].material.model)) {
-      error.knows_mesh = false;
-      continue;
+    const bool judges_mesh = isContinuum(scene.tissues[t].material.model);
+    Vector3 force_n = Vector3::Zero();  // jaws that grip press against each other: what is left is what the wrench has
+    double sum_n = 0.0, mesh = 0.0, step = 0.0;  // shares times the forces of the shapes
+    for (std::size_t shape = first; shape < contacts.size(); shape = end) {
+      const ContactKey& of_shape = contacts[shape].contact.key;
+      if (of_shape.tissue != key.tissue || of_shape.instrument != key.instrument) break;
+      for (end = shape; end < contacts.size() && sameShapes(contacts[end].contact.key, of_shape); ++end) {
+        force_n += contacts[end].force_on_tissue_n;
+      }
+      if (key.instrument < 0) continue;
+      const Touch touch = touchOf(tissues[t], contacts.data() + shape, contacts.data() + end);
+      if (!(touch.radius_m > 0.0)) continue;
+      sum_n += touch.sum_n;
+      step += touch.sum_n * touch.slip_m / touch.radius_m;
+      if (!judges_mesh) continue;
+      mesh += touch.sum_n * likelyMeshError(recoveredStrainError(tissues[t], shearModuli(scene.tissues[t]), x[t],
+                                                                 touch.center_W, kRadiiLookedAt * touch.radius_m));
     }
-    error.mesh_n += force_n * likelyMeshError(recoveredStrainError(tissues[t], shearModuli(scene.tissues[t]), x[t],
-                                                                   touch.center_W, kRadiiLookedAt * touch.radius_m));
+    if (!(sum_n > 0.0)) continue;
+    ForceErrorEstimate& error = errors[static_cast<std::size_t>(key.instrument)];
+    forces_n[static_cast<std::size_t>(key.instrument)] += force_n;
+    error.mesh_n += force_n.norm() * mesh / sum_n;
+    error.step_n += force_n.norm() * step / sum_n;
+    error.knows_mesh = error.knows_mesh && judges_mesh;
   }
-  for (std::size_t i = 0; i < errors.size(); ++i) {
+  for (std::size_t i = 0; i < instruments; ++i) {
     if (!errors[i].knows_mesh) errors[i].mesh_n = 0.0;
-    errors[i].step_n += 0.5 * changes_n[i];
     errors[i].solver_n = momentum_residual * forces_n[i].norm();
   }
   return errors;

@@ -15,12 +15,11 @@ namespace tissue_contact {
 
 /// @param x per tissue: positions, m.
 /// @param contacts of the step, sorted by key.
-/// @param changes_n per instrument: what the force on it has changed by in the step, N.
 /// @param momentum_residual of the step, see Residuals.
-/// @return as many as `changes_n`. Allocates.
+/// @return one per instrument. Allocates.
 std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const std::vector<Tissue>& tissues,
                                                     const std::vector<NodalVectors>& x,
-                                                    const std::vector<SolvedContact>& contacts,
-                                                    const std::vector<double>& changes_n, double momentum_residual);
+                                                    const std::vector<SolvedContact>& contacts, std::size_t instruments,
+                                                    double momentum_residual);
 
 }  // namespace tissue_contact

@@ -1,6 +1,5 @@
 #include "tissue_contact/simulation/simulator.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -43,7 +42,7 @@ std::vector<std::string> Simulator::advice() const {
     }
     const std::vector<double> cells_m = all.touched_places.cellsOn(static_cast<int>(t));
     const double cell_m = cells_m.empty() ? 0.0 : cells_m.front();
-    meshes[t] = refinementLine(scene().tissues[t], cell_m, all.refinements[t]->reach(cell_m),
+    meshes[t] = refinementLine(scene().tissues[t], cells_m, all.refinements[t]->reach(cell_m),
                                all.refinements[t]->nodesAtMost(), shapes);
   }
   return adviceLines(scene(), all.folds, meshes);
@@ -126,12 +125,8 @@ const Residuals& Simulator::residuals() const {
 const std::vector<ForceErrorEstimate>& Simulator::forceErrors() const {
   Implementation& all = *implementation_;
   if (all.force_errors) return *all.force_errors;
-  std::vector<double> changes_n(all.forces_W.size());
-  for (std::size_t i = 0; i < changes_n.size(); ++i) {
-    changes_n[i] = (all.forces_W[i] - all.forces_before_W[i]).norm() / std::max(1, all.report.substeps);
-  }
-  all.force_errors =
-      estimateForceErrors(all.scene, all.tissues, all.x, all.contacts.solved(), changes_n, residuals().momentum);
+  all.force_errors = estimateForceErrors(all.scene, all.tissues, all.x, all.contacts.solved(), all.instruments.size(),
+                                         residuals().momentum);
   return *all.force_errors;
 }
 int Simulator::meshRevision(int tissue) const {

@@ -45,8 +45,6 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       solver(atEntry("solver", [&] { return makeContactSolver(scene.solver, environment.clock); })),
       touched_places(scene, instruments),
       wrenches(instruments.size()),
-      forces_W(instruments.size(), Vector3::Zero()),
-      forces_before_W(instruments.size(), Vector3::Zero()),
       load_watch(scene, tissues) {
   requireMethodForLaws(scene);
   atEntry("step.max_step_s", [&] { requirePositive("step.max_step_s", scene.step.max_step_s, "s"); });
@@ -84,8 +82,6 @@ void Simulator::Implementation::reset() {
   solution.states.clear();
   solver->reset();
   wrenches.assign(instruments.size(), Wrench());
-  forces_W.assign(instruments.size(), Vector3::Zero());
-  forces_before_W.assign(instruments.size(), Vector3::Zero());
   force_errors.reset();
   report = StepReport();
   residuals = Residuals();
@@ -243,15 +239,12 @@ void Simulator::Implementation::recordContacts() {
 
 void Simulator::Implementation::sumWrenches() {
   wrenches.assign(instruments.size(), Wrench());
-  forces_before_W.swap(forces_W);
-  forces_W.assign(instruments.size(), Vector3::Zero());
   force_errors.reset();
   for (const SolvedContact& solved : contacts.solved()) {
     const ContactKey& key = solved.contact.key;
     if (key.instrument < 0) continue;
     const Pose& X_WTip = motion.startPoses()[key.instrument][instruments[key.instrument].tipLink()];
     const Vector3 force_W = -solved.force_on_tissue_n;
-    forces_W[key.instrument] += force_W;
     Wrench& wrench = wrenches[key.instrument];
     wrench.force += X_WTip.linear().transpose() * force_W;
     wrench.torque += X_WTip.linear().transpose() * (solved.contact.p_WC - X_WTip.translation()).cross(force_W);

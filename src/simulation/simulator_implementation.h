@@ -67,10 +67,9 @@ struct Simulator::Implementation {
   TouchedPlaces touched_places;
   std::vector<double>
       approach_m;  ///< per tissue: how near a resting shape must be for the mesh to be refined; < 0: it never is
-  std::vector<double> near_m;                      ///< scratch: the same in this step
-  std::vector<NearPlace> near;                     ///< scratch
-  std::vector<Wrench> wrenches;                    ///< per instrument
-  std::vector<Vector3> forces_W, forces_before_W;  ///< per instrument: net force, N; the same after the advance before
+  std::vector<double> near_m;    ///< scratch: the same in this step
+  std::vector<NearPlace> near;   ///< scratch
+  std::vector<Wrench> wrenches;  ///< per instrument
   LoadWatch load_watch;
   StepReport report;
   std::optional<Residuals> residuals = Residuals();  ///< none: nobody has asked since the step

@@ -44,6 +44,7 @@ HalfExtents TouchedPlaces::halfExtents() const {
   for (const auto& links : half_extents_) {
     for (const auto& shapes : links) {
       for (const double half_extent : shapes) {
+        if (!(half_extent > 0.0)) continue;  // a flat mesh
         all.smallest_m = all.smallest_m > 0.0 ? std::min(all.smallest_m, half_extent) : half_extent;
         all.largest_m = std::max(all.largest_m, half_extent);
       }

@@ -267,8 +267,8 @@ Bisection refinableMesh(const TissueDescription& description, const MeshSizeChec
 PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const BisectedMesh& mesh) {
   PlacedMesh placed;
   setVolume(mesh.mesh, mesh.surface, mesh.patch_of, placed);
-  placed.element_places = mesh.whole_elements;
-  placed.surface_places = mesh.whole_triangles;
+  placed.element_places = mesh.element_places;
+  placed.surface_places = mesh.surface_places;
   const NodalVectors unrefined = placed.rest.leftCols(mesh.unrefinedNodes());
   placed.fixed = fixedNodes(unrefined, description.fixed, tissueLabel(description));
   // A node between two that move would be held back from where it is.

@@ -27,8 +27,7 @@ struct PlacedMesh {
   std::vector<NodeSpring> springs;  ///< of attachments, at free nodes, each node at most once
   std::vector<Triangle> pressed;    ///< surface triangles under the tissue's pressure
 
-  /// Where elements and surface triangles are taken to be, m, in the tissue frame: their centroids; in a refined mesh those of the whole ones
-  /// that they are parts of, so that regions do not change with the mesh.
+  /// By which regions hold elements and surface triangles, m, in the tissue frame: their centroids; of a refined mesh BisectedMesh's.
   NodalVectors element_places, surface_places;
 
   bool isVolume() const { return !tetrahedra.empty(); }

@@ -153,7 +153,7 @@ class Topics(unittest.TestCase):
         self.assertGreater(pressed.mesh, 0.2 * pressed.force)  # cells as wide as the ball
         self.assertLess(pressed.error, pressed.force)
         figures = faults.figures(self.diagnostics)
-        self.assertEqual(figures["likely force error, of"], "probe")
+        self.assertEqual(figures["likely force error: instrument"], "probe")
         self.assertGreater(float(figures["largest likely force error_n"]), 0.0)
 
     def test_markers(self):

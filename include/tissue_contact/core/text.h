@@ -27,6 +27,9 @@ std::string joined(const std::vector<std::string>& words);
 /// "a, b, ...": the first `most` of them, printable.
 std::string listOf(const std::vector<std::string>& names, std::size_t most = 12);
 
+/// A figure for people: rounded to two digits, without an exponent from 1e-5 to 1e6.
+std::string twoDigits(double value);
+
 /// A stamp in ns as "seconds.nanoseconds", exact.
 std::string stampText(std::int64_t stamp_ns);
 

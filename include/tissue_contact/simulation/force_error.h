@@ -11,25 +11,25 @@ struct ForceErrorEstimate {
   /// Whether `mesh_n` is an estimate. It is not, and 0, where the instrument touches a sheet, a shell or a mass-spring volume.
   bool knows_mesh = true;
   double mesh_n = 0.0;
-  /// Half of what the force changes in the step (implicit Euler gives the force at its end, and resists like additional damping), and
-  /// the force times the slip over the contact radius (normals are those of the step's start, and turn by so much around a ball).
+  /// The force times the slip over the contact radius: normals are those of the step's start, and turn by so much around a ball. What
+  /// only presses has none: forces are those at the step's end.
   double step_n = 0.0;
-  double solver_n = 0.0;   ///< momentum residual times force
+  double solver_n = 0.0;   ///< momentum residual, of all tissues and contacts, times force
   double total_n() const;  ///< root of the sum of squares: the parts have nothing to do with each other
 };
 
-/// Likely share of a contact force that is due to the mesh, from recoveredStrainError() `recovered` within four contact radii,
-/// radius sqrt(A / pi) for the rest area A of the nodes that carry force. At most 1.
+/// Likely share of a contact force that is due to the mesh, from recoveredStrainError() `recovered` within four contact radii of the middle of a
+/// shape's contacts, radius sqrt(A / pi) for the rest area A of the nodes that carry force. At most 1.
 ///
 /// 1.7 recovered^1.5, fitted to forces against the stored truths of the benchmark (press and drag of a ball, a recorded robot over a pad)
-/// on meshes of 146 to 3714 nodes, which err by 4 to 350 %. An energy's error would be `recovered` itself. Forces of contact at vertices
+/// on meshes of 288 to 3714 nodes, which err by 4 to 350 %. An energy's error would be `recovered` itself. Forces of contact at vertices
 /// err by less where cells are small, since what is held at vertices only is soft while cells are stiff; and by more where the contact is
 /// smaller than a cell. How well it does: doc/accuracy.md.
 double likelyMeshError(double recovered);
 
 /// Likely error of the force on a shape pressed in by most of its half extent, relative, from the lengths alone: for a word of warning before
-/// anything moves. 0.5 (edge / half extent)^1.8, within a factor of two of what press and drag, the recorded robot and the grasp meet on meshes
-/// of .2 to 3 half extents.
+/// anything moves. 0.5 (edge / half extent)^1.8, within a factor of two of what press and drag and the recorded robot meet on meshes of
+/// .3 to 3 half extents.
 double expectedMeshError(double surface_edge_m, double half_extent_m);
 
 }  // namespace tissue_contact

@@ -143,8 +143,8 @@ class Simulator {
   /// sweep forth and back; zeros before the first step, and where the step had no finite answer. Two threads may not ask at once.
   const Residuals& residuals() const;
   /// How wrong wrench() is likely to be, per instrument: an estimate for the end of the last advance, computed when first asked for, at the
-  /// price of 90 ns per element around the contact (605 nodes: two thirds of a step; 1600 refined ones: a fifth). Of torques the same
-  /// share. Two threads may not ask at once.
+  /// price of passes over the elements for every shape that touches (605 nodes: two thirds of a step; 1600 refined ones: a fifth). Torques have
+  /// not been compared. Two threads may not ask at once.
   const std::vector<ForceErrorEstimate>& forceErrors() const;
   long stepCount() const;  ///< implicit steps since the last reset
 

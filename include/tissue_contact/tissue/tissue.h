@@ -50,7 +50,7 @@ class Tissue {
   /// triangle it is a part of), -1 where none.
   /// Empty: the tissue has no regions.
   const std::vector<int>& surfaceRegions() const { return surface_regions_; }
-  /// Likewise per element, by its centroid.
+  /// Likewise per element.
   const std::vector<int>& elementRegions() const { return element_regions_; }
 
   /// Per surface triangle: the fibre direction at rest, projected into it, as coefficients over its edges (x1 - x0,

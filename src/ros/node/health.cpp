@@ -50,8 +50,8 @@ void addFigures(const LiveFigures& figures, double worst_lag_s, diagnostic_updat
   status.add("largest law error, likely", figures.largest_law_error);
   status.add("strain under the tool at that", figures.largest_law_strain);
   status.add("likely force error_n", figures.force_error_n);
-  status.add("likely force error, of a force_n", figures.inaccurate_force_n);
-  status.add("likely force error, of", figures.inaccurate);
+  status.add("likely force error: its force_n", figures.inaccurate_force_n);
+  status.add("likely force error: instrument", figures.inaccurate);
   status.add("largest likely force error_n", figures.largest_force_error_n);
   status.add("refined cells, times longer than asked for", figures.coarse_cells);
   status.add("largest of that", figures.coarsest_cells);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "tissue_contact/core/text.h"
+
 namespace tissue_contact {
 
 void ForceErrorSummary::add(double force_n, const ForceErrorEstimate& error) {
@@ -17,22 +19,21 @@ void ForceErrorSummary::add(double force_n, const ForceErrorEstimate& error) {
 
 std::string ForceErrorSummary::text() const {
   if (!(force_ > 0.0)) return {};
-  const auto percent = [this](double squares) { return 100.0 * std::sqrt(squares / force_); };
+  const auto share = [this](double squares) { return std::sqrt(squares / force_); };
+  const auto percent = [&](double squares) { return twoDigits(100.0 * share(squares)) + " %"; };
   std::ostringstream text;
-  text.precision(2);
-  text << "likely wrong by " << percent(total_) << " % (RMS; ";
+  text << "likely wrong by " << percent(total_) << " (RMS; ";
   if (knows_mesh_) {
-    text << "mesh " << percent(mesh_) << " %, ";
+    text << "mesh " << percent(mesh_) << ", ";
   } else {
     text << "the mesh's part is not known, ";
   }
-  text << "step " << percent(step_) << " %, solver " << percent(solver_) << " %)";
-  constexpr double kWorthAWord = 10.0;  // per cent
-  if (percent(total_) < kWorthAWord) return text.str();
-  const double largest = std::max({mesh_, step_, solver_});
-  if (largest == mesh_) {
-    text << "; for less make cells smaller where it touches (tissues[].refinement: auto)";
-  } else if (largest == step_) {
+  text << "step " << percent(step_) << ", solver " << percent(solver_) << ')';
+  constexpr double kWorthAWord = 0.1;
+  if (share(total_) < kWorthAWord) return text.str();
+  if (knows_mesh_ && mesh_ >= std::max(step_, solver_)) {
+    text << "; for less take smaller cells where it touches (tissues[].refinement)";
+  } else if (step_ >= solver_) {
     text << "; for less take shorter steps (step.max_step_s)";
   } else {
     text << "; for less let the solver go on (solver.tolerance, solver.iterations)";

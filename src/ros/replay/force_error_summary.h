@@ -12,8 +12,8 @@ namespace tissue_contact {
 class ForceErrorSummary {
  public:
   void add(double force_n, const ForceErrorEstimate& error);
-  /// "is likely wrong by 3.4 % ...": RMS of the errors over RMS of the force, the force's peak, and what to do about the largest part.
-  /// Empty: no force.
+  /// "likely wrong by 3.4 % (...": RMS of the errors and of their parts over RMS of the force, and what to do about the largest part
+  /// where they are a tenth or more. Empty: no force.
   std::string text() const;
 
  private:

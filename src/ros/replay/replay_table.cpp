@@ -36,9 +36,8 @@ ReplayTable::ReplayTable(const std::string& file) : WholeFile(file) {
   stream() << "stamp_s,instrument,tip_x_m,tip_y_m,tip_z_m,tip_qx,tip_qy,tip_qz,tip_qw,force_x_n,force_y_n,force_z_n,"
               "torque_x_nm,torque_y_nm,torque_z_nm,static_contacts,kinetic_contacts,momentum_residual,penetration_m,"
               "adhesion_n,complementarity_w,cone_violation_n,static_slip_m_per_s,kinetic_angle_rad,discarded,jumped,"
-              "implausible_load,inverted_elements,contact_pressure_pa,pinched_contacts,force_error_n,mesh_error_n,step_"
-              "error_n,"
-              "solver_error_n\n";
+              "implausible_load,inverted_elements,contact_pressure_pa,pinched_contacts,"
+              "force_error_n,mesh_error_n,step_error_n,solver_error_n\n";
 }
 
 void ReplayTable::add(const Simulator& simulator, const PlayedSample& played, long steps) {

@@ -194,23 +194,32 @@ TEST(TissueRefinement, RegionsAttachmentsAndPressureStayWhatTheyWere) {
   TissueRefinement refinement(description, Pose::Identity(), nullptr);
   struct Sums {
     double nodule_m3 = 0.0, mass_kg = 0.0, springs_n_per_m = 0.0, area_m2 = 0.0;
-    Vector3 pressure_n = Vector3::Zero();
+    Vector3 nodule_m4 = Vector3::Zero(), area_m3 = Vector3::Zero();  // first moments: where they are
+    Vector3 pressure_n = Vector3::Zero(), pressure_nm = Vector3::Zero();
   };
   const auto sums = [&] {
     const Tissue tissue = refinement.tissue();
     Sums all;
     for (std::size_t e = 0; e < tissue.tetrahedra().size(); ++e) {
-      if (tissue.elementRegions()[e] == 0)
-        all.nodule_m3 += signedVolume(tissue.restPositions(), tissue.tetrahedra()[e]);
+      if (tissue.elementRegions()[e] != 0) continue;
+      const double volume = signedVolume(tissue.restPositions(), tissue.tetrahedra()[e]);
+      all.nodule_m3 += volume;
+      for (const int node : tissue.tetrahedra()[e]) all.nodule_m4 += 0.25 * volume * tissue.restPositions().col(node);
     }
     for (std::size_t t = 0; t < tissue.surface().size(); ++t) {
-      if (tissue.surfaceRegions()[t] == 0) all.area_m2 += triangleArea(tissue.restPositions(), tissue.surface()[t]);
+      if (tissue.surfaceRegions()[t] != 0) continue;
+      const double area = triangleArea(tissue.restPositions(), tissue.surface()[t]);
+      all.area_m2 += area;
+      for (const int node : tissue.surface()[t]) all.area_m3 += area / 3.0 * tissue.restPositions().col(node);
     }
     all.mass_kg = tissue.nodeMasses().sum();
     all.springs_n_per_m = tissue.attachmentStiffness();
     NodalVectors forces = NodalVectors::Zero(3, tissue.nodeCount());
     tissue.addPressure(tissue.restPositions(), forces);
     all.pressure_n = forces.rowwise().sum();
+    for (int i = 0; i < tissue.nodeCount(); ++i) {
+      all.pressure_nm += Vector3(tissue.restPositions().col(i)).cross(Vector3(forces.col(i)));
+    }
     return all;
   };
   const Sums before = sums();
@@ -223,7 +232,10 @@ TEST(TissueRefinement, RegionsAttachmentsAndPressureStayWhatTheyWere) {
   EXPECT_NEAR(after.area_m2, before.area_m2, 1e-12 * before.area_m2);
   EXPECT_NEAR(after.mass_kg, before.mass_kg, 1e-12 * before.mass_kg);
   EXPECT_NEAR(after.springs_n_per_m, before.springs_n_per_m, 1e-12 * before.springs_n_per_m);
+  EXPECT_LT((after.nodule_m4 - before.nodule_m4).norm(), 1e-12 * before.nodule_m4.norm());
+  EXPECT_LT((after.area_m3 - before.area_m3).norm(), 1e-12 * before.area_m3.norm());
   EXPECT_LT((after.pressure_n - before.pressure_n).norm(), 1e-12 * before.pressure_n.norm());
+  EXPECT_LT((after.pressure_nm - before.pressure_nm).norm(), 1e-12 * before.pressure_nm.norm());
 }
 
 TEST(TissueRefinement, FixesNoNodeBetweenOnesThatMove) {
