@@ -14,6 +14,8 @@ namespace {
 
 /// Around a contact, in contact radii: most of its energy, and mostly not that of another.
 constexpr double kRadiiLookedAt = 4.0;
+/// Under a shape that so few nodes carry, strain is as smooth as the few elements around make it, however wrong: lengths tell more.
+constexpr int kFewNodes = 3;
 
 /// What one shape does to one tissue.
 struct Touch {
@@ -21,6 +23,8 @@ struct Touch {
   Vector3 center_W = Vector3::Zero();  ///< at rest, m, mean by force
   double slip_m = 0.0;                 ///< in the step, mean by force
   double radius_m = 0.0;
+  long nodes = 0;       ///< that carry force
+  double edge_m = 0.0;  ///< mean of the triangles around them
 };
 
 /// @param first, end contacts of the shape with the tissue.
@@ -43,12 +47,20 @@ Touch touchOf(const Tissue& tissue, const SolvedContact* first, const SolvedCont
   if (!(touch.sum_n > 0.0)) return touch;
   touch.center_W /= touch.sum_n;
   touch.slip_m /= touch.sum_n;
+  touch.nodes = std::count(carries.begin(), carries.end(), true);
+  const NodalVectors& rest = tissue.restPositions();
   double area = 0.0;
+  double edges_m = 0.0;
+  int triangles = 0;
   for (const Triangle& triangle : tissue.surface()) {
     const auto carrying = std::count_if(triangle.begin(), triangle.end(),
                                         [&](int node) { return carries[static_cast<std::size_t>(node)]; });
-    if (carrying > 0) area += static_cast<double>(carrying) / 3.0 * triangleArea(tissue.restPositions(), triangle);
+    if (carrying == 0) continue;
+    area += static_cast<double>(carrying) / 3.0 * triangleArea(rest, triangle);
+    ++triangles;
+    for (int i = 0; i < 3; ++i) edges_m += (rest.col(triangle[i]) - rest.col(triangle[(i + 1) % 3])).norm() / 3.0;
   }
+  touch.edge_m = edges_m / std::max(triangles, 1);
   touch.radius_m = std::sqrt(area / M_PI);
   return touch;
 }
@@ -74,7 +86,8 @@ double expectedMeshError(double surface_edge_m, double half_extent_m) {
 
 std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const std::vector<Tissue>& tissues,
                                                     const std::vector<NodalVectors>& x,
-                                                    const std::vector<SolvedContact>& contacts, std::size_t instruments,
+                                                    const std::vector<SolvedContact>& contacts,
+                                                    const TouchedPlaces& shapes, std::size_t instruments,
                                                     double momentum_residual) {
   std::vector<ForceErrorEstimate> errors(instruments);
   std::vector<Vector3> forces_n(instruments, Vector3(Vector3::Zero()));
@@ -96,8 +109,13 @@ std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const st
       sum_n += touch.sum_n;
       step += touch.sum_n * touch.slip_m / touch.radius_m;
       if (!judges_mesh) continue;
-      mesh += touch.sum_n * likelyMeshError(recoveredStrainError(tissues[t], shearModuli(scene.tissues[t]), x[t],
-                                                                 touch.center_W, kRadiiLookedAt * touch.radius_m));
+      double share = likelyMeshError(recoveredStrainError(tissues[t], shearModuli(scene.tissues[t]), x[t],
+                                                          touch.center_W, kRadiiLookedAt * touch.radius_m));
+      const double half_extent_m = shapes.halfExtent(of_shape.instrument, of_shape.link, of_shape.shape);
+      if (touch.nodes <= kFewNodes && half_extent_m > 0.0) {  // of the force found, not of the right one
+        share = std::max(share, 1.0 - 1.0 / (1.0 + expectedMeshError(touch.edge_m, half_extent_m)));
+      }
+      mesh += touch.sum_n * share;
     }
     if (!(sum_n > 0.0)) continue;
     ForceErrorEstimate& error = errors[static_cast<std::size_t>(key.instrument)];

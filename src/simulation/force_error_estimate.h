@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "simulation/touched_places.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/simulation/force_error.h"
 #include "tissue_contact/simulation/scene.h"
@@ -15,11 +16,13 @@ namespace tissue_contact {
 
 /// @param x per tissue: positions, m.
 /// @param contacts of the step, sorted by key.
+/// @param shapes of the instruments.
 /// @param momentum_residual of the step, see Residuals.
 /// @return one per instrument. Allocates.
 std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const std::vector<Tissue>& tissues,
                                                     const std::vector<NodalVectors>& x,
-                                                    const std::vector<SolvedContact>& contacts, std::size_t instruments,
+                                                    const std::vector<SolvedContact>& contacts,
+                                                    const TouchedPlaces& shapes, std::size_t instruments,
                                                     double momentum_residual);
 
 }  // namespace tissue_contact

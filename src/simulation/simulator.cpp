@@ -125,8 +125,8 @@ const Residuals& Simulator::residuals() const {
 const std::vector<ForceErrorEstimate>& Simulator::forceErrors() const {
   Implementation& all = *implementation_;
   if (all.force_errors) return *all.force_errors;
-  all.force_errors = estimateForceErrors(all.scene, all.tissues, all.x, all.contacts.solved(), all.instruments.size(),
-                                         residuals().momentum);
+  all.force_errors = estimateForceErrors(all.scene, all.tissues, all.x, all.contacts.solved(), all.touched_places,
+                                         all.instruments.size(), residuals().momentum);
   return *all.force_errors;
 }
 int Simulator::meshRevision(int tissue) const {

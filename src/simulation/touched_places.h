@@ -32,6 +32,10 @@ class TouchedPlaces {
   /// Of all shapes on a tissue, m, ascending; none: it is refined for none.
   std::vector<double> cellsOn(int tissue) const;
 
+  /// Smallest half extent of a shape, m; 0: it is flat.
+  double halfExtent(int instrument, int contact_link, int shape) const {
+    return half_extents_[instrument][contact_link][shape];
+  }
   HalfExtents halfExtents() const;
 
   /// Begins with the places of one tissue where contacts carry force.
