@@ -5,7 +5,10 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "support/comma_locale.h"
 
@@ -39,6 +42,21 @@ TEST(NumbersInText, IsTheSameInALocaleWithADecimalComma) {
   const CommaLocale locale;
   if (!locale.isOn()) GTEST_SKIP() << "no locale with a decimal comma, and none can be made";
   expectNumbers();
+}
+
+TEST(TwoDigits, HaveNoExponentWherePeopleRead) {
+  for (const auto& [value, text] : std::vector<std::pair<double, std::string>>{{0.0, "0"},
+                                                                               {1.0, "1"},
+                                                                               {164.0, "160"},
+                                                                               {-164.0, "-160"},
+                                                                               {99.6, "100"},
+                                                                               {0.0234, "0.023"},
+                                                                               {230.0, "230"},
+                                                                               {7700.0, "7700"},
+                                                                               {123456.0, "120000"}}) {
+    EXPECT_EQ(twoDigits(value), text);
+  }
+  EXPECT_EQ(twoDigits(std::numeric_limits<double>::infinity()), "inf");
 }
 
 }  // namespace
