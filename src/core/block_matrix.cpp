@@ -202,6 +202,11 @@ int BlockPattern::find(int row, int column) const {
 BlockMatrix::BlockMatrix(std::shared_ptr<const BlockPattern> of)
     : pattern(std::move(of)), diagonal(pattern->nodes, Matrix3::Zero()), values(pattern->entries(), BlockLanes{}) {}
 
+void BlockMatrix::carry(StateArchive& archive) {
+  archive.carry(diagonal);
+  archive.carryEach(values, [&](BlockLanes& entry) { archive.carry(entry.at); });
+}
+
 void BlockMatrix::setZero() {
   std::fill(diagonal.begin(), diagonal.end(), Matrix3::Zero());
   std::fill(values.begin(), values.end(), BlockLanes{});

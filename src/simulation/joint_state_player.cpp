@@ -20,6 +20,9 @@ std::int64_t toNanoseconds(double seconds) {
   return std::llround(std::min(seconds, kCentury) * kNanosecondsPerSecond);
 }
 
+/// With the version of what follows it.
+constexpr const char* kStateTitle = "tissue_contact state 1";
+
 }  // namespace
 
 JointStatePlayer::JointStatePlayer(Simulator& simulator)
@@ -197,6 +200,7 @@ std::int64_t JointStatePlayer::ageOf(const std::optional<Moment>& moment) const 
 }
 
 bool JointStatePlayer::isPast(const Moment& moment) const {
+  if (restored_) return false;  // time goes on wherever the first moment is
   return moment.epoch < epoch_ || (moment.epoch == epoch_ && time_ns_ && moment.stamp_ns <= *time_ns_);
 }
 
@@ -259,6 +263,71 @@ void JointStatePlayer::startLoop() {
   time_ns_.reset();
   behind_ns_ = 0;
   ++resets_;
+}
+
+void JointStatePlayer::reset() {
+  forgetSamples();
+  simulator_.reset();
+  forgetJoints();
+  time_ns_.reset();
+  behind_ns_ = 0;
+  restored_ = false;
+  ++resets_;
+}
+
+/// As if no topic had ever been heard.
+void JointStatePlayer::forgetSamples() {
+  merged_ += static_cast<std::int64_t>(waiting_);
+  waiting_ = 0;
+  for (Topic& topic : topic_states_) {
+    topic.clock = TopicClock(max_gap_ns_);
+    topic.queue.clear();
+    topic.held.clear();
+    topic.last.reset();
+    topic.taken.reset();
+  }
+  newest_.reset();
+  released_.reset();
+  resumptions_.clear();
+  epoch_ = 0;
+}
+
+std::string JointStatePlayer::saveState() {
+  StateArchive archive(kStateTitle);
+  carry(archive);
+  return archive.finish();
+}
+
+void JointStatePlayer::restoreState(const std::string& state) {
+  const std::string before = saveState();
+  const auto read = [this](const std::string& bytes) {
+    StateArchive archive(kStateTitle, bytes);
+    carry(archive);
+    archive.requireEnd();
+  };
+  try {
+    read(state);
+  } catch (const std::exception&) {
+    read(before);
+    throw;
+  }
+  forgetSamples();
+  owes_.assign(owes_.size(), false);
+  restored_ = time_ns_.has_value();
+}
+
+void JointStatePlayer::carry(StateArchive& archive) {
+  simulator_.carry(archive);
+  archive.section("joint states");
+  archive.carry(time_ns_);
+  archive.carry(behind_ns_);
+  if (behind_ns_ < 0 || behind_ns_ >= std::max<std::int64_t>(shortest_ns_, 1)) archive.refuse("a time that is none");
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    archive.carry(targets_[i]);
+    archive.carry(heard_[i]);
+    if (!targets_[i].allFinite()) archive.refuse("a joint position that is not finite");
+    for (const Heard heard : heard_[i]) archive.requireIndex(static_cast<int>(heard), 0, 3, "the mark of a joint");
+  }
 }
 
 /// Whether no loop that is a new beginning lies between the one played last and the moment's.
@@ -354,6 +423,10 @@ void JointStatePlayer::placeNewJoints() {
 }
 
 void JointStatePlayer::advanceTo(std::int64_t stamp_ns, PlayedSample& played) {
+  if (std::exchange(restored_, false) && (stamp_ns < *time_ns_ || stamp_ns - *time_ns_ > max_gap_ns_)) {
+    time_ns_ = stamp_ns - max_gap_ns_ - 1;  // so that it counts as a gap
+    behind_ns_ = 0;
+  }
   std::int64_t interval_ns = time_ns_ ? stamp_ns - *time_ns_ + behind_ns_ : 0;
   time_ns_ = stamp_ns;
   behind_ns_ = interval_ns < shortest_ns_ ? interval_ns : 0;

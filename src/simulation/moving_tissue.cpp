@@ -51,6 +51,25 @@ void MovingTissue::stop() {
   still_changed_ = false;
 }
 
+void MovingTissue::carry(StateArchive& archive) {
+  if (archive.isReading()) reset();
+  if (system_.b.cols() == 0) {  // no step has been taken
+    system_.b.setZero(3, tissue_.nodeCount());
+    system_.mass = tissue_.nodeMasses();
+  }
+  archive.carry(x_);
+  archive.carry(v_);
+  archive.carry(loads_);
+  if (!x_.allFinite() || !v_.allFinite() || !loads_.allFinite()) archive.refuse("a position, speed or force that is not finite");
+  elastic_state_->carry(archive);
+  archive.carry(system_.b);
+  archive.carry(system_.mass);
+  archive.carry(system_.stiffness_scale);
+  archive.carry(system_.damping_scale);
+  archive.carry(still_changed_);
+  if (sleep_) sleep_->carry(archive);
+}
+
 void MovingTissue::makeState() {
   if (!elastic_state_) elastic_state_ = tissue_.elasticity().makeState();
   elastic_state_->adapt_rotations = scene_.advisor.adapt_rotations;

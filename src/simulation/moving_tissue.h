@@ -37,6 +37,9 @@ class MovingTissue {
   /// keep theirs.
   void stop();
 
+  /// @pre on reading: the mesh is that of what was written.
+  void carry(StateArchive& archive);
+
   /// Ends a step of `dt`, s.
   /// @return whether it is time to call fallAsleep().
   bool isTimeToSleep(double dt) { return sleep_ && sleep_->isTimeToCheck(dt); }

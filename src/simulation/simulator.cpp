@@ -12,6 +12,12 @@
 #include "tissue_contact/tissue/make_elasticity.h"
 
 namespace tissue_contact {
+namespace {
+
+/// With the version of what follows it.
+constexpr const char* kStateTitle = "tissue_contact simulation 1";
+
+}  // namespace
 
 std::unique_ptr<Simulator::Implementation> Simulator::build(const Scene& scene, const SceneEnvironment& environment) {
   try {
@@ -49,6 +55,29 @@ std::vector<std::string> Simulator::advice() const {
 }
 
 void Simulator::reset() { implementation_->reset(); }
+
+void Simulator::carry(StateArchive& archive) { implementation_->carry(archive); }
+
+std::string Simulator::saveState() {
+  StateArchive archive(kStateTitle);
+  carry(archive);
+  return archive.finish();
+}
+
+void Simulator::restoreState(const std::string& state) {
+  const std::string before = saveState();
+  const auto read = [this](const std::string& bytes) {
+    StateArchive archive(kStateTitle, bytes);
+    carry(archive);
+    archive.requireEnd();
+  };
+  try {
+    read(state);
+  } catch (const std::exception&) {
+    read(before);
+    throw;
+  }
+}
 
 void Simulator::placeInstrument(int instrument, const VectorX& joint_positions) {
   requireJointPositions(instrument, joint_positions);

@@ -1,6 +1,7 @@
 #include "simulation/simulator_implementation.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "simulation/build_scene.h"
 #include "tissue_contact/baselines/make_contact_solver.h"
@@ -27,6 +28,17 @@ std::vector<NodalVectors> restPositionsOf(const std::vector<Tissue>& tissues) {
   positions.reserve(tissues.size());
   for (const Tissue& tissue : tissues) positions.push_back(tissue.restPositions());
   return positions;
+}
+
+/// Of what the material makes of the undeformed mesh.
+std::uint64_t materialHash(const Tissue& tissue) {
+  const auto undeformed = tissue.elasticity().makeState();
+  std::uint64_t hash = hashBytes(tissue.nodeMasses().data(), sizeof(double) * tissue.nodeMasses().size());
+  for (const BlockMatrix* matrix : {&undeformed->stiffness, &undeformed->damping}) {
+    for (const Matrix3& block : matrix->diagonal) hash = hashBytes(block.data(), sizeof block, hash);
+  }
+  const double damping[] = {tissue.damping().stiffness_s, tissue.damping().mass_per_s};
+  return hashBytes(damping, sizeof damping, hash);
 }
 
 }  // namespace
@@ -87,6 +99,66 @@ void Simulator::Implementation::reset() {
   residuals = Residuals();
   step_count = 0;
   last_dt = 0.0;
+}
+
+void Simulator::Implementation::carry(StateArchive& archive) {
+  carryMeshes(archive);
+  for (std::size_t i = 0; i < instruments.size(); ++i) {
+    archive.section("instrument '" + instruments[i].name() + "'");
+    VectorX positions = motion.positions(static_cast<int>(i));
+    archive.carry(positions);
+    if (!positions.allFinite()) archive.refuse("a joint position that is not finite");
+    if (archive.isReading()) motion.place(static_cast<int>(i), positions);
+    archive.carry(wrenches[i].force);
+    archive.carry(wrenches[i].torque);
+    if (!wrenches[i].force.allFinite() || !wrenches[i].torque.allFinite()) archive.refuse("a force that is not finite");
+  }
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    archive.section("tissue '" + tissues[t].name() + "' in motion");
+    moving[t].carry(archive);
+  }
+  archive.section("contacts");
+  contacts.carry(archive, instruments);
+  solution.impulses.resize(contacts.solved().size(), Vector3::Zero());
+  archive.carry(solution.impulses);
+  archive.carry(step_count);
+  archive.carry(last_dt);
+  if (!std::isfinite(last_dt) || last_dt < 0.0) archive.refuse("a time step that is no time");
+  solver->reset();  // also on writing: what it carries is not stored, so both go on without it
+  if (!archive.isReading()) return;
+  problem.contacts.clear();
+  solution.states.clear();
+  force_errors.reset();
+  report = StepReport();
+  residuals = Residuals();
+}
+
+/// Also what tells whether a state is of this scene.
+void Simulator::Implementation::carryMeshes(StateArchive& archive) {
+  if (archive.isReading()) contacts.clear();
+  archive.section("scene");
+  archive.require(tissues.size(), "it has another number of tissues");
+  archive.require(instruments.size(), "it has another number of instruments");
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    archive.section("tissue '" + tissues[t].name() + "'");
+    bool is_refined = refinements[t] != nullptr;
+    archive.require(is_refined ? 1 : 0, "is refined in one of scene and state only");
+    if (is_refined) {
+      refinements[t]->carry(archive);
+      if (archive.isReading()) {
+        takeMesh(static_cast<int>(t), {});
+        x[t] = tissues[t].restPositions();
+        solution.v[t].setZero(3, tissues[t].nodeCount());
+        moving[t].changeMesh();
+      }
+    }
+    const NodalVectors& rest = tissues[t].restPositions();
+    const auto bytes = [](const auto& values) { return sizeof(*values.data()) * static_cast<std::size_t>(values.size()); };
+    archive.require(hashBytes(rest.data(), bytes(rest)), "the mesh, or its place in the world, is another one");
+    const std::vector<Tetrahedron>& elements = tissues[t].tetrahedra();
+    archive.require(hashBytes(elements.data(), bytes(elements)), "the elements are others");
+    archive.require(materialHash(tissues[t]), "the material is another one");
+  }
 }
 
 /// One implicit step: the rooms in order.

@@ -29,6 +29,8 @@ struct Simulator::Implementation {
   Implementation(const Implementation&) = delete;  // members refer to each other
   Implementation& operator=(const Implementation&) = delete;
   void reset();
+  void carry(StateArchive& archive);
+  void carryMeshes(StateArchive& archive);
   void step(double dt);
   void restTissues();
   void refineTissues();

@@ -1,6 +1,7 @@
 #include "simulation/step_contacts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "tissue_contact/mesh/tissue_surface.h"
@@ -39,6 +40,24 @@ void renumberPoint(const std::vector<int>& to_new, std::array<int, 3>& feature, 
   if (!is_there) weights.setZero();
   const auto end = std::find(feature.begin(), feature.end(), -1);
   std::sort(feature.begin(), end);
+}
+
+void carryContact(StateArchive& archive, SolvedContact& solved) {
+  Contact& contact = solved.contact;
+  ContactKey& key = contact.key;
+  for (int* const index : {&key.tissue, &key.instrument, &key.link, &key.shape, &key.corner, &key.slot, &key.other_tissue}) {
+    archive.carry(*index);
+  }
+  for (std::array<int, 3>* const nodes : {&key.feature, &key.other_feature, &contact.nodes, &contact.other_nodes}) {
+    archive.carry(*nodes);
+  }
+  for (Vector3* const vector :
+       {&contact.weights, &contact.p_WC, &contact.other_weights, &solved.force_on_tissue_n, &solved.slip_W}) {
+    archive.carry(*vector);
+  }
+  archive.carry(contact.R_WC);
+  archive.carry(contact.gap_m);
+  archive.carry(solved.state);
 }
 
 }  // namespace
@@ -246,6 +265,47 @@ void StepContacts::finishRenumbering() {
             [](const SolvedContact& a, const SolvedContact& b) { return a.contact.key < b.contact.key; });
   memory_.remember(contacts_);
   if (pressure_) pressure_->remember(contacts_);
+}
+
+void StepContacts::carry(StateArchive& archive, const std::vector<Instrument>& instruments) {
+  constexpr std::size_t kMost = 10'000'000;
+  archive.carryList(contacts_, kMost, [&](SolvedContact& solved) {
+    carryContact(archive, solved);
+    if (archive.isReading()) requireContact(archive, solved, instruments);
+  });
+  if (!archive.isReading()) return;
+  const auto ordered = [](const SolvedContact& a, const SolvedContact& b) { return a.contact.key < b.contact.key; };
+  if (!std::is_sorted(contacts_.begin(), contacts_.end(), ordered)) archive.refuse("contacts out of their order");
+  memory_.remember(contacts_);
+  if (pressure_) pressure_->remember(contacts_);
+}
+
+/// Its nodes, shapes and numbers are such as there are.
+void StepContacts::requireContact(const StateArchive& archive, const SolvedContact& solved,
+                                  const std::vector<Instrument>& instruments) const {
+  const Contact& contact = solved.contact;
+  const ContactKey& key = contact.key;
+  const auto require_point = [&](int tissue, const std::array<int, 3>& feature, const std::array<int, 3>& nodes) {
+    archive.requireIndex(tissue, 0, tissues_.size(), "the tissue");
+    const auto count = static_cast<std::size_t>(tissues_[tissue].nodeCount());
+    for (const int node : nodes) archive.requireIndex(node, 0, count, "the node");
+    for (const int node : feature) archive.requireIndex(node, -1, count, "the node");
+  };
+  require_point(key.tissue, key.feature, contact.nodes);
+  if (key.instrument >= 0) {
+    archive.requireIndex(key.instrument, 0, instruments.size(), "the instrument");
+    const std::vector<ContactLink>& links = instruments[key.instrument].contactLinks();
+    archive.requireIndex(key.link, 0, links.size(), "the link");
+    archive.requireIndex(key.shape, 0, links[key.link].shapes.size(), "the shape");
+    if (key.other_tissue >= 0) archive.refuse("a contact of an instrument and a tissue at once");
+  } else {
+    require_point(key.other_tissue, key.other_feature, contact.other_nodes);
+  }
+  const bool is_finite = contact.weights.allFinite() && contact.other_weights.allFinite() && contact.p_WC.allFinite() &&
+                         contact.R_WC.allFinite() && std::isfinite(contact.gap_m) &&
+                         solved.force_on_tissue_n.allFinite() && solved.slip_W.allFinite();
+  if (!is_finite) archive.refuse("a contact whose place or force is not finite");
+  archive.requireIndex(static_cast<int>(solved.state), 0, 3, "the state");
 }
 
 int StepContacts::count(ContactState state) const {

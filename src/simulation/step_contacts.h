@@ -72,6 +72,9 @@ class StepContacts {
   /// To be called once all meshes that change have been renumbered.
   void finishRenumbering();
 
+  /// On reading, refuses what does not belong to these tissues and instruments.
+  void carry(StateArchive& archive, const std::vector<Instrument>& instruments);
+
   const std::vector<SolvedContact>& solved() const { return contacts_; }
   int count(ContactState state) const;
 
@@ -85,6 +88,8 @@ class StepContacts {
   ContactBefore beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x, double last_dt) const;
   void land(const std::vector<NodalVectors>& v, double dt, std::vector<ContactRow>& rows);
   double& firstTouch(const ContactKey& key);
+  void requireContact(const StateArchive& archive, const SolvedContact& solved,
+                      const std::vector<Instrument>& instruments) const;
   Vector3 slipOf(std::size_t contact, const ContactProblem& problem, const ContactSolution& solution) const;
 
   const std::vector<Tissue>& tissues_;

@@ -92,6 +92,31 @@ bool TissueRefinement::reset() {
   return changes;
 }
 
+void TissueRefinement::carry(StateArchive& archive) {
+  constexpr std::size_t kMost = 100'000;
+  archive.carryList(foci_, kMost, [&](Focus& focus) {
+    archive.carry(focus.p_T);
+    archive.carry(focus.asked_m);
+    archive.carry(focus.coarsening);
+    const bool is_possible = focus.p_T.allFinite() && focus.asked_m > 0.0 && focus.coarsening >= 1.0;
+    if (!is_possible) archive.refuse("a place of fine cells that is not finite, or cells without a length");
+  });
+  archive.carryList(places_, kMost, [&](Place& place) {
+    archive.carry(place.p_T);
+    archive.carry(place.cell_m);
+  });
+  archive.carry(coarsening_);
+  int revision = revision_;
+  archive.carry(revision);
+  std::uint64_t nodes = static_cast<std::uint64_t>(mesh_.mesh.positions.cols());
+  archive.carry(nodes);
+  if (!archive.isReading()) return;
+  if (!refineWithin(mesh_) || static_cast<std::uint64_t>(mesh_.mesh.positions.cols()) != nodes) {
+    archive.refuse("the mesh comes out another one than that of the state");
+  }
+  revision_ = std::max(revision_, revision) + 1;
+}
+
 double TissueRefinement::reach(double cell_m) const {
   const double asked = description_.refinement.reach_m;
   return asked > 0.0 ? asked : kCellsOfReach * cell_m;

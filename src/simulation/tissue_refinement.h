@@ -56,6 +56,9 @@ class TissueRefinement {
   /// Back to the unrefined mesh. @return whether that is another one.
   bool reset();
 
+  /// On reading the mesh becomes that of what was written; its revision is a later one than any before.
+  void carry(StateArchive& archive);
+
   /// By what factor cells of the newest foci are longer than asked for, to have no more nodes than allowed: 1 or more; 1 while nothing
   /// touches.
   double coarsening() const { return places_.empty() ? 1.0 : coarsening_; }

@@ -41,6 +41,19 @@ void TissueSleep::wakeAll() {
   held_force_ = 0.0;
 }
 
+void TissueSleep::carry(StateArchive& archive) {
+  archive.carry(still_);
+  archive.carry(anchors_);
+  archive.carry(still_checks_);
+  archive.carry(since_check_);
+  archive.carry(held_force_);
+  if (!archive.isReading()) return;
+  for (std::size_t i = 0; i < fixed_.size(); ++i) {
+    if (fixed_[i] && !still_[i]) archive.refuse("a fixed node that moves");
+  }
+  listSleepers();
+}
+
 void TissueSleep::wakeRing(int node) {
   wake(node);
   body_.K->pattern->forRow(node, [this](int other, int /*place*/) { wake(other); });

@@ -20,6 +20,7 @@
 
 #include <vector>
 
+#include "tissue_contact/core/state_archive.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/solver/contact_problem.h"
 
@@ -43,6 +44,7 @@ class TissueSleep {
               bool by_parts);
 
   void wakeAll();
+  void carry(StateArchive& archive);
 
   int sleepers() const { return static_cast<int>(sleepers_.size()); }
   bool allAsleep() const { return free_nodes_ > 0 && sleepers() == free_nodes_; }

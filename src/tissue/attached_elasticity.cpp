@@ -10,6 +10,25 @@ struct AttachedElasticity::AttachedState : State {
   std::vector<Matrix3> stiffness0;  ///< diagonal blocks of the attached nodes without springs: taking a spring out of a
                                     ///< sum again would leave its rounding, step after step
   std::vector<Matrix3> damping0;    ///< likewise; empty without a damping matrix
+
+  void lendMatrices() {  ///< to the body, or takes them back
+    std::swap(body->stiffness, stiffness);
+    std::swap(body->damping, damping);
+  }
+
+  void carry(StateArchive& archive) override {
+    archive.carry(elapsed_s);
+    lendMatrices();
+    try {
+      body->carry(archive);
+    } catch (...) {
+      lendMatrices();
+      throw;
+    }
+    lendMatrices();
+    archive.carry(stiffness0);
+    archive.carry(damping0);
+  }
 };
 
 namespace {
@@ -49,11 +68,9 @@ void AttachedElasticity::withoutSprings(AttachedState& state, const Work& work) 
   body.elapsed_s += std::exchange(state.elapsed_s, 0.0);
   putBack(springs_, state.stiffness0, state.stiffness);
   putBack(springs_, state.damping0, state.damping);
-  std::swap(body.stiffness, state.stiffness);
-  std::swap(body.damping, state.damping);
+  state.lendMatrices();
   work(body);
-  std::swap(body.stiffness, state.stiffness);
-  std::swap(body.damping, state.damping);
+  state.lendMatrices();
   addSprings(springs_, 1.0, state.stiffness0, state.stiffness);
   addSprings(springs_, damping_s_, state.damping0, state.damping);
 }
@@ -67,8 +84,7 @@ std::unique_ptr<Elasticity::State> AttachedElasticity::makeStateAt(const NodalVe
 std::unique_ptr<Elasticity::State> AttachedElasticity::attach(std::unique_ptr<State> body) const {
   auto state = std::make_unique<AttachedState>();
   state->body = std::move(body);
-  std::swap(state->body->stiffness, state->stiffness);
-  std::swap(state->body->damping, state->damping);
+  state->lendMatrices();
   state->stiffness0.resize(springs_.size());
   if (state->damping.rows() > 0) state->damping0.resize(springs_.size());
   addSprings(springs_, 1.0, state->stiffness0, state->stiffness);

@@ -102,6 +102,14 @@ void DilatationPatches::split(const TetElements::Held& batches, Held& held) cons
   }
 }
 
+void DilatationPatches::Held::carry(StateArchive& archive, std::size_t patches, std::size_t batches) {
+  bool any = !still.empty();
+  archive.carry(any);
+  still.resize(any ? patches : 0);
+  archive.carry(still);
+  carryRanges(archive, batches, pressed);
+}
+
 void DilatationPatches::meanPressures(const std::vector<ElementBatch>& batches, const std::vector<BatchRange>& ranges,
                                       const std::vector<ElementValues>& values, double at_rest, bool still,
                                       const Held& held, std::vector<double>& pressures) const {

@@ -30,6 +30,7 @@ struct DilatationPatches {
     std::vector<bool> still;          ///< per patch: its forces are among the held ones; empty: none is
     std::vector<BatchRange> pressed;  ///< batches with elements of the other patches
 
+    void carry(StateArchive& archive, std::size_t patches, std::size_t batches);
     bool isStill(std::size_t patch) const { return !still.empty() && still[patch]; }
   };
 

@@ -14,6 +14,12 @@ struct MeanDilatation::PatchState : RotationState {
   DilatationPatches::Held held_patches;
   std::vector<double> pressures;    ///< scratch, per patch: kappa tbar, Pa
   std::vector<int> turned_patches;  ///< scratch
+
+  void carry(StateArchive& archive) override {
+    RotationState::carry(archive);
+    archive.carry(gradients);
+    held_patches.carry(archive, pressures.size(), rotations.size());
+  }
 };
 
 MeanDilatation::MeanDilatation(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,

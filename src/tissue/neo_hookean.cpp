@@ -137,6 +137,16 @@ struct NeoHookean::DeformationState : State {
   std::vector<Vector3> tangent_gradients;    ///< likewise: b of every patch's nodes, patch after patch, m^2
   std::vector<unsigned char> stale;          ///< scratch, per patch: to be refreshed
   DilatationPatches::Held held_patches;
+
+  void carry(StateArchive& archive) override {
+    State::carry(archive);
+    archive.carry(tangent_deformations);
+    held.carry(archive, tangent_deformations.size(), stiffness.rows());
+    archive.carry(volume_ratios);
+    archive.carry(tangent_pressures);
+    archive.carry(tangent_gradients);
+    held_patches.carry(archive, pressures.size(), tangent_deformations.size());
+  }
 };
 
 NeoHookean::NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,

@@ -22,6 +22,16 @@ struct TetElasticity::RotationState : State {
   int updates = 0;            ///< since rotations were last measured
   int calm = 0;               ///< updates for which no element has been turned far
   double turn_squared = 0.0;  ///< largest at the last update, while linear; rad^2
+
+  void carry(StateArchive& archive) override {
+    State::carry(archive);
+    archive.carry(rotations);
+    archive.carry(tangent_rotations);
+    archive.carry(traces);
+    held.carry(archive, rotations.size(), stiffness.rows());
+    for (int* const count : {&blend, &blend_to, &updates, &calm}) archive.carry(*count);
+    archive.carry(turn_squared);
+  }
 };
 
 }  // namespace tissue_contact

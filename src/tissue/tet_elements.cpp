@@ -72,6 +72,23 @@ void TetElements::split(const std::vector<bool>& still, Held& held) const {
   held.forces.setZero(3, static_cast<Eigen::Index>(still.size()));
 }
 
+void carryRanges(StateArchive& archive, std::size_t batches, std::vector<BatchRange>& ranges) {
+  archive.carryList(ranges, batches, [&](BatchRange& range) {
+    archive.carry(range.begin);
+    archive.carry(range.end);
+    if (range.begin > range.end || range.end > batches) archive.refuse("a range of elements that are not there");
+  });
+}
+
+void TetElements::Held::carry(StateArchive& archive, std::size_t batches, int nodes) {
+  carryRanges(archive, batches, moving);
+  carryRanges(archive, batches, still);
+  bool any = forces.cols() > 0;
+  archive.carry(any);
+  forces.resize(3, any ? nodes : 0);
+  archive.carry(forces);
+}
+
 void TetElements::prepare(Elasticity::State& state) const {
   state.stiffness = BlockMatrix(pattern);
   if (damps) state.damping = BlockMatrix(pattern);

@@ -24,6 +24,9 @@ struct TetElement {
   BlockSlots<4> slots;
 };
 
+/// Refuses what lies beyond the batches.
+void carryRanges(StateArchive& archive, std::size_t batches, std::vector<BatchRange>& ranges);
+
 struct TetElements {
   using Lame = LameParameters (*)(const MaterialDescription&);
 
@@ -44,6 +47,8 @@ struct TetElements {
     std::vector<BatchRange> moving;  ///< ranges of batches, ascending
     std::vector<BatchRange> still;
     NodalVectors forces;  ///< of the batches in `still`, N
+
+    void carry(StateArchive& archive, std::size_t batches, int nodes);
 
     void startForces(NodalVectors& all) const {
       if (still.empty()) {

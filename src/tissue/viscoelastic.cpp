@@ -34,6 +34,12 @@ struct Overstress::MaxwellState : RotationState {
   std::vector<PronyStep> steps;      ///< scratch, per term
   std::vector<StrainBatch> strains;  ///< deviators at the last update, by batch
   std::vector<StrainBatch> held;     ///< h, term after term for each batch
+
+  void carry(StateArchive& archive) override {
+    RotationState::carry(archive);
+    archive.carry(strains);
+    archive.carry(held);
+  }
 };
 
 Overstress::Overstress(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
@@ -77,6 +83,11 @@ struct Viscoelastic::SumState : State {
   std::unique_ptr<State> relaxed;
   std::unique_ptr<State> overstress;
 
+  void carry(StateArchive& archive) override {
+    State::carry(archive);
+    relaxed->carry(archive);
+    overstress->carry(archive);
+  }
   void sum() {
     stiffness.setSum(1.0, relaxed->stiffness, 1.0, overstress->stiffness);
     if (damping.rows() > 0) damping.setSum(1.0, relaxed->damping, 1.0, overstress->damping);

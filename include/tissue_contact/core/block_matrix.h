@@ -13,6 +13,7 @@
 #include <memory>
 #include <vector>
 
+#include "tissue_contact/core/state_archive.h"
 #include "tissue_contact/core/types.h"
 
 namespace tissue_contact {
@@ -125,6 +126,8 @@ struct BlockMatrix {
   }
 
   void setZero();
+
+  void carry(StateArchive& archive);  ///< the blocks; the pattern is the reader's
 
   /// Takes over the blocks of a matrix of the same pattern. No allocation.
   void copyBlocks(const BlockMatrix& from);

@@ -139,6 +139,19 @@ class JointStatePlayer {
   /// Moments that are here now wait for no topic any longer, since wall time presses.
   void stopWaiting();
 
+  /// Everything to where it was before the first sample: the simulator is reset, what waits counts as merged.
+  void reset();
+
+  /// The simulator's state (Simulator::saveState()), the moment it is at and where joints were heard to be, as bytes for restoreState().
+  /// Samples that wait are not in it.
+  std::string saveState();
+
+  /// Goes on from a saved state of the same scene, with what is pushed from now on; what waits counts as merged. If the first stamp
+  /// is that of the state or follows it within max_gap_s, the same bits follow as without saving and restoring. Else time goes
+  /// on at the first stamp, and the way of the joints from where the state has them takes max_gap_s, as after any gap.
+  /// @throws std::invalid_argument telling what does not fit; nothing has changed then.
+  void restoreState(const std::string& state);
+
   /// No more samples will come (end of a bag): no moment waits any longer. What would have to be confirmed is refused.
   void finish();
 
@@ -208,6 +221,8 @@ class JointStatePlayer {
   void takeJoints(const JointStateSample& sample, const Topic& topic);
   void headForNext(const Moment& moment, const Topic& topic);
   void placeNewJoints();
+  void carry(StateArchive& archive);
+  void forgetSamples();
   void startLoop();
   void resume(const Moment& moment);
   void forgetJoints();
@@ -235,6 +250,7 @@ class JointStatePlayer {
   std::optional<std::int64_t> time_ns_;    ///< stamp of the moment played last
   std::int64_t behind_ns_ = 0;             ///< by how much the simulator is behind that, < shortest_ns_
   int epoch_ = 0;                          ///< loop being played
+  bool restored_ = false;                  ///< no moment has been played since restoreState()
   bool finished_ = false;
   std::array<std::int64_t, kVerdictCount> counts_{};
   std::int64_t merged_ = 0;

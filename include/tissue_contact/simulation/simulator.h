@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tissue_contact/contact/contact_detector.h"
+#include "tissue_contact/core/state_archive.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/instrument/instrument.h"
 #include "tissue_contact/mesh/triangle_mesh.h"
@@ -108,6 +109,17 @@ class Simulator {
   /// Everything back to the start: tissues undeformed and at rest, instruments at their initial joint positions, no
   /// contact history, step count 0.
   void reset();
+
+  /// All that the next advance depends on, as bytes for restoreState(): a simulation restored from them goes on to the same bits. What
+  /// methods carry from step to step (factors of `cholesky`) is not in it: both go on without.
+  std::string saveState();
+
+  /// Goes on from a state that was saved of the same scene: tissues, instruments, materials. Friction, solver and step may differ.
+  /// @throws std::invalid_argument telling what does not fit; nothing has changed then.
+  void restoreState(const std::string& state);
+
+  /// For those whose state has this one's in it.
+  void carry(StateArchive& archive);
 
   /// Puts an instrument somewhere without motion in between (no speed, no contact until the next advance).
   void placeInstrument(int instrument, const VectorX& joint_positions);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tissue_contact/core/block_matrix.h"
+#include "tissue_contact/core/state_archive.h"
 #include "tissue_contact/core/types.h"
 
 namespace tissue_contact {
@@ -17,6 +18,12 @@ class Elasticity {
   /// What changes while simulating. Use a state only with the model that made it.
   struct State {
     virtual ~State() = default;
+    /// Writes or reads all that the model keeps from one update to the next, see StateArchive. Extended by models that keep more.
+    virtual void carry(StateArchive& archive) {
+      stiffness.carry(archive);
+      damping.carry(archive);
+      archive.carry(elapsed_s);
+    }
     BlockMatrix stiffness;  ///< K, N/m, symmetric; rows of fixed nodes hold nothing
     BlockMatrix damping;    ///< D, N s/m, where materials damp differently by region, of the same pattern; else no rows
     /// Set by the caller: the model may leave out rotations while they are small, where it says that it can.

@@ -1,0 +1,94 @@
+/// @file
+/// JointStatePlayer saved and restored: the same bits where time goes on, and a gap where it does not.
+#include <string>
+
+#include "joint_state_player_fixture.h"
+#include "support/refusal.h"
+
+namespace tissue_contact {
+namespace {
+
+/// The samples from `from` on; afterwards what was published for them.
+Trace goOn(Simulator& simulator, JointStatePlayer& player, const std::vector<JointStateSample>& samples, std::size_t from,
+           std::size_t to) {
+  Order order;
+  for (std::size_t i = from; i < to; ++i) order.emplace_back(0, samples[i]);
+  return run(simulator, player, order);
+}
+
+class JointStateSaved : public OneProbe {
+ protected:
+  const std::vector<JointStateSample> samples = press(kSecond, 0.006);
+  const std::unique_ptr<Simulator> other = oneProbe();
+  JointStatePlayer restored{*other};
+};
+
+TEST_F(JointStateSaved, GoesOnToTheSameBits) {
+  goOn(*simulator, player, samples, 0, 20);
+  restored.restoreState(player.saveState());
+  const Trace expected = goOn(*simulator, player, samples, 20, 30);
+  EXPECT_TRUE(expected.pressed());
+  EXPECT_TRUE(goOn(*other, restored, samples, 20, 30) == expected);
+  EXPECT_EQ(restored.gaps(), 0);
+}
+
+// The moment that it was saved at, again: its wrench, without a step.
+TEST_F(JointStateSaved, TheSameStampIsTheSameMoment) {
+  goOn(*simulator, player, samples, 0, 20);
+  const Wrench wrench = simulator->wrench(0);
+  restored.restoreState(player.saveState());
+  const Trace again = goOn(*other, restored, samples, 19, 20);
+  ASSERT_EQ(again.stamps.size(), 1U);
+  EXPECT_EQ(other->wrench(0).force, wrench.force);
+  EXPECT_EQ(other->stepCount(), simulator->stepCount());
+}
+
+// A state of yesterday, or of a bag that is played again from its start.
+TEST_F(JointStateSaved, AnotherTimeIsAGapAndNoReset) {
+  goOn(*simulator, player, samples, 0, 30);
+  const std::string state = player.saveState();
+  for (const std::int64_t start : {samples.back().stamp_ns - 3 * kSecond, samples.back().stamp_ns + 3600 * kSecond}) {
+    restored.restoreState(state);
+    const std::int64_t gaps = restored.gaps();
+    JointStateSample held = samples.back();
+    held.stamp_ns = start;
+    restored.push(0, held);
+    held.stamp_ns += 10 * kMillisecond;
+    restored.push(0, held);
+    const std::vector<PlayedSample> played = drain(restored);
+    ASSERT_EQ(played.size(), 2U);
+    EXPECT_TRUE(played[0].was_gap);
+    EXPECT_FALSE(played[0].was_reset);
+    EXPECT_FALSE(played[1].was_gap);
+    EXPECT_EQ(restored.gaps(), gaps + 1);
+    EXPECT_GT(other->wrench(0).force.z(), 0.5 * simulator->wrench(0).force.z());
+  }
+}
+
+TEST_F(JointStateSaved, WhatWaitsIsMergedAndCountsAddUp) {
+  goOn(*simulator, player, samples, 0, 10);
+  const std::string state = player.saveState();
+  restored.push(0, samples[0]);
+  restored.push(0, samples[1]);
+  ASSERT_EQ(restored.waiting(), 2);
+  restored.restoreState(state);
+  EXPECT_EQ(restored.waiting(), 0);
+  EXPECT_EQ(restored.merged(), 2);
+}
+
+TEST_F(JointStateSaved, ResetBeginsAnew) {
+  const Trace first = goOn(*simulator, player, samples, 0, 30);
+  player.reset();
+  EXPECT_EQ(simulator->stepCount(), 0);
+  EXPECT_TRUE(goOn(*simulator, player, samples, 0, 30) == first);
+  EXPECT_EQ(player.resets(), 1);
+}
+
+TEST_F(JointStateSaved, RefusesTheStateOfASimulatorAlone) {
+  goOn(*simulator, player, samples, 0, 10);
+  expectRefusal([&] { restored.restoreState(simulator->saveState()); }, {"saved state"});
+  expectRefusal([&] { restored.restoreState(""); }, {"saved state"});
+}
+
+}  // namespace
+}  // namespace tissue_contact
