@@ -20,9 +20,6 @@ std::int64_t toNanoseconds(double seconds) {
   return std::llround(std::min(seconds, kCentury) * kNanosecondsPerSecond);
 }
 
-/// With the version of what follows it.
-constexpr const char* kStateTitle = "tissue_contact state 1";
-
 }  // namespace
 
 JointStatePlayer::JointStatePlayer(Simulator& simulator)
@@ -292,8 +289,10 @@ void JointStatePlayer::forgetSamples() {
   epoch_ = 0;
 }
 
+const char* JointStatePlayer::stateTitle() { return "tissue_contact state 1"; }
+
 std::string JointStatePlayer::saveState() {
-  StateArchive archive(kStateTitle);
+  StateArchive archive(stateTitle());
   carry(archive);
   return archive.finish();
 }
@@ -301,7 +300,7 @@ std::string JointStatePlayer::saveState() {
 void JointStatePlayer::restoreState(const std::string& state) {
   const std::string before = saveState();
   const auto read = [this](const std::string& bytes) {
-    StateArchive archive(kStateTitle, bytes);
+    StateArchive archive(stateTitle(), bytes);
     carry(archive);
     archive.requireEnd();
   };

@@ -152,6 +152,12 @@ class JointStatePlayer {
   /// @throws std::invalid_argument telling what does not fit; nothing has changed then.
   void restoreState(const std::string& state);
 
+  /// What every saved state begins with: kind and version.
+  static const char* stateTitle();
+
+  /// Of the moment played last; none yet. A restored one: that of the state.
+  const std::optional<std::int64_t>& time() const { return time_ns_; }
+
   /// No more samples will come (end of a bag): no moment waits any longer. What would have to be confirmed is refused.
   void finish();
 

@@ -247,6 +247,17 @@ void Health::noteWrenches(std::size_t count, std::optional<double> lag_s) {
   worst_lag_s_ = std::max(worst_lag_s_, *lag_s);
 }
 
+void Health::notePaused(bool paused) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  figures_.paused = paused;
+}
+
+void Health::noteReset() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  figures_.broken = false;
+  figures_.resets = player_.resets();
+}
+
 void Health::noteSnapshotsDropped(std::int64_t dropped) {
   const std::lock_guard<std::mutex> lock(mutex_);
   figures_.snapshots_dropped = dropped;
@@ -325,6 +336,8 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
     status.summary(Level::ERROR, "a step had no finite answer");
   } else if (now.by_verdict[two_clocks] > told_.by_verdict[two_clocks] + 1) {  // one may be an outlier
     status.summary(Level::ERROR, "two clocks on one topic: joint states of one of them are refused");
+  } else if (now.paused) {
+    status.summary(Level::OK, "paused by ~pause: " + std::to_string(now.waiting) + " joint states wait for ~resume");
   } else if (lag != LagVerdict::kWithinBound) {
     status.summaryf(lag == LagVerdict::kFarOverBound ? Level::ERROR : Level::WARN,
                     "wrenches late by up to %.3g s, more than %.3g s", worst_lag_s, bound_s);
@@ -339,7 +352,7 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   } else {
     status.summary(Level::OK, now.accepted > 0 ? "running" : "no joint state yet");
   }
-  if (advised_ || (lag == LagVerdict::kWithinBound && !is_strained)) return;
+  if (advised_ || now.paused || (lag == LagVerdict::kWithinBound && !is_strained)) return;
   advised_ = true;
   ROS_WARN_STREAM("does not keep up: " << keepUpAdvice(now, step.max_step_s, step.max_lag_s, nodes_));
 }

@@ -51,6 +51,8 @@ class Health {
   /// Looks at the likely errors of the forces, which cost something, ten times a second: once the wrenches are out.
   void noteForceErrors();
 
+  void notePaused(bool paused);
+  void noteReset();  ///< the simulation began anew, or with another state
   void noteSnapshotsDropped(std::int64_t dropped);
   void notePolicy(bool newest_state);
 

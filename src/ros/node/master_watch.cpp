@@ -51,7 +51,8 @@ class Registrar {
  public:
   struct NoAnswer {};
 
-  explicit Registrar(const std::atomic<bool>& stop) : stop_(stop) {}
+  Registrar(const std::atomic<bool>& stop, const std::vector<std::string>& services)
+      : stop_(stop), services_(services) {}
 
   std::vector<Topic> own(const std::string& method) {
     std::vector<Topic> topics;
@@ -83,8 +84,7 @@ class Registrar {
 
   /// Those that every node has: roscpp's, and ~get_loggers in its place (see logger_service.h).
   void services() {
-    for (const char* relative : {"~get_loggers", "~set_logger_level"}) {
-      const std::string name = ros::names::resolve(relative);
+    for (const std::string& name : services_) {
       if (!ros::ServiceManager::instance()->lookupServicePublication(name)) continue;
       const std::string service_uri = "rosrpc://" + ros::network::getHost() + ":" +
                                       std::to_string(ros::ConnectionManager::instance()->getTCPPort());
@@ -111,13 +111,15 @@ class Registrar {
   }
 
   const std::atomic<bool>& stop_;
+  const std::vector<std::string>& services_;
   const std::string node_ = ros::this_node::getName();
   const std::string own_uri_ = ros::XMLRPCManager::instance()->getServerURI();
 };
 
 }  // namespace
 
-void MasterWatch::start() {
+void MasterWatch::start(std::vector<std::string> services) {
+  services_ = std::move(services);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -175,7 +177,7 @@ void MasterWatch::noteAnswer(bool came) {
 
 bool MasterWatch::registerAgain() {
   try {
-    Registrar registrar(stop_);
+    Registrar registrar(stop_, services_);
     const std::vector<Topic> published = registrar.own("getPublications");
     const std::vector<Topic> subscribed = registrar.own("getSubscriptions");
     for (const Topic& topic : published) registrar.publisher(topic);

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace tissue_contact {
 
@@ -26,7 +27,8 @@ class MasterWatch {
   MasterWatch(const MasterWatch&) = delete;
   MasterWatch& operator=(const MasterWatch&) = delete;
 
-  void start();
+  /// @param services names, from / on, of those that this node offers: roscpp does not tell.
+  void start(std::vector<std::string> services);
   void stop();
 
   /// OK while the master knows this node, else WARN; how often it was lost. Any thread.
@@ -41,6 +43,7 @@ class MasterWatch {
   void noteAnswer(bool came);
   bool registerAgain();  ///< @return false: not all of it, to be tried again
 
+  std::vector<std::string> services_;
   std::thread thread_;
   std::atomic<bool> stop_{false};
 

@@ -3,6 +3,7 @@
 #include <ros/callback_queue.h>
 #include <ros/console.h>
 #include <ros/init.h>
+#include <ros/this_node.h>
 #include <ros/time.h>
 
 #include <algorithm>
@@ -10,12 +11,15 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ros/node/logger_service.h"
 #include "ros/node/private_parameters.h"
+#include "ros/node/shutdown_guard.h"
 #include "ros/publish/publish_options.h"
 #include "scene/read_more.h"
 #include "tissue_contact/core/whole_file.h"
@@ -52,6 +56,13 @@ published topics
   ~status              tissue_contact/Status
   ~markers             visualization_msgs/MarkerArray
   /diagnostics         diagnostic_msgs/DiagnosticArray
+
+services
+  ~pause ~resume       std_srvs/Trigger: joint states wait meanwhile
+  ~step                std_srvs/Trigger: while paused, to the next joint state
+  ~reset               std_srvs/Trigger: tissues undeformed and at rest
+  ~save_state          tissue_contact/StateFile: all that the next step depends on, into a file
+  ~load_state          tissue_contact/StateFile: goes on from such a file, of the same scene
 
 example
   rosrun tissue_contact tissue_contact_node _scene:=package://tissue_contact/config/press_drag.yaml
@@ -91,16 +102,18 @@ Simulator makeSimulator(const ros::NodeHandle& private_node, const std::vector<s
 
 }  // namespace
 
-Node::Node(ShutdownGuard& guard, const std::vector<std::string>& arguments)
-    : guard_(guard),
-      private_node_("~"),
+Node::Node(const ros::NodeHandle& node, const ros::NodeHandle& private_node, const std::string& name,
+           const std::vector<std::string>& arguments)
+    : private_node_(private_node),
       simulator_(makeSimulator(private_node_, arguments, publish_)),
       player_(simulator_),
       inbox_(kJointStateQueue),
       health_(simulator_, player_, inbox_),
       outputs_(private_node_, simulator_, player_, publish_, [this](Status& status) { health_.addTo(status); }),
       stepper_(simulator_, player_, inbox_, outputs_, health_, ros::Time::isSimTime()),
-      receiver_(inbox_) {
+      services_(stepper_),
+      receiver_(inbox_, node),
+      updater_(node, private_node, name) {
   for (const std::string& line : simulator_.advice()) ROS_INFO_STREAM("advisor: " << line);
   health_.setPublishers([this](int topic) { return receiver_.publishers(topic); });
   updater_.setHardwareID("none");
@@ -110,34 +123,21 @@ Node::Node(ShutdownGuard& guard, const std::vector<std::string>& arguments)
   updater_.add("ROS master", [this](diagnostic_updater::DiagnosticStatusWrapper& status) { master_.fill(status); });
 }
 
-Node::~Node() {
-  guard_.setLastWords(nullptr);
-  stop();
-}
-
-int Node::run() {
-  guard_.setLastWords([this] {
-    tellCounts();
-    ros::shutdown();  // so that the master forgets us
-  });
+void Node::start() {
   outputs_.start([this] { inbox_.wake(); });
   stepper_.start();
   receiver_.start(player_.topics());
+  services_.start(private_node_);
   loggers_ = advertiseLoggers(private_node_);
-  master_.start();
+  std::vector<std::string> services = services_.names();
+  for (const char* name : {"get_loggers", "set_logger_level"}) services.push_back(private_node_.resolveName(name));
+  master_.start(std::move(services));
   diagnostics_thread_ = std::thread([this] { tellDiagnostics(); });
-  constexpr double kWakeUp = 0.05;  // s: how long a signal may go unseen
-  while (ros::ok() && !guard_.asked() && !stepper_.failed()) {
-    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(kWakeUp));
-  }
-  if (!stepper_.failed()) guard_.ask();  // rosnode kill: nothing may hang then either
-  stop();
-  tellCounts();
-  return stepper_.failed() ? 1 : 0;
 }
 
 void Node::stop() {
   stepper_.stop();
+  services_.stop();
   receiver_.stop();
   master_.stop();
   {
@@ -169,6 +169,31 @@ void Node::tellCounts() {
   std::fflush(stdout);
 }
 
+namespace {
+
+/// Until the process is asked to end, or the node has to.
+/// @return exit code.
+int runUntilAsked(ShutdownGuard& guard, const std::vector<std::string>& arguments) {
+  Node node(ros::NodeHandle(), ros::NodeHandle("~"), ros::this_node::getName(), arguments);
+  const auto no_more_words = [&guard](Node* /*node*/) { guard.setLastWords(nullptr); };
+  const std::unique_ptr<Node, decltype(no_more_words)> words_of(&node, no_more_words);
+  guard.setLastWords([&node] {
+    node.tellCounts();
+    ros::shutdown();  // so that the master forgets us
+  });
+  node.start();
+  constexpr double kWakeUp = 0.05;  // s: how long a signal may go unseen
+  while (ros::ok() && !guard.asked() && !node.failed()) {
+    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(kWakeUp));
+  }
+  if (!node.failed()) guard.ask();  // rosnode kill: nothing may hang then either
+  node.stop();
+  node.tellCounts();
+  return node.failed() ? 1 : 0;
+}
+
+}  // namespace
+
 int runNode(int argc, char** argv) {
   // Before anything of ROS, which would wait for a master.
   try {
@@ -188,7 +213,7 @@ int runNode(int argc, char** argv) {
   try {
     const ros::NodeHandle keep_alive;  // so that the fatal message still reaches /rosout
     try {
-      code = Node(guard, arguments).run();
+      code = runUntilAsked(guard, arguments);
     } catch (const std::exception& error) {
       if (guard.asked()) return 0;  // what was waited for need not be there any more
       ROS_FATAL_STREAM(error.what());

@@ -13,11 +13,11 @@
 #include <thread>
 #include <vector>
 
+#include "ros/node/control_services.h"
 #include "ros/node/health.h"
 #include "ros/node/joint_state_inbox.h"
 #include "ros/node/master_watch.h"
 #include "ros/node/receiver.h"
-#include "ros/node/shutdown_guard.h"
 #include "ros/node/stepper.h"
 #include "ros/publish/outputs.h"
 #include "ros/publish/publish_options.h"
@@ -30,35 +30,42 @@ namespace tissue_contact {
 /// publish_options.h), ~markers/displacement_full_scale_m and ~markers/force_arrow_m_per_n (see scene_markers.h), and the
 /// URDF parameters that the scene names. Topics: see outputs.h; diagnostics on /diagnostics once per second of wall time.
 ///
+/// Services: control_services.h. A node of its own (runNode()) or one of several in a process (nodelet.cpp).
+///
 /// Threads, and what is between them:
 ///   receiving    Receiver: joint states into inbox_, which is locked for a move at a time
 ///   stepping     Stepper: inbox_ -> player_ -> simulator_ -> wrenches; alone in touching player_, simulator_ and outputs_
 ///   publishing   SnapshotPublisher inside outputs_: snapshots through a locked queue; of simulator_ only what is const
 ///   diagnostics  here: LiveFigures of health_, which is locked for a copy at a time
 ///   master       MasterWatch: asks the ROS master once per second whether it knows this node
-///   main         callbacks of roscpp: a subscriber came (an atomic flag, and inbox_ wakes the stepping thread)
+///   services     ControlServices: each waits until the stepping thread has answered it (RequestQueue)
+///   roscpp's     its callbacks: a subscriber came (an atomic flag, and inbox_ wakes the stepping thread)
 /// None waits for another's work.
 class Node {
  public:
   /// Builds the scene; advertises and subscribes nothing yet.
-  /// @param guard must outlive this.
+  /// @param node, private_node by which names are resolved.
+  /// @param name of the node, for diagnostics.
   /// @param arguments names of the private parameters that came by the command line.
   /// @throws std::exception naming the parameter or file at fault and what to do.
-  Node(ShutdownGuard& guard, const std::vector<std::string>& arguments);
-  ~Node();
+  Node(const ros::NodeHandle& node, const ros::NodeHandle& private_node, const std::string& name,
+       const std::vector<std::string>& arguments);
+  ~Node() { stop(); }
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
-  /// Advertises, subscribes and works until asked to stop; then prints the counts.
-  /// @return exit code.
-  int run();
+  /// Advertises, subscribes and works from now on.
+  void start();
+  void stop();
+  /// Whether it had to stop by itself, after one fatal message. Any thread.
+  bool failed() const { return stepper_.failed(); }
+
+  /// Prints what became of every joint state, once. Any thread.
+  void tellCounts();
 
  private:
   void tellDiagnostics();
-  void tellCounts();
-  void stop();
 
-  ShutdownGuard& guard_;
   ros::NodeHandle private_node_;
   PublishOptions publish_;
   Simulator simulator_;
@@ -67,6 +74,7 @@ class Node {
   Health health_;
   Outputs outputs_;
   Stepper stepper_;
+  ControlServices services_;
   Receiver receiver_;
   ros::ServiceServer loggers_;
   MasterWatch master_;

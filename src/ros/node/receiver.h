@@ -24,8 +24,10 @@ namespace tissue_contact {
 /// a publisher drops shows in its numbers. With simulated time it also watches /clock: set back, it says so to the inbox.
 class Receiver {
  public:
-  /// @param inbox must outlive this.
-  explicit Receiver(JointStateInbox& inbox) : inbox_(inbox) { node_.setCallbackQueue(&at_once_); }
+  /// @param inbox must outlive this. @param node by which names of topics are resolved.
+  Receiver(JointStateInbox& inbox, const ros::NodeHandle& node) : inbox_(inbox), node_(node) {
+    node_.setCallbackQueue(&at_once_);
+  }
   ~Receiver() { stop(); }
   Receiver(const Receiver&) = delete;
   Receiver& operator=(const Receiver&) = delete;

@@ -9,9 +9,17 @@
 #include <optional>
 #include <utility>
 
+#include "ros/node/state_file.h"
+#include "tissue_contact/core/text.h"
 #include "tissue_contact/ros/environment.h"
 
 namespace tissue_contact {
+namespace {
+
+/// How long a subscriber to the markers may wait for them while paused.
+constexpr double kLook_s = 0.1;
+
+}  // namespace
 
 Stepper::Stepper(Simulator& simulator, JointStatePlayer& player, JointStateInbox& inbox, Outputs& outputs,
                  Health& health, bool simulated_time)
@@ -22,7 +30,8 @@ Stepper::Stepper(Simulator& simulator, JointStatePlayer& player, JointStateInbox
       health_(health),
       chooser_(simulator.scene().step.joint_states, simulated_time),
       pacing_(simulator.scene().step.max_lag_s),
-      receipts_(player.topics().size()) {
+      receipts_(player.topics().size()),
+      requests_([&inbox] { inbox.wake(); }) {
   simulator_.setStepObserver([this] { noteStep(); });
   player_.setLimits(limits(0));
 }
@@ -38,6 +47,7 @@ void Stepper::start() {
 
 void Stepper::stop() {
   stop_ = true;
+  requests_.close();
   inbox_.wake();
   if (thread_.joinable()) thread_.join();
 }
@@ -45,17 +55,19 @@ void Stepper::stop() {
 void Stepper::run() {
   try {
     while (!stop_) {
-      awaitStates();
+      paused_ ? requests_.wait(kLook_s) : awaitStates();
       outputs_.showToNewcomer();
+      requests_.answer();
+      if (paused_) continue;
       takeReceived();
       health_.noteWork(std::nullopt);  // what the player holds counts as waiting, also when it is to play no more
-      while (!stop_ && playNext()) {
-      }
+      while (!stop_ && !paused_ && playNext()) requests_.answer();
     }
   } catch (const std::exception& error) {
     ROS_FATAL_STREAM(error.what());
     failed_ = true;
   }
+  requests_.close();
 }
 
 AdvanceLimits Stepper::limits(int most_steps) const {
@@ -113,6 +125,7 @@ void Stepper::publish(const PlayedSample& played, const std::optional<Receipt>& 
                       double step_time_s) {
   played_stamp_ns_ = played.stamp_ns;
   if (played.interrupted) return;
+  ++published_;
   outputs_.publishWrenches(played);
   if (!played.instruments.empty()) {
     health_.noteWrenches(played.instruments.size(),
@@ -121,6 +134,56 @@ void Stepper::publish(const PlayedSample& played, const std::optional<Receipt>& 
   outputs_.publishState(played, steps, step_time_s);
   health_.noteForceErrors();
   health_.noteSnapshotsDropped(outputs_.snapshotsDropped());
+}
+
+Answer Stepper::reset() {
+  player_.reset();
+  chooser_.startAgain();
+  health_.noteReset();
+  outputs_.showReset();
+  return {true, "tissues are undeformed and at rest; instruments go to the next joint state without a way"};
+}
+
+Answer Stepper::pause() {
+  const bool was_paused = std::exchange(paused_, true);
+  health_.notePaused(true);
+  return {true, (was_paused ? "was paused already, at " : "paused at ") + now() + "; joint states wait"};
+}
+
+Answer Stepper::resume() {
+  if (!std::exchange(paused_, false)) return {true, "was not paused"};
+  health_.notePaused(false);
+  return {true, "goes on from " + now()};
+}
+
+Answer Stepper::stepOnce() {
+  if (!paused_) return {false, "not paused, so it steps by itself; call ~pause first"};
+  const std::int64_t before = published_;
+  for (;;) {
+    while (published_ == before && playNext()) {
+    }
+    if (published_ != before) return {true, "stepped to " + now()};
+    if (inbox_.counts().waiting == 0) return {false, "no joint state waits to be stepped to"};
+    takeReceived();
+  }
+}
+
+Answer Stepper::saveState(const std::string& file) {
+  const std::string saved = saveStateFile(player_, file);
+  return {true, "saved the state at " + now() + " to " + saved};
+}
+
+Answer Stepper::loadState(const std::string& file) {
+  const std::string loaded = loadStateFile(player_, file);
+  chooser_.startAgain();
+  health_.noteReset();
+  outputs_.showReset();
+  return {true, "goes on from the state at " + now() + " of " + loaded};
+}
+
+/// For people.
+std::string Stepper::now() const {
+  return player_.time() ? stampText(*player_.time()) + " s" : "the start, before any joint state";
 }
 
 void Stepper::choosePolicy(const PlayedSample& played, const Receipt& receipt) {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include "ros/node/health.h"
@@ -12,6 +13,7 @@
 #include "ros/node/joint_state_policy.h"
 #include "ros/node/live_pacing.h"
 #include "ros/node/receipt_times.h"
+#include "ros/node/request_queue.h"
 #include "ros/publish/outputs.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 #include "tissue_contact/simulation/simulator.h"
@@ -34,6 +36,17 @@ class Stepper {
   /// Ends the thread once the step it is at is done.
   void stop();
 
+  /// What other threads ask of this one; it does so between two moments.
+  RequestQueue& requests() { return requests_; }
+
+  // In requests alone. The answer tells the time of the simulation.
+  Answer reset();     ///< everything back to the start; what waits is forgotten
+  Answer pause();     ///< takes no more joint states; they wait in the inbox
+  Answer resume();    ///< goes on with those that wait
+  Answer stepOnce();  ///< while paused: to the next moment
+  Answer saveState(const std::string& file);  ///< see saveStateFile()
+  Answer loadState(const std::string& file);  ///< see loadStateFile()
+
   /// Whether the thread ended by itself, after one fatal message. Any thread.
   bool failed() const { return failed_; }
 
@@ -47,6 +60,7 @@ class Stepper {
   void awaitStates();
   double pace();
   void noteStep();
+  std::string now() const;
 
   Simulator& simulator_;
   JointStatePlayer& player_;
@@ -61,6 +75,10 @@ class Stepper {
   bool newest_state_ = false;
   double newest_received_s_ = 0.0;  ///< of the last state handed to the player
   std::int64_t played_stamp_ns_ = 0;
+  std::int64_t published_ = 0;  ///< moments
+  bool paused_ = false;
+
+  RequestQueue requests_;
 
   std::atomic<bool> stop_{false};
   std::atomic<bool> failed_{false};

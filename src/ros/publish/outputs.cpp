@@ -143,7 +143,16 @@ void Outputs::publishSnapshot(std::int64_t stamp_ns, int substeps, double step_t
 
 /// RViz opened before or between recordings should not stay empty.
 void Outputs::showToNewcomer() {
-  if (!bulky_.takeNewcomer() || !isFinite(simulator_)) return;
+  if (bulky_.takeNewcomer()) showMarkers();
+}
+
+void Outputs::showReset() {
+  for (MessageTimeRate* rate : {&mesh_rate_, &contacts_rate_, &status_rate_, &markers_rate_}) rate->reset();
+  if (bulky_.markersAreWanted()) showMarkers();
+}
+
+void Outputs::showMarkers() {
+  if (!isFinite(simulator_)) return;
   std::unique_ptr<SceneSnapshot> snapshot = bulky_.queue().buffer();
   snapshot->markers = true;
   takeSnapshot(simulator_, meshes_, last_stamp_ns_, *snapshot);

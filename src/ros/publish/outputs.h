@@ -52,9 +52,13 @@ class Outputs {
   /// Shows the scene as it is to who has subscribed to the markers since.
   void showToNewcomer();
 
+  /// Shows, to whoever has subscribed to the markers, the scene after a reset or with another state; rates begin anew.
+  void showReset();
+
   std::int64_t snapshotsDropped() { return bulky_.queue().dropped(); }
 
  private:
+  void showMarkers();
   void publishSnapshot(std::int64_t stamp_ns, int substeps, double step_time_s);
   bool topologiesChange();
   void publishTransforms(std::int64_t stamp_ns);

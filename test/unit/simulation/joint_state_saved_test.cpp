@@ -47,7 +47,7 @@ TEST_F(JointStateSaved, TheSameStampIsTheSameMoment) {
 TEST_F(JointStateSaved, AnotherTimeIsAGapAndNoReset) {
   goOn(*simulator, player, samples, 0, 30);
   const std::string state = player.saveState();
-  for (const std::int64_t start : {samples.back().stamp_ns - 3 * kSecond, samples.back().stamp_ns + 3600 * kSecond}) {
+  for (const std::int64_t start : {samples.back().stamp_ns - kSecond, samples.back().stamp_ns + 3600 * kSecond}) {
     restored.restoreState(state);
     const std::int64_t gaps = restored.gaps();
     JointStateSample held = samples.back();

@@ -1,0 +1,42 @@
+#!/usr/bin/python3
+"""The node as a nodelet: alone and in a manager, unloaded and loaded again; the same wrenches as the node's, bit for bit."""
+import rospy
+
+import harness
+
+TYPE = "tissue_contact/TissueContact"
+
+
+def nodelet(*arguments):
+    return harness.running([harness.program_of("nodelet", "nodelet")] + list(arguments))
+
+
+class Nodelet(harness.TestCase):
+    samples = harness.press(40)
+
+    def press(self):
+        wrenches = harness.wrenches()
+        harness.JointSource().send_all(self.samples)
+        got = wrenches.wait(lambda all: len(all) >= 40, "40 wrenches")
+        wrenches.close()
+        return [(w.header.stamp, harness.wrench_bits(w)) for w in got]
+
+    def test_it_does_as_the_node(self):
+        with harness.node(harness.SCENE):
+            expected = self.press()
+        self.assertTrue(any(any(bits) for _, bits in expected))
+        with nodelet("standalone", TYPE, "__name:=tissue_contact", "_scene:=" + harness.SCENE):
+            self.assertEqual(self.press(), expected)
+        rospy.set_param(harness.NODE + "/scene", harness.SCENE)
+        with nodelet("manager", "__name:=manager"):
+            for _ in range(2):
+                with nodelet("load", TYPE, "manager", "__name:=tissue_contact"):
+                    self.assertEqual(self.press(), expected)
+
+    def test_a_bad_scene_is_told(self):
+        with nodelet("standalone", TYPE, "__name:=tissue_contact", "_scene:=/missing.yaml") as process:
+            harness.wait_until(lambda: "missing.yaml" in harness.output_of(process), "a message about the scene")
+
+
+if __name__ == "__main__":
+    harness.main(Nodelet)
