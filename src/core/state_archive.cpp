@@ -57,7 +57,7 @@ void StateArchive::require(std::uint64_t known, const std::string& meaning) {
 void StateArchive::refuse(const std::string& reason) const { throw std::invalid_argument(section_ + ": " + reason); }
 
 void StateArchive::requireIndex(int index, int least, std::size_t count, const char* what) const {
-  if (index >= least && index < static_cast<int>(count)) return;
+  if (!reading_ || (index >= least && index < static_cast<int>(count))) return;
   refuse(std::string(what) + ' ' + std::to_string(index) + ", of " + std::to_string(count));
 }
 

@@ -298,18 +298,8 @@ std::string JointStatePlayer::saveState() {
 }
 
 void JointStatePlayer::restoreState(const std::string& state) {
-  const std::string before = saveState();
-  const auto read = [this](const std::string& bytes) {
-    StateArchive archive(stateTitle(), bytes);
-    carry(archive);
-    archive.requireEnd();
-  };
-  try {
-    read(state);
-  } catch (const std::exception&) {
-    read(before);
-    throw;
-  }
+  restoreOrPutBack(
+      stateTitle(), state, saveState(), [this](StateArchive& archive) { carry(archive); }, [this] { reset(); });
   forgetSamples();
   owes_.assign(owes_.size(), false);
   restored_ = time_ns_.has_value();
@@ -320,11 +310,11 @@ void JointStatePlayer::carry(StateArchive& archive) {
   archive.section("joint states");
   archive.carry(time_ns_);
   archive.carry(behind_ns_);
-  if (behind_ns_ < 0 || behind_ns_ >= std::max<std::int64_t>(shortest_ns_, 1)) archive.refuse("a time that is none");
+  archive.check(behind_ns_ >= 0 && behind_ns_ < std::max<std::int64_t>(shortest_ns_, 1), "a time that is none");
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     archive.carry(targets_[i]);
     archive.carry(heard_[i]);
-    if (!targets_[i].allFinite()) archive.refuse("a joint position that is not finite");
+    archive.check(targets_[i].allFinite(), "a joint position that is not finite");
     for (const Heard heard : heard_[i]) archive.requireIndex(static_cast<int>(heard), 0, 3, "the mark of a joint");
   }
 }

@@ -60,7 +60,9 @@ void MovingTissue::carry(StateArchive& archive) {
   archive.carry(x_);
   archive.carry(v_);
   archive.carry(loads_);
-  if (!x_.allFinite() || !v_.allFinite() || !loads_.allFinite()) archive.refuse("a position, speed or force that is not finite");
+  constexpr double kMost = 1e9;  // m, m/s: what is farther or faster has long stopped to be tissue
+  archive.check(x_.cwiseAbs().maxCoeff() <= kMost && v_.cwiseAbs().maxCoeff() <= kMost && loads_.allFinite(),
+                "a position, speed or force that no tissue has");
   elastic_state_->carry(archive);
   archive.carry(system_.b);
   archive.carry(system_.mass);

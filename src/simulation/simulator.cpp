@@ -65,18 +65,8 @@ std::string Simulator::saveState() {
 }
 
 void Simulator::restoreState(const std::string& state) {
-  const std::string before = saveState();
-  const auto read = [this](const std::string& bytes) {
-    StateArchive archive(kStateTitle, bytes);
-    carry(archive);
-    archive.requireEnd();
-  };
-  try {
-    read(state);
-  } catch (const std::exception&) {
-    read(before);
-    throw;
-  }
+  restoreOrPutBack(
+      kStateTitle, state, saveState(), [this](StateArchive& archive) { carry(archive); }, [this] { reset(); });
 }
 
 void Simulator::placeInstrument(int instrument, const VectorX& joint_positions) {

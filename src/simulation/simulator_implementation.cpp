@@ -107,11 +107,11 @@ void Simulator::Implementation::carry(StateArchive& archive) {
     archive.section("instrument '" + instruments[i].name() + "'");
     VectorX positions = motion.positions(static_cast<int>(i));
     archive.carry(positions);
-    if (!positions.allFinite()) archive.refuse("a joint position that is not finite");
+    archive.check(positions.allFinite(), "a joint position that is not finite");
     if (archive.isReading()) motion.place(static_cast<int>(i), positions);
     archive.carry(wrenches[i].force);
     archive.carry(wrenches[i].torque);
-    if (!wrenches[i].force.allFinite() || !wrenches[i].torque.allFinite()) archive.refuse("a force that is not finite");
+    archive.check(wrenches[i].force.allFinite() && wrenches[i].torque.allFinite(), "a force that is not finite");
   }
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     archive.section("tissue '" + tissues[t].name() + "' in motion");
@@ -123,7 +123,8 @@ void Simulator::Implementation::carry(StateArchive& archive) {
   archive.carry(solution.impulses);
   archive.carry(step_count);
   archive.carry(last_dt);
-  if (!std::isfinite(last_dt) || last_dt < 0.0) archive.refuse("a time step that is no time");
+  archive.check(std::isfinite(last_dt) && last_dt >= 0.0 && step_count >= 0,
+                "a time step, or a number of them, that is none");
   solver->reset();  // also on writing: what it carries is not stored, so both go on without it
   if (!archive.isReading()) return;
   problem.contacts.clear();
@@ -153,7 +154,9 @@ void Simulator::Implementation::carryMeshes(StateArchive& archive) {
       }
     }
     const NodalVectors& rest = tissues[t].restPositions();
-    const auto bytes = [](const auto& values) { return sizeof(*values.data()) * static_cast<std::size_t>(values.size()); };
+    const auto bytes = [](const auto& values) {
+      return sizeof(*values.data()) * static_cast<std::size_t>(values.size());
+    };
     archive.require(hashBytes(rest.data(), bytes(rest)), "the mesh, or its place in the world, is another one");
     const std::vector<Tetrahedron>& elements = tissues[t].tetrahedra();
     archive.require(hashBytes(elements.data(), bytes(elements)), "the elements are others");

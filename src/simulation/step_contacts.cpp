@@ -45,7 +45,8 @@ void renumberPoint(const std::vector<int>& to_new, std::array<int, 3>& feature, 
 void carryContact(StateArchive& archive, SolvedContact& solved) {
   Contact& contact = solved.contact;
   ContactKey& key = contact.key;
-  for (int* const index : {&key.tissue, &key.instrument, &key.link, &key.shape, &key.corner, &key.slot, &key.other_tissue}) {
+  for (int* const index :
+       {&key.tissue, &key.instrument, &key.link, &key.shape, &key.corner, &key.slot, &key.other_tissue}) {
     archive.carry(*index);
   }
   for (std::array<int, 3>* const nodes : {&key.feature, &key.other_feature, &contact.nodes, &contact.other_nodes}) {
@@ -275,7 +276,7 @@ void StepContacts::carry(StateArchive& archive, const std::vector<Instrument>& i
   });
   if (!archive.isReading()) return;
   const auto ordered = [](const SolvedContact& a, const SolvedContact& b) { return a.contact.key < b.contact.key; };
-  if (!std::is_sorted(contacts_.begin(), contacts_.end(), ordered)) archive.refuse("contacts out of their order");
+  archive.check(std::is_sorted(contacts_.begin(), contacts_.end(), ordered), "contacts out of their order");
   memory_.remember(contacts_);
   if (pressure_) pressure_->remember(contacts_);
 }
@@ -297,14 +298,16 @@ void StepContacts::requireContact(const StateArchive& archive, const SolvedConta
     const std::vector<ContactLink>& links = instruments[key.instrument].contactLinks();
     archive.requireIndex(key.link, 0, links.size(), "the link");
     archive.requireIndex(key.shape, 0, links[key.link].shapes.size(), "the shape");
-    if (key.other_tissue >= 0) archive.refuse("a contact of an instrument and a tissue at once");
+    archive.check(key.other_tissue < 0, "a contact of an instrument and a tissue at once");
   } else {
     require_point(key.other_tissue, key.other_feature, contact.other_nodes);
   }
-  const bool is_finite = contact.weights.allFinite() && contact.other_weights.allFinite() && contact.p_WC.allFinite() &&
-                         contact.R_WC.allFinite() && std::isfinite(contact.gap_m) &&
-                         solved.force_on_tissue_n.allFinite() && solved.slip_W.allFinite();
-  if (!is_finite) archive.refuse("a contact whose place or force is not finite");
+  constexpr double kMost = 1.0 + 1e-6;  // of a barycentric weight, and of a direction's component
+  const bool is_possible =
+      contact.weights.cwiseAbs().maxCoeff() <= kMost && contact.other_weights.cwiseAbs().maxCoeff() <= kMost &&
+      contact.R_WC.cwiseAbs().maxCoeff() <= kMost && contact.p_WC.allFinite() && std::isfinite(contact.gap_m) &&
+      solved.force_on_tissue_n.allFinite() && solved.slip_W.allFinite();
+  archive.check(is_possible, "a contact whose place or force is none");
   archive.requireIndex(static_cast<int>(solved.state), 0, 3, "the state");
 }
 

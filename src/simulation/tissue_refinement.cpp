@@ -94,26 +94,32 @@ bool TissueRefinement::reset() {
 
 void TissueRefinement::carry(StateArchive& archive) {
   constexpr std::size_t kMost = 100'000;
+  constexpr double kMost_m = 1e6;  // so that no product of two overflows
+  const auto require = [&](const Vector3& p_T, double cell_m, double coarsening) {
+    const bool is_possible = p_T.cwiseAbs().maxCoeff() <= kMost_m && cell_m >= 1.0 / kMost_m && cell_m <= kMost_m &&
+                             coarsening >= 1.0 && coarsening <= kMost_m;
+    archive.check(is_possible, "a place of fine cells, or their length, that no scene has");
+  };
   archive.carryList(foci_, kMost, [&](Focus& focus) {
     archive.carry(focus.p_T);
     archive.carry(focus.asked_m);
     archive.carry(focus.coarsening);
-    const bool is_possible = focus.p_T.allFinite() && focus.asked_m > 0.0 && focus.coarsening >= 1.0;
-    if (!is_possible) archive.refuse("a place of fine cells that is not finite, or cells without a length");
+    require(focus.p_T, focus.asked_m, focus.coarsening);
   });
   archive.carryList(places_, kMost, [&](Place& place) {
     archive.carry(place.p_T);
     archive.carry(place.cell_m);
+    require(place.p_T, place.cell_m, 1.0);
   });
   archive.carry(coarsening_);
+  require(Vector3::Zero(), 1.0, coarsening_);
   int revision = revision_;
   archive.carry(revision);
   std::uint64_t nodes = static_cast<std::uint64_t>(mesh_.mesh.positions.cols());
   archive.carry(nodes);
   if (!archive.isReading()) return;
-  if (!refineWithin(mesh_) || static_cast<std::uint64_t>(mesh_.mesh.positions.cols()) != nodes) {
-    archive.refuse("the mesh comes out another one than that of the state");
-  }
+  const bool is_same = refineWithin(mesh_) && static_cast<std::uint64_t>(mesh_.mesh.positions.cols()) == nodes;
+  archive.check(is_same, "the mesh comes out another one than that of the state");
   revision_ = std::max(revision_, revision) + 1;
 }
 
@@ -194,7 +200,9 @@ void TissueRefinement::refineBeside(const std::vector<Focus>& kept, BisectedMesh
 
 std::optional<NodeTransfer> TissueRefinement::follow(const std::vector<TouchedPlace>& places) {
   places_.clear();
-  for (const TouchedPlace& place : places) places_.push_back({X_TW_ * place.rest_W, place.cell_m});
+  for (const TouchedPlace& place : places) {  // of nodes that have run away not even weights are finite
+    if (place.rest_W.allFinite()) places_.push_back({X_TW_ * place.rest_W, place.cell_m});
+  }
   if (std::all_of(places_.begin(), places_.end(), [&](const Place& place) { return isCovered(place, kCovered); })) {
     return std::nullopt;
   }

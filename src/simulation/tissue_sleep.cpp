@@ -49,7 +49,7 @@ void TissueSleep::carry(StateArchive& archive) {
   archive.carry(held_force_);
   if (!archive.isReading()) return;
   for (std::size_t i = 0; i < fixed_.size(); ++i) {
-    if (fixed_[i] && !still_[i]) archive.refuse("a fixed node that moves");
+    archive.check(still_[i] || !fixed_[i], "a fixed node that moves");
   }
   listSleepers();
 }

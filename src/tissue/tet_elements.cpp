@@ -76,7 +76,7 @@ void carryRanges(StateArchive& archive, std::size_t batches, std::vector<BatchRa
   archive.carryList(ranges, batches, [&](BatchRange& range) {
     archive.carry(range.begin);
     archive.carry(range.end);
-    if (range.begin > range.end || range.end > batches) archive.refuse("a range of elements that are not there");
+    archive.check(range.begin <= range.end && range.end <= batches, "a range of elements that are not there");
   });
 }
 

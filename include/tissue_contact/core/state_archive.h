@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -79,9 +80,11 @@ class StateArchive {
   /// What the reader knows and the writer must have had. @param meaning ends the message: "is of another mesh".
   void require(std::uint64_t known, const std::string& meaning);
 
-  /// Refuses what was read, naming the section. @param reason "the node 70 of 60".
-  [[noreturn]] void refuse(const std::string& reason) const;
-  /// An index read: refuses what is not in [least, count).
+  /// Refuses what was read unless it is possible, naming the section. @param reason what is wrong with it.
+  void check(bool is_possible, const char* reason) const {
+    if (reading_ && !is_possible) refuse(reason);
+  }
+  /// The same for an index that must lie in [least, count).
   void requireIndex(int index, int least, std::size_t count, const char* what) const;
 
   /// Ends writing: all bytes. @pre !isReading().
@@ -90,6 +93,7 @@ class StateArchive {
   void requireEnd() const;
 
  private:
+  [[noreturn]] void refuse(const std::string& reason) const;
   void bytes(void* data, std::size_t size);
   void requireSize(std::uint64_t size);
   std::size_t carrySize(std::size_t size, std::size_t most);
@@ -100,6 +104,28 @@ class StateArchive {
   std::size_t end_ = 0;  ///< of what is read, before the checksum
   std::string section_;
 };
+
+/// Reads `state` by `carry(StateArchive&)`. If that refuses it, reads `before`, and if that cannot be read either, because what was
+/// saved there had run away, calls reset(); and throws what the first refused.
+template <typename Carry, typename Reset>
+void restoreOrPutBack(const std::string& title, const std::string& state, const std::string& before, const Carry& carry,
+                      const Reset& reset) {
+  const auto read = [&](const std::string& bytes) {
+    StateArchive archive(title, bytes);
+    carry(archive);
+    archive.requireEnd();
+  };
+  try {
+    read(state);
+  } catch (const std::invalid_argument&) {
+    try {
+      read(before);
+    } catch (const std::invalid_argument&) {
+      reset();
+    }
+    throw;
+  }
+}
 
 /// Fowler, Noll and Vo's hash (FNV-1a, 64 bits): finds files that were damaged, not those made to deceive.
 std::uint64_t hashBytes(const void* data, std::size_t size, std::uint64_t seed = 0xcbf29ce484222325u);

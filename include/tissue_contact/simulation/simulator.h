@@ -115,7 +115,8 @@ class Simulator {
   std::string saveState();
 
   /// Goes on from a state that was saved of the same scene: tissues, instruments, materials. Friction, solver and step may differ.
-  /// @throws std::invalid_argument telling what does not fit; nothing has changed then.
+  /// @throws std::invalid_argument telling what does not fit; nothing has changed then, unless positions had run away: then all is
+  ///   as after reset().
   void restoreState(const std::string& state);
 
   /// For those whose state has this one's in it.
