@@ -33,6 +33,7 @@ std::vector<NodalVectors> restPositionsOf(const std::vector<Tissue>& tissues) {
 
 Simulator::Implementation::Implementation(const Scene& description, const SceneEnvironment& environment)
     : scene(description),
+      clock(environment.clock),
       instruments(buildInstruments(scene, environment)),
       tissues(buildTissues(scene, environment, refinements)),
       friction(scene, instruments, tissues),
@@ -42,7 +43,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       margins(edges, tissues.size(), buildTissuePairs(scene)),
       detector(instruments, shareSurfaces(surfacesOf(tissues), restPositionsOf(tissues)), environment.meshes),
       contacts(tissues, motion, friction, edges),
-      solver(atEntry("solver", [&] { return makeContactSolver(scene.solver, environment.clock); })),
+      solver(atEntry("solver", [&] { return makeContactSolver(scene.solver, clock); })),
       touched_places(scene, instruments),
       wrenches(instruments.size()),
       load_watch(scene, tissues) {
@@ -93,6 +94,7 @@ void Simulator::Implementation::reset() {
 void Simulator::Implementation::step(double dt) {
   residuals.reset();
   restTissues();
+  if (retuned) retune();
   refineTissues();
   detectContacts(dt);
   wakeTouched();
