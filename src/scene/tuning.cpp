@@ -23,7 +23,7 @@ struct Place {
   std::string text;
   Range range;
   double* number = nullptr;
-  int* whole = nullptr;           ///< in place of `number`
+  int* whole = nullptr;                 ///< in place of `number`
   std::vector<double*> followers = {};  ///< of regions, which the scene gives none of their own
 
   double value() const { return whole != nullptr ? *whole : *number; }
@@ -43,10 +43,13 @@ class Places {
     for (std::size_t t = 0; t < scene.tissues.size(); ++t) addTissue(t);
     for (FrictionDescription& pair : scene.friction) addFriction(pair);
     SolverDescription& solver = scene.solver;
-    all_.push_back({"solver/iterations", "at most so many iterations per step", {1, kMaxIterations}, nullptr,
-                    &solver.iterations});
-    all_.push_back({"solver/contact_passes", "at most so many passes over the contacts per iteration",
-                    {1, kMaxContactPasses}, nullptr, &solver.contact_passes});
+    all_.push_back(
+        {"solver/iterations", "at most so many iterations per step", {1, kMaxIterations}, nullptr, &solver.iterations});
+    all_.push_back({"solver/contact_passes",
+                    "at most so many passes over the contacts per iteration",
+                    {1, kMaxContactPasses},
+                    nullptr,
+                    &solver.contact_passes});
     all_.push_back({"solver/tolerance", "stop when an iteration changes less than this (relative)", kToleranceRange,
                     &solver.tolerance});
   }
@@ -60,8 +63,8 @@ class Places {
     const std::string of = " of tissue " + tissue.name;
     const auto first = all_.size();
     addMaterial(key, of, tissue.material, tissue.damping.stiffness_s);
-    all_.push_back({key + "damping_mass_per_s", "damping by mass" + of + ", 1/s", kMassDampingRange,
-                    &tissue.damping.mass_per_s});
+    all_.push_back(
+        {key + "damping_mass_per_s", "damping by mass" + of + ", 1/s", kMassDampingRange, &tissue.damping.mass_per_s});
     for (std::size_t r = 0; r < tissue.regions.size(); ++r) {
       const std::string entry = elementOf(elementOf("tissues", t) + ".regions", r);
       addRegion(entry, key, of, tissue.regions[r], first);
@@ -69,12 +72,12 @@ class Places {
   }
 
   void addMaterial(const std::string& key, const std::string& of, MaterialDescription& material, double& damping_s) {
-    all_.push_back({key + "youngs_modulus_pa", "Young's modulus" + of + ", Pa", kYoungRange,
-                    &material.youngs_modulus_pa});
+    all_.push_back(
+        {key + "youngs_modulus_pa", "Young's modulus" + of + ", Pa", kYoungRange, &material.youngs_modulus_pa});
     all_.push_back({key + "poissons_ratio", "Poisson's ratio" + of, MaterialDescription::kPoissonsRatio,
                     &material.poissons_ratio});
-    all_.push_back({key + "damping_stiffness_s", "damping by stiffness" + of + ", s", kStiffnessDampingRange,
-                    &damping_s});
+    all_.push_back(
+        {key + "damping_stiffness_s", "damping by stiffness" + of + ", s", kStiffnessDampingRange, &damping_s});
   }
 
   /// @param entry its path in the scene file. @param first of the places of its tissue, in the order of addMaterial().
@@ -114,9 +117,10 @@ class Places {
     const bool is_tensor = law.kind == FrictionLawDescription::Kind::kTensor;
     for (std::size_t i = 0; i < coefficients.size(); ++i) {
       const bool is_only = coefficients.size() == 1;
-      all_.push_back({is_only ? key : key + "/" + std::to_string(i),
-                      is_only ? text : text + ", number " + std::to_string(i) + " of " + std::to_string(coefficients.size()),
-                      is_tensor ? kTensorRange : kCoefficientRange, &coefficients[i]});
+      all_.push_back(
+          {is_only ? key : key + "/" + std::to_string(i),
+           is_only ? text : text + ", number " + std::to_string(i) + " of " + std::to_string(coefficients.size()),
+           is_tensor ? kTensorRange : kCoefficientRange, &coefficients[i]});
     }
   }
 
@@ -131,8 +135,9 @@ const Place& placeOfKey(const std::vector<Place>& places, const std::string& key
   for (const Place& place : places) keys.push_back(place.key);
   constexpr std::size_t kMaxName = 256;
   const std::string nearest = nearestWord(key, keys);
-  throw std::invalid_argument("'" + printable(key, kMaxName) + "' is no number of this scene that may change while it runs; " +
-                              (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") + "There are " + joined(keys));
+  throw std::invalid_argument(
+      "'" + printable(key, kMaxName) + "' is no number of this scene that may change while it runs; " +
+      (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") + "There are " + joined(keys));
 }
 
 /// What no number shows by itself.

@@ -65,7 +65,8 @@ bool takeSolver(const SolverDescription& from, SolverDescription& to) {
 
 void Simulator::retune(const Scene& changed) {
   if (!haveSameParts(changed, implementation_->scene)) {
-    throw std::invalid_argument("a running scene may change in numbers only, and this one has other tissues or friction");
+    throw std::invalid_argument(
+        "a running scene may change in numbers only, and this one has other tissues or friction");
   }
   implementation_->retuned = changed;
 }
@@ -86,7 +87,8 @@ void Simulator::Implementation::retune() {
   if (takeFriction(changed, scene)) friction = FrictionTable(scene, instruments, tissues);
   if (takeSolver(changed.solver, scene.solver)) {
     solver = makeContactSolver(scene.solver, clock);
-    const bool never = std::isinf(deadline_s) && std::isinf(prompt_s);  // of which a solver without a clock need not hear
+    const bool never =
+        std::isinf(deadline_s) && std::isinf(prompt_s);  // of which a solver without a clock need not hear
     if (!never) solver->setDeadline(deadline_s, prompt_s);
   } else if (is_other_body) {
     solver->reset();

@@ -64,7 +64,8 @@ std::unique_ptr<Elasticity::State> AttachedElasticity::makeStateAt(const NodalVe
   return attach(body_->makeStateAt(x));
 }
 
-std::unique_ptr<Elasticity::State> AttachedElasticity::makeStateAfter(const State& before, const NodalVectors& x) const {
+std::unique_ptr<Elasticity::State> AttachedElasticity::makeStateAfter(const State& before,
+                                                                      const NodalVectors& x) const {
   return attach(body_->makeStateAfter(*static_cast<const AttachedState&>(before).body, x));
 }
 

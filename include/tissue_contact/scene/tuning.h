@@ -13,7 +13,8 @@ namespace tissue_contact {
 
 /// A number that may change.
 struct Tunable {
-  std::string key;   ///< by names, "tissues/liver/youngs_modulus_pa": letters, digits, '_', '/', '.' and what a URDF calls its links
+  std::string
+      key;  ///< by names, "tissues/liver/youngs_modulus_pa": letters, digits, '_', '/', '.' and what a URDF calls its links
   std::string text;  ///< what it is, for people
   double value = 0.0;
   Range range;

@@ -51,7 +51,11 @@ published topics
   ~contacts            tissue_contact/ContactArray
   ~status              tissue_contact/Status
   ~markers             visualization_msgs/MarkerArray
+  ~changes             tissue_contact/Changes, latched: numbers of the scene changed while it runs; replay repeats them
   /diagnostics         diagnostic_msgs/DiagnosticArray
+
+changing numbers while it runs
+  ~set_parameters, ~parameter_descriptions, ~parameter_updates: dynamic_reconfigure (rqt_reconfigure, dynparam); doc/node.md
 
 example
   rosrun tissue_contact tissue_contact_node _scene:=package://tissue_contact/config/press_drag.yaml
@@ -99,7 +103,8 @@ Node::Node(ShutdownGuard& guard, const std::vector<std::string>& arguments)
       inbox_(kJointStateQueue),
       health_(simulator_, player_, inbox_),
       outputs_(private_node_, simulator_, player_, publish_, [this](Status& status) { health_.addTo(status); }),
-      stepper_(simulator_, player_, inbox_, outputs_, health_, ros::Time::isSimTime()),
+      tuning_(private_node_, {simulator_.scene(), publish_}),
+      stepper_(simulator_, player_, inbox_, outputs_, health_, tuning_, ros::Time::isSimTime()),
       receiver_(inbox_) {
   for (const std::string& line : simulator_.advice()) ROS_INFO_STREAM("advisor: " << line);
   health_.setPublishers([this](int topic) { return receiver_.publishers(topic); });
@@ -121,6 +126,7 @@ int Node::run() {
     ros::shutdown();  // so that the master forgets us
   });
   outputs_.start([this] { inbox_.wake(); });
+  tuning_.start([this] { inbox_.wake(); });
   stepper_.start();
   receiver_.start(player_.topics());
   loggers_ = advertiseLoggers(private_node_);

@@ -15,6 +15,7 @@
 
 #include "ros/node/health.h"
 #include "ros/node/joint_state_inbox.h"
+#include "ros/node/live_tuning.h"
 #include "ros/node/master_watch.h"
 #include "ros/node/receiver.h"
 #include "ros/node/shutdown_guard.h"
@@ -36,7 +37,8 @@ namespace tissue_contact {
 ///   publishing   SnapshotPublisher inside outputs_: snapshots through a locked queue; of simulator_ only what is const
 ///   diagnostics  here: LiveFigures of health_, which is locked for a copy at a time
 ///   master       MasterWatch: asks the ROS master once per second whether it knows this node
-///   main         callbacks of roscpp: a subscriber came (an atomic flag, and inbox_ wakes the stepping thread)
+///   main         callbacks of roscpp: a subscriber came (an atomic flag, and inbox_ wakes the stepping thread); numbers to change
+///                (tuning_, which is locked for a copy, and an atomic flag)
 /// None waits for another's work.
 class Node {
  public:
@@ -66,6 +68,7 @@ class Node {
   JointStateInbox inbox_;
   Health health_;
   Outputs outputs_;
+  LiveTuning tuning_;
   Stepper stepper_;
   Receiver receiver_;
   ros::ServiceServer loggers_;

@@ -11,6 +11,7 @@
 #include "ros/node/joint_state_inbox.h"
 #include "ros/node/joint_state_policy.h"
 #include "ros/node/live_pacing.h"
+#include "ros/node/live_tuning.h"
 #include "ros/node/receipt_times.h"
 #include "ros/publish/outputs.h"
 #include "tissue_contact/simulation/joint_state_player.h"
@@ -24,7 +25,7 @@ class Stepper {
   /// All must outlive this.
   /// @param simulated_time whether ROS time comes from /clock.
   Stepper(Simulator& simulator, JointStatePlayer& player, JointStateInbox& inbox, Outputs& outputs, Health& health,
-          bool simulated_time);
+          LiveTuning& tuning, bool simulated_time);
   ~Stepper();
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
@@ -42,6 +43,7 @@ class Stepper {
   AdvanceLimits limits(int most_steps) const;
   void takeReceived();
   bool playNext();
+  void retune();
   void publish(const PlayedSample& played, const std::optional<Receipt>& receipt, int steps, double step_time_s);
   void choosePolicy(const PlayedSample& played, const Receipt& receipt);
   void awaitStates();
@@ -53,6 +55,7 @@ class Stepper {
   JointStateInbox& inbox_;
   Outputs& outputs_;
   Health& health_;
+  LiveTuning& tuning_;
 
   // The thread's alone.
   PolicyChooser chooser_;
