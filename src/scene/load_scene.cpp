@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "scene/read_more.h"
+#include "scene/scene_ranges.h"
 #include "scene/scene_sections.h"
 #include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/core/read_file.h"
@@ -20,7 +21,6 @@ namespace fs = std::filesystem;
 constexpr Range kGravityRange{-1000.0, 1000.0, "m/s^2"};
 constexpr Range kMaxStepRange{1e-6, 1.0, "s", "give seconds: 1 ms is 0.001"};
 constexpr Range kMaxGapRange{1e-6, 60.0, "s", "give seconds"};
-constexpr Range kMaxLagRange{1e-6, 60.0, "s", "give seconds: 20 ms is 0.02"};
 constexpr std::pair<const char*, StatePolicy> kStatePolicies[] = {{"auto", StatePolicy::kAuto},
                                                                   {"every_state", StatePolicy::kEveryState},
                                                                   {"newest_state", StatePolicy::kNewestState}};

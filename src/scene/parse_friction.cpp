@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "friction/check_friction_law.h"
+#include "scene/scene_ranges.h"
 #include "scene/scene_sections.h"
 #include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/core/nearest_word.h"
@@ -13,9 +14,6 @@ namespace {
 
 using Law = FrictionLawDescription;
 
-// Narrower than what a law can bear: typing errors.
-constexpr Range kCoefficientRange{0.0, 10.0};
-constexpr Range kTensorRange{-10.0, 10.0};
 constexpr std::size_t kMaxTableEntries = 1000;
 
 template <typename Element>

@@ -1,16 +1,14 @@
 #include <set>
 
+#include "scene/scene_ranges.h"
 #include "scene/scene_sections.h"
 #include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 namespace {
 
-constexpr Range kYoungRange{1.0, 1e12, "Pa", "give pascals: 5 kPa is 5000, 1 MPa is 1e6"};
 constexpr Range kDensityRange{1.0, 1e5, "kg/m^3", "give kilograms per cubic metre: water is 1000, not 1"};
 constexpr Range kBendingRange{0.0, 1e6, "N m", "0 bends freely; leave it out for a plate of the given thickness"};
-constexpr Range kMassDampingRange{0.0, 1e4, "1/s"};
-constexpr Range kStiffnessDampingRange{0.0, 10.0, "s", "give seconds: 2 ms is 0.002"};
 
 constexpr std::pair<const char*, Dilatation> kDilatations[] = {
     {"auto", Dilatation::kAuto}, {"element", Dilatation::kElement}, {"patch", Dilatation::kPatch}};

@@ -1,12 +1,9 @@
+#include "scene/scene_ranges.h"
 #include "scene/scene_sections.h"
 
 namespace tissue_contact {
 namespace {
 
-constexpr int kMaxIterations = 10000;
-constexpr int kMaxContactPasses = 100;
-// Below the spacing of doubles near 1 a residual can never fall.
-constexpr Range kToleranceRange{1e-16, 0.1};
 constexpr Range kTimeBudgetRange{0.0, 10.0, "s", "give seconds: 1 ms is 0.001; 0 sets no budget"};
 
 }  // namespace

@@ -84,6 +84,7 @@ int specificity(const FrictionDescription& entry) {
 
 FrictionTable::~FrictionTable() = default;
 FrictionTable::FrictionTable(FrictionTable&&) noexcept = default;
+FrictionTable& FrictionTable::operator=(FrictionTable&&) noexcept = default;
 
 FrictionTable::FrictionTable(const Scene& scene, const std::vector<Instrument>& instruments,
                              const std::vector<Tissue>& tissues) {

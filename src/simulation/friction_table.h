@@ -28,6 +28,7 @@ class FrictionTable {
   FrictionTable(const Scene& scene, const std::vector<Instrument>& instruments, const std::vector<Tissue>& tissues);
   ~FrictionTable();
   FrictionTable(FrictionTable&&) noexcept;
+  FrictionTable& operator=(FrictionTable&&) noexcept;
 
   /// @param x deformed positions per tissue, m.
   /// @param X_WL link poses per instrument.

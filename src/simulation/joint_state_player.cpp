@@ -26,8 +26,8 @@ JointStatePlayer::JointStatePlayer(Simulator& simulator)
     : simulator_(simulator),
       max_gap_ns_(toNanoseconds(simulator.scene().step.max_gap_s)),
       shortest_ns_(toNanoseconds(std::min(kShortest_s, kShortestShare * simulator.scene().step.max_step_s))),
-      live_wait_ns_(std::min(max_gap_ns_, toNanoseconds(kWaitShare * simulator.scene().step.max_lag_s))),
       owes_(simulator.instruments().size(), false) {
+  setMaxLag(simulator.scene().step.max_lag_s);
   const std::vector<InstrumentDescription>& instruments = simulator.scene().instruments;
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     for (const JointStateTopic& described : instruments[i].joint_state_topics) {
@@ -56,6 +56,10 @@ void JointStatePlayer::setPolicy(StatePolicy policy) {
     throw std::invalid_argument("the policy 'auto' has to be made every_state or newest_state by whoever plays");
   }
   policy_ = policy;
+}
+
+void JointStatePlayer::setMaxLag(double max_lag_s) {
+  live_wait_ns_ = std::min(max_gap_ns_, toNanoseconds(kWaitShare * max_lag_s));
 }
 
 void JointStatePlayer::push(int topic, JointStateSample sample) {

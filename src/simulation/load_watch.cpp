@@ -36,14 +36,19 @@ std::vector<double> nodeAreas(const Tissue& tissue) {
 
 LoadWatch::LoadWatch(const Scene& scene, const std::vector<Tissue>& tissues) {
   for (std::size_t t = 0; t < tissues.size(); ++t) {
-    Body& body = bodies_.emplace_back();
-    body.modulus_pa = largestModulus(scene.tissues[t]);
-    body.law = scene.tissues[t].material.model;
-    body.poissons_ratio = scene.tissues[t].material.poissons_ratio;
-    for (const TissueRegion& region : scene.tissues[t].regions) {
-      body.poissons_ratio_of_regions.push_back(region.material.poissons_ratio - body.poissons_ratio);
-    }
+    bodies_.emplace_back().law = scene.tissues[t].material.model;
+    setMaterials(static_cast<int>(t), scene.tissues[t]);
     setMesh(static_cast<int>(t), tissues[t]);
+  }
+}
+
+void LoadWatch::setMaterials(int index, const TissueDescription& description) {
+  Body& body = bodies_[index];
+  body.modulus_pa = largestModulus(description);
+  body.poissons_ratio = description.material.poissons_ratio;
+  body.poissons_ratio_of_regions.clear();
+  for (const TissueRegion& region : description.regions) {
+    body.poissons_ratio_of_regions.push_back(region.material.poissons_ratio - body.poissons_ratio);
   }
 }
 

@@ -28,6 +28,8 @@ class LoadWatch {
 
   LoadWatch(const Scene& scene, const std::vector<Tissue>& tissues);
 
+  /// Goes on with other materials of a tissue.
+  void setMaterials(int index, const TissueDescription& description);
   /// Goes on with another mesh of a tissue, which must outlive this.
   void setMesh(int index, const Tissue& tissue);
 

@@ -34,6 +34,14 @@ void MovingTissue::changeMesh() {
   watchSleep();
 }
 
+void MovingTissue::changeMaterials() {
+  sleep_.reset();
+  elastic_state_ = tissue_.elasticity().makeStateAfter(*elastic_state_, x_);
+  makeState();
+  watchSleep();
+  still_changed_ = false;
+}
+
 void MovingTissue::reset() {
   x_ = tissue_.restPositions();
   elastic_state_.reset();

@@ -33,6 +33,8 @@ class MovingTissue {
   /// Goes on with another mesh, awake, with a fresh elastic state. x and v are those of its nodes already; fixed ones are put to
   /// where they rest.
   void changeMesh();
+  /// Goes on with other materials, awake, where it is and as fast as it is. Bodies with memory keep theirs.
+  void changeMaterials();
   /// At rest where it is, awake, with a fresh elastic state: what was not finite may have got into tangents. Bodies with memory
   /// keep theirs.
   void stop();

@@ -122,6 +122,8 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
 
 void Simulator::setSolverDeadline(double clock_s, double prompt_s) {
   implementation_->solver->setDeadline(clock_s, prompt_s);
+  implementation_->deadline_s = clock_s;
+  implementation_->prompt_s = prompt_s;
 }
 
 Wrench Simulator::wrench(int instrument) const { return implementation_->wrenches.at(instrument); }

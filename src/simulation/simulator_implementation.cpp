@@ -45,6 +45,7 @@ std::uint64_t materialHash(const Tissue& tissue) {
 
 Simulator::Implementation::Implementation(const Scene& description, const SceneEnvironment& environment)
     : scene(description),
+      clock(environment.clock),
       instruments(buildInstruments(scene, environment)),
       tissues(buildTissues(scene, environment, refinements)),
       friction(scene, instruments, tissues),
@@ -54,7 +55,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       margins(edges, tissues.size(), buildTissuePairs(scene)),
       detector(instruments, shareSurfaces(surfacesOf(tissues), restPositionsOf(tissues)), environment.meshes),
       contacts(tissues, motion, friction, edges),
-      solver(atEntry("solver", [&] { return makeContactSolver(scene.solver, environment.clock); })),
+      solver(atEntry("solver", [&] { return makeContactSolver(scene.solver, clock); })),
       touched_places(scene, instruments),
       wrenches(instruments.size()),
       load_watch(scene, tissues) {
@@ -168,6 +169,7 @@ void Simulator::Implementation::carryMeshes(StateArchive& archive) {
 void Simulator::Implementation::step(double dt) {
   residuals.reset();
   restTissues();
+  if (retuned) retune();
   refineTissues();
   detectContacts(dt);
   wakeTouched();

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -33,6 +34,7 @@ struct Simulator::Implementation {
   void carryMeshes(StateArchive& archive);
   void step(double dt);
   void restTissues();
+  void retune();
   void refineTissues();
   void changeMesh(int tissue, const NodeTransfer& transfer);
   void takeMesh(int tissue, const std::vector<int>& to_new);
@@ -46,7 +48,9 @@ struct Simulator::Implementation {
   void sumWrenches();
   CoarseCells coarsestCells() const;
 
-  const Scene scene;
+  Scene scene;                   ///< never but for what retune() takes
+  std::optional<Scene> retuned;  ///< whose numbers the next step takes
+  SecondsClock clock;
   const std::vector<Instrument> instruments;
   std::vector<std::unique_ptr<TissueRefinement>> refinements;  ///< per tissue; null: its mesh never changes
   std::vector<Tissue> tissues;
@@ -65,6 +69,8 @@ struct Simulator::Implementation {
   std::vector<Contact> found;  ///< scratch: by the detectors
   StepContacts contacts;
   std::unique_ptr<ContactSolver> solver;
+  double deadline_s = std::numeric_limits<double>::infinity();  ///< of the solver, see setSolverDeadline()
+  double prompt_s = std::numeric_limits<double>::infinity();
   std::vector<int> touched_nodes;  ///< scratch
   TouchedPlaces touched_places;
   std::vector<double>

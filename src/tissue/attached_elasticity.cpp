@@ -81,6 +81,11 @@ std::unique_ptr<Elasticity::State> AttachedElasticity::makeStateAt(const NodalVe
   return attach(body_->makeStateAt(x));
 }
 
+std::unique_ptr<Elasticity::State> AttachedElasticity::makeStateAfter(const State& before,
+                                                                      const NodalVectors& x) const {
+  return attach(body_->makeStateAfter(*static_cast<const AttachedState&>(before).body, x));
+}
+
 std::unique_ptr<Elasticity::State> AttachedElasticity::attach(std::unique_ptr<State> body) const {
   auto state = std::make_unique<AttachedState>();
   state->body = std::move(body);

@@ -29,6 +29,7 @@ class AttachedElasticity : public Elasticity {
 
   std::unique_ptr<State> makeState() const override;
   std::unique_ptr<State> makeStateAt(const NodalVectors& x) const override;
+  std::unique_ptr<State> makeStateAfter(const State& before, const NodalVectors& x) const override;
   void update(const NodalVectors& x, State& state, NodalVectors& forces) const override;
   void holdStill(const std::vector<bool>& still, const NodalVectors& x, State& state) const override;
   bool hasMemory() const override { return body_->hasMemory(); }

@@ -169,14 +169,14 @@ void checkTissue(const TissueDescription& description) {
 namespace {
 
 /// The tissue's own material first, then its regions'.
-ElementMaterials elementMaterials(const TissueDescription& description, const PlacedMesh& placed) {
+ElementMaterials elementMaterials(const TissueDescription& description, const std::vector<int>& element_regions) {
   ElementMaterials materials(description.material);
   materials.damping_s.push_back(description.damping.stiffness_s);
   for (const TissueRegion& region : description.regions) {
     materials.materials.push_back(region.material);
     materials.damping_s.push_back(region.damping_stiffness_s);
   }
-  for (const int region : placed.element_regions) materials.of_element.push_back(region + 1);
+  for (const int region : element_regions) materials.of_element.push_back(region + 1);
   return materials;
 }
 
@@ -190,22 +190,29 @@ double takeUniformDamping(std::size_t elements, ElementMaterials& materials) {
   return first;
 }
 
-VectorX lumpedMasses(const PlacedMesh& placed, const ElementMaterials& materials) {
-  VectorX masses = VectorX::Zero(placed.rest.cols());
-  for (std::size_t e = 0; e < placed.elementCount(); ++e) {
+VectorX lumpedMasses(const Tissue& tissue, const ElementMaterials& materials) {
+  VectorX masses = VectorX::Zero(tissue.nodeCount());
+  for (std::size_t e = 0; e < tissue.tetrahedra().size(); ++e) {
+    const Tetrahedron& nodes = tissue.tetrahedra()[e];
+    const double quarter = 0.25 * materials.of(e).density_kg_per_m3 * signedVolume(tissue.restPositions(), nodes);
+    for (const int node : nodes) masses[node] += quarter;
+  }
+  if (!tissue.tetrahedra().empty()) return masses;
+  for (std::size_t e = 0; e < tissue.surface().size(); ++e) {
+    const Triangle& nodes = tissue.surface()[e];
     const double density = materials.of(e).density_kg_per_m3;
-    if (placed.isVolume()) {
-      const double quarter = 0.25 * density * signedVolume(placed.rest, placed.tetrahedra[e]);
-      for (const int node : placed.tetrahedra[e]) masses[node] += quarter;
-    } else {
-      const double third = density * placed.thickness * triangleArea(placed.rest, placed.surface[e]) / 3.0;
-      for (const int node : placed.surface[e]) masses[node] += third;
-    }
+    const double third = density * tissue.thickness() * triangleArea(tissue.restPositions(), nodes) / 3.0;
+    for (const int node : nodes) masses[node] += third;
   }
   return masses;
 }
 
 }  // namespace
+
+struct Tissue::ElasticParts {
+  std::vector<int> patch_of;  ///< see PlacedMesh
+  std::vector<NodeSpring> springs;
+};
 
 Tissue::Tissue(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size)
     : Tissue(description, placeMesh(description, X_WT, on_size)) {}
@@ -215,24 +222,10 @@ Tissue::Tissue(const TissueDescription& description, const Pose& X_WT, const Bis
 
 Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
     : name_(description.name),
-      damping_(description.damping),
       thickness_(placed.thickness),
+      parts_(std::make_shared<ElasticParts>(ElasticParts{std::move(placed.patch_of), std::move(placed.springs)})),
       pressure_(description.pressure_pa) {
-  ElementMaterials materials = elementMaterials(description, placed);
-  // Springs are damped as the tissue, also where all its elements belong to regions that are damped otherwise.
-  const bool is_uniform = placed.springs.empty() || materials.dampingOf(0) == description.damping.stiffness_s;
-  damping_.stiffness_s = is_uniform ? takeUniformDamping(placed.elementCount(), materials) : 0.0;
-  masses_ = lumpedMasses(placed, materials);
-  if (placed.isVolume()) {
-    elasticity_ = makeVolumeElasticity(placed.rest, placed.tetrahedra, placed.fixed, materials, placed.patch_of);
-  } else {
-    elasticity_ = std::make_unique<Membrane>(placed.rest, placed.surface, placed.fixed, placed.thickness, materials);
-  }
-  if (!placed.springs.empty()) {
-    for (const NodeSpring& spring : placed.springs) attachment_stiffness_ += spring.stiffness;
-    elasticity_ = std::make_unique<AttachedElasticity>(std::move(elasticity_), placed.rest, std::move(placed.springs),
-                                                       description.damping.stiffness_s);
-  }
+  for (const NodeSpring& spring : parts_->springs) attachment_stiffness_ += spring.stiffness;
   rest_ = std::move(placed.rest);
   tetrahedra_ = std::move(placed.tetrahedra);
   surface_ = std::move(placed.surface);
@@ -241,6 +234,24 @@ Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
   element_regions_ = std::move(placed.element_regions);
   surface_fibres_ = std::move(placed.surface_fibres);
   pressed_ = std::move(placed.pressed);
+  changeMaterials(description);
+}
+
+void Tissue::changeMaterials(const TissueDescription& description) {
+  ElementMaterials materials = elementMaterials(description, element_regions_);
+  const std::size_t elements = tetrahedra_.empty() ? surface_.size() : tetrahedra_.size();
+  // Springs are damped as the tissue, also where all its elements belong to regions that are damped otherwise.
+  const bool is_uniform = parts_->springs.empty() || materials.dampingOf(0) == description.damping.stiffness_s;
+  damping_ = {description.damping.mass_per_s, is_uniform ? takeUniformDamping(elements, materials) : 0.0};
+  masses_ = lumpedMasses(*this, materials);
+  if (!tetrahedra_.empty()) {
+    elasticity_ = makeVolumeElasticity(rest_, tetrahedra_, fixed_, materials, parts_->patch_of);
+  } else {
+    elasticity_ = std::make_unique<Membrane>(rest_, surface_, fixed_, thickness_, materials);
+  }
+  if (parts_->springs.empty()) return;
+  elasticity_ = std::make_unique<AttachedElasticity>(std::move(elasticity_), rest_, parts_->springs,
+                                                     description.damping.stiffness_s);
 }
 
 void Tissue::addPressure(const NodalVectors& x, NodalVectors& forces) const {

@@ -63,6 +63,16 @@ std::unique_ptr<Elasticity::State> Overstress::makeState() const {
   return state;
 }
 
+std::unique_ptr<Elasticity::State> Overstress::makeStateAfter(const State& before, const NodalVectors& /*x*/) const {
+  const auto& memory = static_cast<const MaxwellState&>(before);
+  auto state = makeState();
+  auto& fresh = static_cast<MaxwellState&>(*state);
+  fresh.rotations = memory.rotations;
+  fresh.strains = memory.strains;
+  fresh.held = memory.held;
+  return state;
+}
+
 void Overstress::addForces(const NodalVectors& x, Elasticity::State& any_state, NodalVectors& forces) const {
   auto& state = static_cast<MaxwellState&>(any_state);  // made by makeState()
   for (std::size_t k = 0; k < terms_.size(); ++k) {
@@ -101,9 +111,21 @@ Viscoelastic::Viscoelastic(std::unique_ptr<const Elasticity> relaxed, const Noda
       overstress_(rest, tetrahedra, fixed, materials, relaxed_->makeState()->stiffness.pattern) {}
 
 std::unique_ptr<Elasticity::State> Viscoelastic::makeState() const {
+  return sumOf(relaxed_->makeState(), overstress_.makeState());
+}
+
+std::unique_ptr<Elasticity::State> Viscoelastic::makeStateAfter(const State& before, const NodalVectors& x) const {
+  const auto& sum = static_cast<const SumState&>(before);
+  auto state = sumOf(relaxed_->makeStateAfter(*sum.relaxed, x), overstress_.makeStateAfter(*sum.overstress, x));
+  state->elapsed_s = sum.elapsed_s;
+  return state;
+}
+
+std::unique_ptr<Elasticity::State> Viscoelastic::sumOf(std::unique_ptr<State> relaxed,
+                                                       std::unique_ptr<State> overstress) {
   auto state = std::make_unique<SumState>();
-  state->relaxed = relaxed_->makeState();
-  state->overstress = overstress_.makeState();
+  state->relaxed = std::move(relaxed);
+  state->overstress = std::move(overstress);
   state->stiffness = state->relaxed->stiffness;
   state->damping = state->relaxed->damping;
   state->sum();

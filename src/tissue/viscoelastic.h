@@ -33,6 +33,8 @@ class Overstress : private TetElasticity {
   ~Overstress() override;
 
   std::unique_ptr<State> makeState() const override;
+  /// One that remembers what `before` does: strains, whatever their moduli.
+  std::unique_ptr<State> makeStateAfter(const State& before, const NodalVectors& x) const override;
   /// Adds the forces (N) at positions x (m) and brings the matrices up to date. No allocation.
   void addForces(const NodalVectors& x, Elasticity::State& state, NodalVectors& forces) const;
   using TetElasticity::energy;  ///< if x were taken at once
@@ -53,6 +55,7 @@ class Viscoelastic : public Elasticity {
                const ElementMaterials& materials);
 
   std::unique_ptr<State> makeState() const override;
+  std::unique_ptr<State> makeStateAfter(const State& before, const NodalVectors& x) const override;
   void update(const NodalVectors& x, State& state, NodalVectors& forces) const override;
   bool hasMemory() const override { return true; }
   /// If x were taken at once: the most there can be.
@@ -60,6 +63,8 @@ class Viscoelastic : public Elasticity {
 
  private:
   struct SumState;
+  static std::unique_ptr<State> sumOf(std::unique_ptr<State> relaxed, std::unique_ptr<State> overstress);
+
   std::unique_ptr<const Elasticity> relaxed_;
   Overstress overstress_;
 };

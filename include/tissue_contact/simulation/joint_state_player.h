@@ -120,6 +120,9 @@ class JointStatePlayer {
   /// For every advance from now on.
   void setLimits(AdvanceLimits limits) { limits_ = std::move(limits); }
 
+  /// In place of step.max_lag_s of the scene, > 0.
+  void setMaxLag(double max_lag_s);
+
   /// Queues a sample. One whose content is refused has no say in time: neither its stamp nor its arrival is remembered.
   void push(int topic, JointStateSample sample);
 
@@ -237,8 +240,8 @@ class JointStatePlayer {
 
   Simulator& simulator_;
   std::int64_t max_gap_ns_;
-  std::int64_t shortest_ns_;   ///< interval that is simulated
-  std::int64_t live_wait_ns_;  ///< message time that a topic is waited for under kNewestState
+  std::int64_t shortest_ns_;       ///< interval that is simulated
+  std::int64_t live_wait_ns_ = 0;  ///< message time that a topic is waited for under kNewestState
   StatePolicy policy_ = StatePolicy::kEveryState;
   AdvanceLimits limits_;
   std::vector<std::string> topics_;

@@ -122,6 +122,14 @@ class Simulator {
   /// For those whose state has this one's in it.
   void carry(StateArchive& archive);
 
+  /// From the next step on takes the numbers of `changed` that may change while a scene is simulated: Young's moduli, Poisson's ratios and
+  /// damping of tissues and their regions, friction coefficients, and the solver's iterations, contact passes and tolerance. Positions,
+  /// velocities, contacts and what bodies remember go on; reset() keeps the numbers. Until that step scene() and all results
+  /// are as they were; of two calls before it the later one counts.
+  /// @param changed scene() but for such numbers, as tuned() (scene/tuning.h) makes it. All else of it is ignored.
+  /// @throws std::invalid_argument when it has other tissues, regions, friction entries or numbers of coefficients; nothing changes then.
+  void retune(const Scene& changed);
+
   /// Puts an instrument somewhere without motion in between (no speed, no contact until the next advance).
   void placeInstrument(int instrument, const VectorX& joint_positions);
 

@@ -42,6 +42,12 @@ class Elasticity {
   /// undeformed first. Allocates.
   virtual std::unique_ptr<State> makeStateAt(const NodalVectors& /*x*/) const { return makeState(); }
 
+  /// The same for a body that was of other materials until now: its state then, of a model of the same elements, tells what it
+  /// remembers. Allocates.
+  virtual std::unique_ptr<State> makeStateAfter(const State& /*before*/, const NodalVectors& x) const {
+    return makeStateAt(x);
+  }
+
   /// Elastic forces (N, overwritten) at positions x (m), and the matrices brought up to date. No allocation.
   virtual void update(const NodalVectors& x, State& state, NodalVectors& forces) const = 0;
 

@@ -25,7 +25,7 @@ void checkTissue(const TissueDescription& description);
 struct PlacedMesh;
 struct BisectedMesh;
 
-/// Const after construction.
+/// Const after construction, but for changeMaterials().
 class Tissue {
  public:
   /// @param X_WT pose of the tissue frame in the world (tf already looked up).
@@ -36,6 +36,11 @@ class Tissue {
   Tissue(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size = nullptr);
   /// The same volume with its mesh refined (src/tissue/placed_mesh.h, refinableMesh()).
   Tissue(const TissueDescription& description, const Pose& X_WT, const BisectedMesh& mesh);
+
+  /// The materials and the damping of another description of it: masses, damping and elasticity are made again, all else stays.
+  /// Elastic states of before are of no more use but to Elasticity::makeStateAfter().
+  /// @param description differs in numbers of materials and damping alone; passes checkTissue().
+  void changeMaterials(const TissueDescription& description);
 
   const std::string& name() const { return name_; }
   int nodeCount() const { return static_cast<int>(rest_.cols()); }
@@ -75,6 +80,8 @@ class Tissue {
  private:
   Tissue(const TissueDescription& description, PlacedMesh&& placed);
 
+  struct ElasticParts;
+
   std::string name_;
   NodalVectors rest_;
   std::vector<Tetrahedron> tetrahedra_;
@@ -85,6 +92,7 @@ class Tissue {
   double thickness_ = 0.0;
   std::vector<int> surface_regions_, element_regions_;
   std::vector<Vector2> surface_fibres_;
+  std::shared_ptr<const ElasticParts> parts_;  ///< what else elasticity_ is made from
   std::unique_ptr<const Elasticity> elasticity_;
   double attachment_stiffness_ = 0.0;
   double pressure_ = 0.0;          ///< Pa

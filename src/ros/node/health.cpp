@@ -63,7 +63,11 @@ void addFigures(const LiveFigures& figures, double worst_lag_s, diagnostic_updat
 }  // namespace
 
 Health::Health(const Simulator& simulator, const JointStatePlayer& player, const JointStateInbox& inbox)
-    : simulator_(simulator), player_(player), inbox_(inbox), nodes_(nodesOf(simulator)) {}
+    : simulator_(simulator),
+      player_(player),
+      inbox_(inbox),
+      nodes_(nodesOf(simulator)),
+      max_lag_s_(simulator.scene().step.max_lag_s) {}
 
 bool Health::Throttle::pass() {
   constexpr std::chrono::seconds kPeriod(5);
@@ -327,8 +331,7 @@ void Health::fill(std::int64_t missing, diagnostic_updater::DiagnosticStatusWrap
 void Health::summarize(const LiveFigures& now, double worst_lag_s,
                        diagnostic_updater::DiagnosticStatusWrapper& status) {
   using Level = diagnostic_msgs::DiagnosticStatus;
-  const StepDescription& step = simulator_.scene().step;
-  const double bound_s = lagBound(now, step.max_lag_s);
+  const double bound_s = lagBound(now, max_lag_s_);
   const LagVerdict lag = judgeLag(worst_lag_s, bound_s);
   const auto two_clocks = static_cast<std::size_t>(Verdict::kTwoClocks);
   const bool is_strained = now.newest_state && now.lengthened > told_.lengthened;
@@ -354,7 +357,7 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   }
   if (advised_ || now.paused || (lag == LagVerdict::kWithinBound && !is_strained)) return;
   advised_ = true;
-  ROS_WARN_STREAM("does not keep up: " << keepUpAdvice(now, step.max_step_s, step.max_lag_s, nodes_));
+  ROS_WARN_STREAM("does not keep up: " << keepUpAdvice(now, simulator_.scene().step.max_step_s, max_lag_s_, nodes_));
 }
 
 }  // namespace tissue_contact

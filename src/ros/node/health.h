@@ -55,6 +55,7 @@ class Health {
   void noteReset();  ///< the simulation began anew, or with another state
   void noteSnapshotsDropped(std::int64_t dropped);
   void notePolicy(bool newest_state);
+  void setMaxLag(double max_lag_s) { max_lag_s_ = max_lag_s; }  ///< in place of the scene's
 
   /// The part of a Status that LiveFigures have.
   void addTo(Status& status) const;
@@ -114,6 +115,7 @@ class Health {
   bool told_of_cells_ = false;
 
   std::atomic<int> nodes_;  ///< of all tissues now
+  std::atomic<double> max_lag_s_;
 
   mutable std::mutex mutex_;  ///< guards the six below
   LiveFigures figures_;

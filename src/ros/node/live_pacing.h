@@ -20,6 +20,10 @@ class LivePacing {
   /// @param max_lag_s > 0.
   explicit LivePacing(double max_lag_s);
 
+  /// From now on.
+  void setMaxLag(double max_lag_s) { max_lag_s_ = max_lag_s; }
+  double maxLag() const { return max_lag_s_; }
+
   /// Until when a state received then may wait for another topic's.
   double waitUntil(double received_s) const;
 

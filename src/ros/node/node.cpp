@@ -55,6 +55,7 @@ published topics
   ~contacts            tissue_contact/ContactArray
   ~status              tissue_contact/Status
   ~markers             visualization_msgs/MarkerArray
+  ~changes             tissue_contact/Changes, latched: numbers of the scene changed while it runs; replay repeats them
   /diagnostics         diagnostic_msgs/DiagnosticArray
 
 services
@@ -63,6 +64,9 @@ services
   ~reset               std_srvs/Trigger: tissues undeformed and at rest
   ~save_state          tissue_contact/StateFile: all that the next step depends on, into a file
   ~load_state          tissue_contact/StateFile: goes on from such a file, of the same scene
+
+changing numbers while it runs
+  ~set_parameters, ~parameter_descriptions, ~parameter_updates: dynamic_reconfigure (rqt_reconfigure, dynparam); doc/node.md
 
 example
   rosrun tissue_contact tissue_contact_node _scene:=package://tissue_contact/config/press_drag.yaml
@@ -110,7 +114,8 @@ Node::Node(const ros::NodeHandle& node, const ros::NodeHandle& private_node, con
       inbox_(kJointStateQueue),
       health_(simulator_, player_, inbox_),
       outputs_(private_node_, simulator_, player_, publish_, [this](Status& status) { health_.addTo(status); }),
-      stepper_(simulator_, player_, inbox_, outputs_, health_, ros::Time::isSimTime()),
+      tuning_(private_node_, {simulator_.scene(), publish_}),
+      stepper_(simulator_, player_, inbox_, outputs_, health_, tuning_, ros::Time::isSimTime()),
       services_(stepper_),
       receiver_(inbox_, node),
       updater_(node, private_node, name) {
@@ -125,11 +130,13 @@ Node::Node(const ros::NodeHandle& node, const ros::NodeHandle& private_node, con
 
 void Node::start() {
   outputs_.start([this] { inbox_.wake(); });
+  tuning_.start([this] { inbox_.wake(); });
   stepper_.start();
   receiver_.start(player_.topics());
   services_.start(private_node_);
   loggers_ = advertiseLoggers(private_node_);
   std::vector<std::string> services = services_.names();
+  services.push_back(tuning_.serviceName());
   for (const char* name : {"get_loggers", "set_logger_level"}) services.push_back(private_node_.resolveName(name));
   master_.start(std::move(services));
   diagnostics_thread_ = std::thread([this] { tellDiagnostics(); });

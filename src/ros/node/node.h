@@ -16,6 +16,7 @@
 #include "ros/node/control_services.h"
 #include "ros/node/health.h"
 #include "ros/node/joint_state_inbox.h"
+#include "ros/node/live_tuning.h"
 #include "ros/node/master_watch.h"
 #include "ros/node/receiver.h"
 #include "ros/node/stepper.h"
@@ -39,7 +40,8 @@ namespace tissue_contact {
 ///   diagnostics  here: LiveFigures of health_, which is locked for a copy at a time
 ///   master       MasterWatch: asks the ROS master once per second whether it knows this node
 ///   services     ControlServices: each waits until the stepping thread has answered it (RequestQueue)
-///   roscpp's     its callbacks: a subscriber came (an atomic flag, and inbox_ wakes the stepping thread)
+///   roscpp's     its callbacks: a subscriber came (an atomic flag, and inbox_ wakes the stepping thread); numbers to change
+///                (tuning_, which is locked for a copy, and an atomic flag)
 /// None waits for another's work.
 class Node {
  public:
@@ -73,6 +75,7 @@ class Node {
   JointStateInbox inbox_;
   Health health_;
   Outputs outputs_;
+  LiveTuning tuning_;
   Stepper stepper_;
   ControlServices services_;
   Receiver receiver_;

@@ -22,12 +22,13 @@ constexpr double kLook_s = 0.1;
 }  // namespace
 
 Stepper::Stepper(Simulator& simulator, JointStatePlayer& player, JointStateInbox& inbox, Outputs& outputs,
-                 Health& health, bool simulated_time)
+                 Health& health, LiveTuning& tuning, bool simulated_time)
     : simulator_(simulator),
       player_(player),
       inbox_(inbox),
       outputs_(outputs),
       health_(health),
+      tuning_(tuning),
       chooser_(simulator.scene().step.joint_states, simulated_time),
       pacing_(simulator.scene().step.max_lag_s),
       receipts_(player.topics().size()),
@@ -101,8 +102,22 @@ void Stepper::takeReceived() {
   }
 }
 
+/// Between two moments: goes on with what people have changed.
+void Stepper::retune() {
+  const std::optional<LiveNumbers> numbers = tuning_.take();
+  if (!numbers) return;
+  simulator_.retune(numbers->scene);
+  const double max_lag_s = numbers->scene.step.max_lag_s;
+  pacing_.setMaxLag(max_lag_s);
+  player_.setMaxLag(max_lag_s);
+  health_.setMaxLag(max_lag_s);
+  outputs_.setRates(numbers->publish);
+  tuning_.echo(*numbers, played_stamp_ns_, player_.resets());
+}
+
 /// Plays and publishes one moment; false when none is ready.
 bool Stepper::playNext() {
+  retune();
   const long steps_before = simulator_.stepCount();
   const double start_s = pace();
   const std::optional<PlayedSample> played = player_.playNext();
@@ -199,7 +214,7 @@ void Stepper::choosePolicy(const PlayedSample& played, const Receipt& receipt) {
   health_.notePolicy(newest_state_);
   if (newest_state_) {
     ROS_INFO_STREAM("newest_state: steps to the newest joint state and merges older ones, lagging by at most "
-                    << simulator_.scene().step.max_lag_s << " s (step.max_lag_s), because " << choice->reason
+                    << pacing_.maxLag() << " s (step.max_lag_s), because " << choice->reason
                     << "; step.joint_states: every_state in the scene overrides it");
   } else {
     ROS_INFO_STREAM("every_state: steps to every joint state, however long it takes, because "

@@ -12,6 +12,7 @@
 #include "ros/node/joint_state_inbox.h"
 #include "ros/node/joint_state_policy.h"
 #include "ros/node/live_pacing.h"
+#include "ros/node/live_tuning.h"
 #include "ros/node/receipt_times.h"
 #include "ros/node/request_queue.h"
 #include "ros/publish/outputs.h"
@@ -26,7 +27,7 @@ class Stepper {
   /// All must outlive this.
   /// @param simulated_time whether ROS time comes from /clock.
   Stepper(Simulator& simulator, JointStatePlayer& player, JointStateInbox& inbox, Outputs& outputs, Health& health,
-          bool simulated_time);
+          LiveTuning& tuning, bool simulated_time);
   ~Stepper();
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
@@ -55,6 +56,7 @@ class Stepper {
   AdvanceLimits limits(int most_steps) const;
   void takeReceived();
   bool playNext();
+  void retune();
   void publish(const PlayedSample& played, const std::optional<Receipt>& receipt, int steps, double step_time_s);
   void choosePolicy(const PlayedSample& played, const Receipt& receipt);
   void awaitStates();
@@ -67,6 +69,7 @@ class Stepper {
   JointStateInbox& inbox_;
   Outputs& outputs_;
   Health& health_;
+  LiveTuning& tuning_;
 
   // The thread's alone.
   PolicyChooser chooser_;

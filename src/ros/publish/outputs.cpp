@@ -141,6 +141,16 @@ void Outputs::publishSnapshot(std::int64_t stamp_ns, int substeps, double step_t
   bulky_.queue().put(std::move(snapshot));
 }
 
+void Outputs::setRates(const PublishOptions& rates) {
+  const auto set = [](double from, double& to, MessageTimeRate& rate) {
+    if (std::exchange(to, from) != from) rate = MessageTimeRate(from);
+  };
+  set(rates.mesh_rate_hz, options_.mesh_rate_hz, mesh_rate_);
+  set(rates.contacts_rate_hz, options_.contacts_rate_hz, contacts_rate_);
+  set(rates.status_rate_hz, options_.status_rate_hz, status_rate_);
+  set(rates.markers_rate_hz, options_.markers_rate_hz, markers_rate_);
+}
+
 /// RViz opened before or between recordings should not stay empty.
 void Outputs::showToNewcomer() {
   if (bulky_.takeNewcomer()) showMarkers();

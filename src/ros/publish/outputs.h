@@ -49,6 +49,9 @@ class Outputs {
   /// @param substeps implicit steps taken in it.
   void publishState(const PlayedSample& played, int substeps, double step_time_s);
 
+  /// From now on publishes at these rates. What was advertised stays so, and nothing else is.
+  void setRates(const PublishOptions& rates);
+
   /// Shows the scene as it is to who has subscribed to the markers since.
   void showToNewcomer();
 
@@ -66,7 +69,7 @@ class Outputs {
   ros::NodeHandle node_;
   const Simulator& simulator_;
   const JointStatePlayer& player_;
-  const PublishOptions options_;
+  PublishOptions options_;
   const std::function<void(Status&)> complete_;
   SnapshotPublisher bulky_;
   std::vector<ShownMesh> meshes_;    ///< one per tissue

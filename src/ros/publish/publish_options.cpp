@@ -4,13 +4,11 @@
 #include <utility>
 
 #include "scene/yaml_reader.h"
-#include "tissue_contact/core/range.h"
 #include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 
 PublishOptions parsePublish(const YamlMap& file) {
-  constexpr Range kRate{0.0, 10000.0, "Hz", "0 switches the topic off"};
   PublishOptions publish;
   const YamlCursor* section = file.find("publish");
   if (section == nullptr) return publish;
@@ -18,7 +16,7 @@ PublishOptions parsePublish(const YamlMap& file) {
   for (const auto& [key, rate] :
        {std::pair("mesh_rate_hz", &publish.mesh_rate_hz), std::pair("contacts_rate_hz", &publish.contacts_rate_hz),
         std::pair("status_rate_hz", &publish.status_rate_hz), std::pair("markers_rate_hz", &publish.markers_rate_hz)}) {
-    if (const YamlCursor* value = map.find(key)) *rate = value->number(kRate);
+    if (const YamlCursor* value = map.find(key)) *rate = value->number(kPublishRateRange);
   }
   if (const YamlCursor* value = map.find("tf")) publish.tf = value->boolean();
   return publish;

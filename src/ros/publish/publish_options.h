@@ -4,9 +4,13 @@
 
 #include <string>
 
+#include "tissue_contact/core/range.h"
+
 namespace tissue_contact {
 
 class YamlMap;
+
+constexpr Range kPublishRateRange{0.0, 10000.0, "Hz", "0 switches the topic off"};
 
 /// Rates are of simulated (message) time; 0 switches a topic off.
 struct PublishOptions {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "ros/bag/joint_state_bag.h"
+#include "ros/bag/recorded_changes.h"
 #include "ros/conversions.h"
 #include "ros/publish/publish_options.h"
 #include "ros/replay/force_error_summary.h"
@@ -97,6 +98,7 @@ class Replay {
         player_(simulator_),
         force_errors_(simulator_.instruments().size()) {
     requireModelsKept(options, simulator_);
+    if (options.changes_topic != "none") changes_.emplace(options.bag_file, options.changes_topic, scene_);
     for (const std::string& line : simulator_.advice()) std::cerr << kPrefix << "advisor: " << line << "\n";
     simulator_.setStepObserver([this] { stepTaken(); });
   }
@@ -164,6 +166,7 @@ class Replay {
 
   void playAll(ReplayTable& table) {
     while (true) {
+      retune();
       const long steps_before = simulator_.stepCount();
       const Clock::time_point start = Clock::now();
       const auto played = player_.playNext();
@@ -172,6 +175,7 @@ class Replay {
       const long steps = simulator_.stepCount() - (played->was_reset ? 0 : steps_before);
       note(*played, steps);
       if (played->verdict != Verdict::kAccepted) continue;
+      played_ns_ = played->stamp_ns;
       if (!isFinite(simulator_) || !isFinite(simulator_.residuals())) {
         throw std::runtime_error("the step ending at " + stampText(played->stamp_ns) + " s gave no finite answer");
       }
@@ -180,6 +184,22 @@ class Replay {
       noteForceErrors(*played);
       if (timing_ && steps > 0) timing_->add(played->stamp_ns, elapsed.count(), steps);
     }
+  }
+
+  /// At the moments at which the node was told to.
+  void retune() {
+    if (!changes_) return;
+    const std::int64_t next_ns = player_.nextStamp().value_or(0);
+    while (const std::optional<Scene> changed = changes_->takeDue(player_.resets(), played_ns_, next_ns)) {
+      simulator_.retune(*changed);
+    }
+  }
+
+  void summarizeChanges() const {
+    if (!changes_ || changes_->count() == 0) return;
+    std::cerr << kPrefix << changes_->taken() << " of " << changes_->count()
+              << " changes of the scene's numbers played back"
+              << (changes_->taken() < changes_->count() ? "; the others were made after the last joint state\n" : "\n");
   }
 
   void noteApproach(std::int64_t stamp_ns) {
@@ -270,6 +290,7 @@ class Replay {
               << kPrefix << length_s_ << " s of recording in " << wallTime() << " s\n";
     if (!first_refusal_.empty())
       std::cerr << kPrefix << "first refusal in bag '" << options_.bag_file << "': " << first_refusal_ << "\n";
+    summarizeChanges();
     summarizeForceErrors();
     summarizeLaw();
     summarizeCells();
@@ -296,6 +317,8 @@ class Replay {
   Scene scene_;
   Simulator simulator_;
   JointStatePlayer player_;
+  std::optional<RecordedChanges> changes_;
+  std::optional<std::int64_t> played_ns_;  ///< stamp of the moment played last
   std::optional<TimingTable> timing_;
   std::optional<WholeFile> dump_;  ///< until it is written
   std::optional<ReplayProgress> progress_;

@@ -11,7 +11,9 @@ struct ReplayOptions {
   std::string scene_file;
   std::string bag_file;
   std::string csv_file;
-  std::string urdf_file;    ///< empty: no scene parameter holds a URDF
+  std::string urdf_file;  ///< empty: no scene parameter holds a URDF
+  std::string
+      changes_topic;  ///< of Changes messages in the bag; empty: the only topic that has some; "none": not played back
   std::string timing_file;  ///< empty: wall times are not written
   long dump_step = 0;       ///< implicit step whose contact problem is written to `dump_file`, from 1; 0: none
   std::string dump_file;

@@ -6,7 +6,7 @@
 namespace tissue_contact {
 std::string replayUsage() {
   return "usage: tissue_contact_replay --scene SCENE.yaml --bag IN.bag --csv OUT.csv [--urdf ROBOT.urdf]\n"
-         "         [--timing TIMES.csv] [--dump-step N --dump-file PROBLEM.txt]\n"
+         "         [--changes TOPIC] [--timing TIMES.csv] [--dump-step N --dump-file PROBLEM.txt]\n"
          "\n"
          "Plays the joint states of a bag through a scene, with the stepping of tissue_contact_node but without a\n"
          "roscore, and writes one CSV line per state of an arm: the same bytes every time.\n"
@@ -16,6 +16,10 @@ std::string replayUsage() {
          "/tf\n"
          "  --csv FILE    the result; replaced when the replay is complete, untouched when it fails or is interrupted\n"
          "  --urdf FILE   text for the robot_description parameter that the scene takes its URDF from\n"
+         "  --changes TOPIC  numbers of the scene changed while the node ran, played back at the same moments: their "
+         "topic, if "
+         "the\n"
+         "                bag has several; none: as the scene has them throughout\n"
          "  --timing FILE   wall times of this run, one line per simulated interval; replaced or untouched as the CSV\n"
          "  --dump-step N   with --dump-file: write the contact problem of implicit step N (from 1), for "
          "tissue_contact_solve\n"
@@ -28,8 +32,9 @@ std::string replayUsage() {
 }
 
 ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
-  const CommandLine line(arguments,
-                         {{"--scene", "--bag", "--csv", "--urdf", "--timing", "--dump-step", "--dump-file"}, {}, {}});
+  const CommandLine line(
+      arguments,
+      {{"--scene", "--bag", "--csv", "--urdf", "--changes", "--timing", "--dump-step", "--dump-file"}, {}, {}});
   ReplayOptions options;
   options.help = line.help();
   if (options.help) return options;
@@ -37,6 +42,7 @@ ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
   options.bag_file = line.required("--bag");
   options.csv_file = line.required("--csv");
   options.urdf_file = line.value("--urdf");
+  options.changes_topic = line.value("--changes");
   options.timing_file = line.value("--timing");
   if (line.has("--dump-step") || line.has("--dump-file")) {
     constexpr std::int64_t kMost = 999'999'999'999'999;
