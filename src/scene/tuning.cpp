@@ -132,6 +132,7 @@ const Place& placeOfKey(const std::vector<Place>& places, const std::string& key
   const auto found = std::find_if(places.begin(), places.end(), [&](const Place& place) { return place.key == key; });
   if (found != places.end()) return *found;
   std::vector<std::string> keys;
+  keys.reserve(places.size());
   for (const Place& place : places) keys.push_back(place.key);
   constexpr std::size_t kMaxName = 256;
   const std::string nearest = nearestWord(key, keys);
