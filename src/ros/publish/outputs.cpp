@@ -16,15 +16,21 @@ namespace {
 constexpr int kWrenchQueue = 10000;
 
 // Far beyond what RViz can draw on either side.
-constexpr Range kFullScaleRange{1e-9, 1e3, "m"};
-constexpr Range kForceArrowRange{1e-9, 1e6, "m/N"};
+constexpr Range kFullScaleRange{1e-9, 1e12, "SI units", "leave it out and it fits the scene"};
+constexpr Range kForceArrowRange{1e-9, 1e6, "m/N", "leave it out and it fits the scene"};
 
 MarkerStyle markerStyle(const ros::NodeHandle& node) {
   MarkerStyle style;
-  style.displacement_full_scale_m =
-      numberParameter(node, "markers/displacement_full_scale_m", style.displacement_full_scale_m, kFullScaleRange);
-  style.force_arrow_m_per_n =
-      numberParameter(node, "markers/force_arrow_m_per_n", style.force_arrow_m_per_n, kForceArrowRange);
+  const std::string color = "markers/color";
+  style.color = toSurfaceColor("parameter '" + node.resolveName(color) + "'", textParameter(node, color, "displacement"));
+  for (const SurfaceColor one : {SurfaceColor::kDisplacement, SurfaceColor::kPressure, SurfaceColor::kStrain}) {
+    const std::string name = std::string("markers/") + colorQuantity(one).full_scale;
+    if (!node.hasParam(name)) continue;
+    const double given = numberParameter(node, name, 0.0, kFullScaleRange);
+    if (one == style.color) style.color_full_scale = given;
+  }
+  const std::string arrow = "markers/force_arrow_m_per_n";
+  if (node.hasParam(arrow)) style.force_arrow_m_per_n = numberParameter(node, arrow, 0.0, kForceArrowRange);
   return style;
 }
 
