@@ -24,14 +24,13 @@ from whole_file import whole_file
 
 # Of the angle RViz opens to both sides of the view, 22.5 degrees: a ball of that radius fills the height of the window at
 # 2.6 radii. What is looked at is a box, and mostly lower than long.
-RADII_AWAY = 2.1
+RADII_AWAY = 2.3
 
 
 def fail(message):
     sys.exit("open_rviz.py: " + message)
 
 
-YAW = 5.3  # of config/scene.rviz, which the node's legend is laid out for
 LETTER = 0.27  # half the width of a letter, in heights of a text
 
 
@@ -39,9 +38,9 @@ def array(points):
     return numpy.array([(p.x, p.y, p.z) for p in points])
 
 
-def ends(text, up):
-    """Of a text as seen from YAW, which has its middle at its place. RViz with an inverted z axis turns the other way."""
-    half = LETTER * text.scale.z * len(text.text) * numpy.array((-math.sin(YAW), up * math.cos(YAW), 0.0))
+def ends(text, right):
+    """Of a text that lies along `right`, a unit vector, and has its middle at its place."""
+    half = LETTER * text.scale.z * len(text.text) * right
     middle = array([text.pose.position])
     return numpy.concatenate((middle - half, middle + half))
 
@@ -53,14 +52,20 @@ class Picture:
         tissues = {m.ns for m in markers if m.type == Marker.LINE_LIST}
         points = [array(m.points) for m in markers if m.ns in tissues and m.points]
         legend = [m for m in markers if m.ns == "legend"]
-        bar = array(next(m for m in legend if m.type == Marker.CUBE_LIST).points)
+        words = [m for m in legend if m.type == Marker.TEXT_VIEW_FACING]
+        bar = array(next(m for m in legend if m.type == Marker.TRIANGLE_LIST).points)
+        # The node has laid the legend out upright, and to the right of the tissues as seen from where they are seen well.
         self.frame = markers[0].header.frame_id
         self.up = 1.0 if bar[-1, 2] > bar[0, 2] else -1.0
-        points += [ends(m, self.up) for m in legend if m.type == Marker.TEXT_VIEW_FACING]
+        right = array([words[0].pose.position])[0] - bar[0]
+        right[2] = 0.0
+        right /= numpy.linalg.norm(right)
+        self.yaw = math.atan2(-right[0], self.up * right[1]) % (2.0 * math.pi)  # RViz turns the other way with z inverted
+        points += [ends(m, right) for m in words]
         self.ground = self.up * min((self.up * one[:, 2]).min() for one in points)
         size = numpy.linalg.norm(numpy.ptp(numpy.concatenate(points), axis=0))
         middle = self.middle(points)
-        tips = [ends(m, self.up) for m in markers if m.ns == "force_texts"]
+        tips = [ends(m, right) for m in markers if m.ns == "force_texts"]
         points += [tip for tip in tips if numpy.linalg.norm(tip[0] - middle) < size]
         self.focus = self.middle(points)
         self.radius = max(numpy.linalg.norm(numpy.ptp(numpy.concatenate(points), axis=0)) / 2.0, 1e-6)
@@ -92,6 +97,7 @@ def configuration(markers, node):
     view["Distance"] = float(RADII_AWAY * picture.radius)
     view["Focal Point"] = dict(zip("XYZ", map(float, picture.focus)))
     view["Near Clip Distance"] = float(picture.radius / 100.0)
+    view["Yaw"] = picture.yaw
     view["Invert Z Axis"] = picture.up < 0.0
     return yaml.safe_dump(config, sort_keys=False)
 

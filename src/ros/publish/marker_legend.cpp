@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "ros/conversions.h"
 
@@ -11,7 +12,7 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr int kBarPieces = 25;
+constexpr int kBarPieces = 5;  // scaleColor() is linear in each
 constexpr int kTicks = 3;
 
 // In PictureFrame::letter().
@@ -25,8 +26,24 @@ constexpr double kArrowAside = 7.0;       // right of the numbers
 /// "2.5", "0.01": as many digits as roundUp()'s numbers, or halves of them, have.
 std::string numberText(double value) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
+  std::snprintf(text.data(), text.size(), "%.4g", value);
   return text.data();
+}
+
+/// Which way is up, and from where.
+void lookAt(const Simulator& simulator, PictureFrame& frame) {
+  Vector3 to_tips = Vector3::Zero();
+  for (std::size_t i = 0; i < simulator.instruments().size(); ++i) {
+    const auto tip = static_cast<std::size_t>(simulator.instruments()[i].tipLink());
+    to_tips += simulator.linkPoses(static_cast<int>(i))[tip].translation() - 0.5 * (frame.low + frame.high);
+  }
+  const Vector3& gravity = simulator.scene().gravity_m_per_s2;
+  const double above = std::abs(gravity.z()) > 0.5 * gravity.norm() ? -gravity.z() : to_tips.z();
+  frame.up = above < 0.0 ? -1.0 : 1.0;
+  frame.azimuth *= frame.up;
+  if (to_tips.head<2>().norm() < 0.5 * std::abs(to_tips.z())) return;
+  constexpr double kAside = 0.7;  // rad: so that tools are seen from the side, and what they touch is seen
+  frame.azimuth = std::atan2(to_tips.y(), to_tips.x()) + frame.up * kAside;
 }
 
 }  // namespace
@@ -45,14 +62,7 @@ PictureFrame pictureFrame(const Simulator& simulator) {
     frame.high = is_first ? high : frame.high.cwiseMax(high).eval();
     is_first = false;
   }
-  const Vector3& gravity = simulator.scene().gravity_m_per_s2;
-  const double middle = 0.5 * (frame.low.z() + frame.high.z());
-  double above = 0.0;
-  for (std::size_t i = 0; i < simulator.instruments().size(); ++i) {
-    above += simulator.linkPoses(static_cast<int>(i)).front().translation().z() - middle;
-  }
-  const double height = std::abs(gravity.z()) > 0.5 * gravity.norm() ? -gravity.z() : above;
-  frame.up = height < 0.0 ? -1.0 : 1.0;
+  lookAt(simulator, frame);
   return frame;
 }
 
@@ -80,7 +90,7 @@ MarkerLegend::MarkerLegend(const Simulator& simulator, const PictureFrame& frame
   const Vector3 right = frame.rightwards();
   const Vector3 up = frame.upwards();
   // The lower corner of the tissues' box that is farthest right.
-  foot_ = Vector3(frame.high.x(), up.z() > 0.0 ? frame.high.y() : frame.low.y(),
+  foot_ = Vector3(right.x() > 0.0 ? frame.high.x() : frame.low.x(), right.y() > 0.0 ? frame.high.y() : frame.low.y(),
                   up.z() > 0.0 ? frame.low.z() : frame.high.z()) +
           kGap * a * right;
   addText(quantity_.title, foot_ + (kBarFoot + kBarHeight + kLine) * a * up, wordColor(), markers);
@@ -109,7 +119,7 @@ Marker& MarkerLegend::add(int type, std::vector<Marker>& markers) {
   return markers.back();
 }
 
-/// @param left where it begins as seen from the yaw of rightwards(); RViz puts the middle of a text at its place.
+/// @param left where it begins as seen from the frame's azimuth; RViz puts the middle of a text at its place.
 void MarkerLegend::addText(const std::string& text, const Vector3& left, const std_msgs::ColorRGBA& color,
                            std::vector<Marker>& markers) {
   Marker& marker = add(Marker::TEXT_VIEW_FACING, markers);
@@ -119,16 +129,26 @@ void MarkerLegend::addText(const std::string& text, const Vector3& left, const s
   marker.pose.position = toPoint(left + frame_.halfWidth(text));
 }
 
-/// Of cubes, which are seen from all sides.
 void MarkerLegend::addBar(std::vector<Marker>& markers) {
-  Marker& bar = add(Marker::CUBE_LIST, markers);
-  const double a = frame_.letter();
-  bar.scale = toVector(a * Vector3(kBarWidth, kBarWidth, 1.02 * kBarHeight / kBarPieces));  // without seams
+  Marker& bar =
+      add(Marker::TRIANGLE_LIST, markers);  // which RViz does not light, so that colours are those of the tissue
+  bar.scale = toVector(Vector3::Ones());
+  const double width = kBarWidth * frame_.letter();
+  const Vector3 right = width * frame_.rightwards();
+  const Vector3 back = width * Vector3(-std::cos(frame_.azimuth), -std::sin(frame_.azimuth), 0.0);
+  const std::array<Vector3, 5> around = {Vector3::Zero(), right, right + back, back, Vector3::Zero()};
+  const Vector3 bottom = foot_ + kBarFoot * frame_.letter() * frame_.upwards();
+  const Vector3 whole = kBarHeight * frame_.letter() * frame_.upwards();
   for (int i = 0; i < kBarPieces; ++i) {
-    const double fraction = (i + 0.5) / kBarPieces;
-    bar.points.push_back(toPoint(foot_ + a * (0.5 * kBarWidth * frame_.rightwards() +
-                                              (kBarFoot + fraction * kBarHeight) * frame_.upwards())));
-    bar.colors.push_back(scaleColor(fraction));
+    for (std::size_t side = 0; side + 1 < around.size(); ++side) {
+      // Two triangles: columns `side` and `side` + 1, each at the lower and the upper end.
+      for (const auto& [column, end] :
+           {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 0), std::pair(1, 1), std::pair(0, 1)}) {
+        const double fraction = static_cast<double>(i + end) / kBarPieces;
+        bar.points.push_back(toPoint(bottom + around[side + static_cast<std::size_t>(column)] + fraction * whole));
+        bar.colors.push_back(scaleColor(fraction));
+      }
+    }
   }
 }
 

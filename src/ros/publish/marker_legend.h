@@ -5,6 +5,7 @@
 
 #include <visualization_msgs/Marker.h>
 
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -18,15 +19,17 @@ namespace tissue_contact {
 struct PictureFrame {
   Vector3 low = Vector3::Constant(-0.05);  ///< m, world frame; of a scene without tissue
   Vector3 high = Vector3::Constant(0.05);
-  /// Along z: 1 or -1. Against gravity where that is along z; else where the instruments come from.
+  /// Along z: 1 or -1. Against gravity where that is along z; else to where the tips of the instruments are at the start.
   double up = 1.0;
+  /// Where it is looked at from: the angle about z in the world frame, rad. Where tips are beside the tissues rather than above them,
+  /// from their side, and so that they are on the left.
+  double azimuth = 5.3;
 
   double size() const { return (high - low).norm(); }
   double letter() const { return size() / 24.0; }            ///< scale of texts, m; a capital has three quarters of it
   double longestArrow() const { return 0.3 * size(); }       ///< m
   Vector3 upwards() const { return Vector3(0.0, 0.0, up); }  ///< unit
-  /// Unit; to the right where the picture is looked at from yaw 5.3, as config/scene.rviz does.
-  Vector3 rightwards() const { return Vector3(0.832, 0.555 * up, 0.0); }
+  Vector3 rightwards() const { return up * Vector3(-std::sin(azimuth), std::cos(azimuth), 0.0); }  ///< unit
   /// From the middle of a text to its left end.
   Vector3 halfWidth(const std::string& text) const;
 };
@@ -53,6 +56,7 @@ class MarkerLegend {
   visualization_msgs::Marker& add(int type, std::vector<visualization_msgs::Marker>& markers);
   void addText(const std::string& text, const Vector3& left, const std_msgs::ColorRGBA& color,
                std::vector<visualization_msgs::Marker>& markers);
+  /// Of four sides, to be seen from everywhere.
   void addBar(std::vector<visualization_msgs::Marker>& markers);
   Vector3 tickPlace(int tick) const;
 

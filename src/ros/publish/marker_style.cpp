@@ -66,7 +66,7 @@ double roundUp(double value) {
 }
 
 void FullScale::take(double value) {
-  if (grows_ && value > value_ && std::isfinite(value)) value_ = roundUp(value);
+  if (value > value_ && value_ < most_) value_ = roundUp(std::min(value, most_));
 }
 
 }  // namespace tissue_contact

@@ -48,16 +48,17 @@ double roundUp(double value);
 /// never shrinks, so that a picture does not flicker; or one that is given and stays.
 class FullScale {
  public:
-  /// @param given > 0: it; 0: grows. @param start > 0: what it grows from.
-  FullScale(double given, double start) : value_(given > 0.0 ? given : roundUp(start)), grows_(!(given > 0.0)) {}
+  /// @param given > 0: it; 0: grows. @param start, most > 0: from where and how far, so that one wild value does not pale all others.
+  FullScale(double given, double start, double most)
+      : value_(given > 0.0 ? given : roundUp(start)), most_(given > 0.0 ? given : most) {}
 
-  /// Values that are not finite are overlooked.
+  /// NaN is overlooked.
   void take(double value);
   double value() const { return value_; }
 
  private:
   double value_;
-  bool grows_;
+  double most_;
 };
 
 }  // namespace tissue_contact

@@ -22,7 +22,8 @@ constexpr Range kForceArrowRange{1e-9, 1e6, "m/N", "leave it out and it fits the
 MarkerStyle markerStyle(const ros::NodeHandle& node) {
   MarkerStyle style;
   const std::string color = "markers/color";
-  style.color = toSurfaceColor("parameter '" + node.resolveName(color) + "'", textParameter(node, color, "displacement"));
+  style.color =
+      toSurfaceColor("parameter '" + node.resolveName(color) + "'", textParameter(node, color, "displacement"));
   for (const SurfaceColor one : {SurfaceColor::kDisplacement, SurfaceColor::kPressure, SurfaceColor::kStrain}) {
     const std::string name = std::string("markers/") + colorQuantity(one).full_scale;
     if (!node.hasParam(name)) continue;
@@ -37,6 +38,17 @@ MarkerStyle markerStyle(const ros::NodeHandle& node) {
 PublishedMesh publishedMesh(const ros::NodeHandle& node) {
   const std::string name = "publish_mesh";
   return toPublishedMesh("parameter '" + node.resolveName(name) + "'", textParameter(node, name, "refined"));
+}
+
+/// Contacts are at nodes of the mesh computed with.
+void checkColor(const Scene& scene, const MarkerStyle& style, PublishedMesh mesh) {
+  if (style.color != SurfaceColor::kPressure || mesh == PublishedMesh::kRefined) return;
+  for (const TissueDescription& tissue : scene.tissues) {
+    if (tissue.refinement.mode == RefinementDescription::Mode::kNever) continue;
+    throw std::invalid_argument(
+        "parameter 'markers/color' is pressure, which is not known at the nodes of the unrefined mesh of tissue '" +
+        tissue.name + "'; start with publish_mesh:=refined, or colour by displacement or strain");
+  }
 }
 
 void checkTopicName(const std::string& kind, const std::string& name) {
@@ -87,6 +99,7 @@ Outputs::Outputs(const ros::NodeHandle& private_node, const Simulator& simulator
       status_rate_(options.status_rate_hz),
       markers_rate_(options.markers_rate_hz) {
   checkNames(simulator, options.tf);
+  checkColor(simulator.scene(), markerStyle(node_), publishedMesh(node_));
   for (const Instrument& instrument : simulator.instruments()) {
     wrenches_.emplace_back();
     wrenches_.back().header.frame_id = instrument.model().links()[static_cast<std::size_t>(instrument.tipLink())].name;

@@ -77,16 +77,17 @@ void shade(const Vector3& normal, std_msgs::ColorRGBA& rgba) {
   rgba.b *= factor;
 }
 
-/// What full scale starts with, SI unit: little for the scene, so that most of what follows is seen, and enough that touching does
-/// not paint all of it.
-double firstColorScale(const Simulator& simulator, const PictureFrame& frame, SurfaceColor color) {
-  if (color == SurfaceColor::kDisplacement) return 0.02 * frame.size();
-  if (color == SurfaceColor::kStrain) return 0.2;
+/// Full scale starts with little for the scene, so that most of what follows is seen, and enough that touching does not paint all of it.
+/// It ends where nothing is believed any more, or where a free body is on its way.
+FullScale colorScale(const Simulator& simulator, const PictureFrame& frame, const MarkerStyle& style) {
+  const double given = style.color_full_scale;
+  if (style.color == SurfaceColor::kDisplacement) return {given, 0.02 * frame.size(), frame.size()};
+  if (style.color == SurfaceColor::kStrain) return {given, 0.2, 1.0};
   double modulus_pa = 1e12;
   for (const TissueDescription& tissue : simulator.scene().tissues) {
     modulus_pa = std::min(modulus_pa, tissue.material.youngs_modulus_pa);
   }
-  return 0.1 * modulus_pa;
+  return {given, 0.1 * modulus_pa, 10.0 * modulus_pa};
 }
 
 /// The force of one contact that the longest arrow starts with, N: the tissue's extents L >= d, E L d / 300, is that of a touch.
@@ -109,8 +110,8 @@ SceneMarkers::SceneMarkers(const Simulator& simulator, const MarkerStyle& style,
     : simulator_(simulator),
       style_(style),
       frame_(pictureFrame(simulator)),
-      color_scale_(style.color_full_scale, firstColorScale(simulator, frame_, style.color)),
-      force_scale_(0.0, firstForceScale(simulator)),
+      color_scale_(colorScale(simulator, frame_, style)),
+      force_scale_(0.0, firstForceScale(simulator), 1e12),
       laid_out_(simulator.scene().tissues.size(), -1),
       edges_(laid_out_.size()),
       areas_(laid_out_.size()),
@@ -258,7 +259,8 @@ void SceneMarkers::updateForceTexts(const SceneSnapshot& snapshot) {
     marker.text = (instruments.size() > 1 ? instruments[i].name() + " " : "") + forceText(force_n.norm());
     marker.color = slides ? kineticColor() : holds ? staticColor() : wordColor();
     const Pose& X_WT = snapshot.link_poses[i][static_cast<std::size_t>(instruments[i].tipLink())];
-    marker.pose.position = toPoint(textPlace(X_WT.translation(), half_widths_[i]) + 1.2 * frame_.halfWidth(marker.text));
+    marker.pose.position =
+        toPoint(textPlace(X_WT.translation(), half_widths_[i]) + 1.2 * frame_.halfWidth(marker.text));
   }
 }
 
@@ -288,8 +290,7 @@ double SceneMarkers::arrowPerNewton() const {
 
 void SceneMarkers::setArrow(std::size_t index, const SolvedContact& contact) {
   if (index == message_.markers.size()) {
-    Marker marker =
-        newMarker(simulator_, kForceNamespace, static_cast<int>(index - first_arrow_), Marker::ARROW);
+    Marker marker = newMarker(simulator_, kForceNamespace, static_cast<int>(index - first_arrow_), Marker::ARROW);
     const double longest = frame_.longestArrow();
     marker.scale = scale(longest / 30.0, longest / 12.0, longest / 8.0);  // shaft and head diameter, head length
     marker.points.resize(2);

@@ -59,7 +59,8 @@ class SceneMarkers {
   const PictureFrame frame_;
   FullScale color_scale_;  ///< SI unit
   FullScale force_scale_;  ///< of one contact, N, of the longest arrow; not with arrows of a given length
-  visualization_msgs::MarkerArray message_;  ///< tissue surfaces, tissue edges, instrument shapes, texts, legend, arrows
+  visualization_msgs::MarkerArray
+      message_;                ///< tissue surfaces, tissue edges, instrument shapes, texts, legend, arrows
   std::vector<int> laid_out_;  ///< per tissue: revision of the mesh that its markers have room for; -1: none
   std::vector<std::vector<std::array<int, 2>>> edges_;  ///< per tissue: nodes of each surface edge
   std::vector<NodalVectors> areas_;                     ///< per tissue: nodalAreas(), for shading and pressure
