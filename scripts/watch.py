@@ -26,7 +26,7 @@ from tissue_contact.msg import Status
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
 from whole_file import whole_file
 
-REDRAW_S = 0.2
+REDRAW_S = 0.5  # a drawing takes a tenth of a second of a core, which the node may need
 QUIET_S = 5.0  # without a message for so long, after the first, a picture is not waited for any longer
 MOST = 100000  # samples kept of one curve: ten seconds at ten kilohertz
 
@@ -143,6 +143,7 @@ def draw_force(plot, name, force, error):
 
 def new_axes(pyplot, instruments):
     figure, axes = pyplot.subplots(instruments + 2, 1, sharex=True, figsize=(8.0, 2.2 * (instruments + 2)), dpi=110)
+    figure.subplots_adjust(left=0.12, right=0.97, top=0.97, bottom=0.22 / (instruments + 2), hspace=0.15)
     figure.canvas.manager.set_window_title("tissue_contact")
     return figure, axes
 
@@ -163,7 +164,6 @@ def write_picture(watch, seconds, file):
         fail("stopped before the first message")
     figure, axes = new_axes(pyplot, len(watch.instruments))
     draw(watch, axes, seconds)
-    figure.tight_layout()
     try:
         with whole_file(file) as part:
             figure.savefig(part, format="png")
@@ -184,7 +184,6 @@ def show(watch, seconds):
     while is_open and not rospy.is_shutdown():
         began = time.monotonic()
         draw(watch, axes, seconds)
-        figure.tight_layout()
         figure.canvas.draw_idle()
         pyplot.pause(max(REDRAW_S - (time.monotonic() - began), 0.01))
 
