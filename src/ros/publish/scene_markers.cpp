@@ -165,7 +165,7 @@ void SceneMarkers::addShape(int instrument, int link, const ShapeDescription& sh
                             bool touches) {
   Marker marker = newMarker(simulator_, simulator_.instruments()[static_cast<std::size_t>(instrument)].name(),
                             static_cast<int>(shapes_.size()), Marker::TRIANGLE_LIST);
-  marker.color = touches ? rgba(0.75F, 0.78F, 0.82F, 0.7F) : rgba(0.6F, 0.6F, 0.62F, 0.4F);
+  marker.color = touches ? rgba(0.75F, 0.78F, 0.82F, 0.55F) : rgba(0.6F, 0.6F, 0.62F, 0.4F);
   setGeometry(shape.geometry, mesh, marker);
   shapes_.push_back({message_.markers.size(), instrument, link, shape.X_LS});
   message_.markers.push_back(marker);
@@ -243,21 +243,21 @@ void SceneMarkers::updateTissue(std::size_t tissue, const MeshRevision& mesh, co
   }
 }
 
-/// With the name where there are several.
+/// With the name where there are several, in the colour of what bears most of it.
 void SceneMarkers::updateForceTexts(const SceneSnapshot& snapshot) {
   const std::vector<Instrument>& instruments = simulator_.instruments();
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     Vector3 force_n = Vector3::Zero();
-    bool holds = false;
-    bool slides = false;
+    double held_n = 0.0;
+    double slides_n = 0.0;
     for (const SolvedContact& contact : snapshot.contacts) {
       if (contact.contact.key.instrument != static_cast<int>(i) || contact.state == ContactState::kOpen) continue;
       force_n -= contact.force_on_tissue_n;
-      (contact.state == ContactState::kStatic ? holds : slides) = true;
+      (contact.state == ContactState::kStatic ? held_n : slides_n) += contact.force_on_tissue_n.norm();
     }
     Marker& marker = message_.markers[first_text_ + i];
     marker.text = (instruments.size() > 1 ? instruments[i].name() + " " : "") + forceText(force_n.norm());
-    marker.color = slides ? kineticColor() : holds ? staticColor() : wordColor();
+    marker.color = slides_n > held_n ? kineticColor() : held_n > 0.0 ? staticColor() : wordColor();
     const Pose& X_WT = snapshot.link_poses[i][static_cast<std::size_t>(instruments[i].tipLink())];
     marker.pose.position =
         toPoint(textPlace(X_WT.translation(), half_widths_[i]) + 1.2 * frame_.halfWidth(marker.text));
