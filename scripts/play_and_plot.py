@@ -73,8 +73,9 @@ class Graph:
         return []
 
     def is_shown(self):
-        """Whether RViz listens to the node's markers."""
-        return any(topic == self._node + "/markers" for topic, _ in self._master.getSystemState()[1])
+        """Whether RViz listens to the node's markers, or anybody but open_rviz.py, which looks at them before it opens RViz."""
+        listeners = dict(self._master.getSystemState()[1]).get(self._node + "/markers", [])
+        return any(not name.startswith("/open_rviz_") for name in listeners)
 
 
 class Recorder:

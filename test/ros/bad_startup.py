@@ -71,10 +71,19 @@ class BadStartup(harness.TestCase):
             self.assert_refused(["_scene:=" + harness.SCENE, "_tf_timeout_s:=" + bad], "tf_timeout_s")
 
     def test_bad_marker_scale(self):
-        for name in ["markers/displacement_full_scale_m", "markers/force_arrow_m_per_n"]:
+        for name in ["markers/displacement_full_scale_m", "markers/pressure_full_scale_pa", "markers/strain_full_scale",
+                     "markers/force_arrow_m_per_n"]:
             for bad in ["0.0", "-1.0", "nan"]:
                 self.assert_refused(["_scene:=" + harness.SCENE, "_%s:=%s" % (name, bad)], "/tissue_contact/" + name)
             rospy.delete_param("/tissue_contact/" + name)
+
+    def test_bad_marker_color(self):
+        self.assert_refused(["_scene:=" + harness.SCENE, "_markers/color:=stress"],
+                            "parameter '/tissue_contact/markers/color' is \"stress\"", "displacement, pressure or strain")
+
+    def test_pressure_of_a_mesh_that_is_not_the_one_computed_with(self):
+        self.assert_refused(["_scene:=" + self.refined_scene(), "_markers/color:=pressure", "_publish_mesh:=unrefined"],
+                            "'block'", "publish_mesh:=refined")
 
     def test_bad_mesh_to_publish(self):
         for bad in ["coarse", "1"]:
@@ -130,7 +139,8 @@ class BadStartup(harness.TestCase):
             rospy.set_param("/tissue_contact/arm/description", stream.read())
         rospy.set_param("/tissue_contact_of_another/sceen", "x")
         for name, value in [("diagnostic_period", 1.0), ("publish_mesh", "unrefined"), ("tf_timeout_s", 1.0),
-                            ("markers/force_arrow_m_per_n", 0.1), ("markers/displacement_full_scale_m", 0.01)]:
+                            ("markers/force_arrow_m_per_n", 0.1), ("markers/displacement_full_scale_m", 0.01),
+                            ("markers/color", "strain"), ("markers/strain_full_scale", 1)]:
             rospy.set_param("/tissue_contact/" + name, value)
         arguments = ["__log:=" + self.path("log"), "chatter:=elsewhere", "/tissue_contact/status:=/s"]
         with harness.node(path, *arguments):

@@ -49,10 +49,10 @@ class Demo(harness.TestCase):
         self.assertNotIn("has died", output)
         self.assert_pictures()
 
-    def test_psm_launch_takes_any_bag_and_scene(self):
+    def test_scene_launch_takes_any_bag_and_scene(self):
         bag = self.bag_of("my press.bag", harness.press(50))  # with blanks, as people name their files
         scene = shutil.copy(harness.SCENE, self.path("my scene.yaml"))
-        code, output = harness.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + scene, "output:=" + self.plots)
+        code, output = harness.launch("scene.launch", "bag:=" + bag, "scene:=" + scene, "output:=" + self.plots)
         self.assertEqual(code, 0, output)
         self.assert_pictures()
 
@@ -61,7 +61,7 @@ class Demo(harness.TestCase):
 
     def test_model_goes_to_a_scene_that_names_none(self):
         bag = self.bag_of("press.bag", harness.press(20))
-        code, output = harness.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + self.scene_without_urdf(),
+        code, output = harness.launch("scene.launch", "bag:=" + bag, "scene:=" + self.scene_without_urdf(),
                                       "model:=package://tissue_contact/urdf/probe.urdf",
                                       "output:=" + self.plots)
         self.assertEqual(code, 0, output)
@@ -75,7 +75,7 @@ class Demo(harness.TestCase):
                  (self.scene_without_urdf(), xacro, "robot.urdf.xacro"),
                  (self.scene_without_urdf(), "none.urdf", "none.urdf does not exist")]
         for scene, model, words in cases:
-            code, output = harness.launch("play_bag.launch", "bag:=" + bag, "scene:=" + scene, "model:=" + model,
+            code, output = harness.launch("scene.launch", "bag:=" + bag, "scene:=" + scene, "model:=" + model,
                                           "output:=" + self.plots)
             self.assertEqual(code, 1, output)
             self.assertIn(words, output)
@@ -84,7 +84,7 @@ class Demo(harness.TestCase):
 
     def test_bag_without_the_topic_ends_with_its_name(self):
         bag = self.bag_of("other.bag", harness.press(5), topic="/other/joint_states")
-        code, output = harness.launch("psm_bag.launch", "bag:=" + bag, "scene:=" + harness.SCENE,
+        code, output = harness.launch("scene.launch", "bag:=" + bag, "scene:=" + harness.SCENE,
                                       "output:=" + self.plots)
         self.assertEqual(code, 1, output)
         self.assertIn("has no message on " + harness.TOPIC, output)
@@ -96,7 +96,7 @@ class Demo(harness.TestCase):
         with open(os.path.join(self.plots, "probe_force.png"), "wb"):
             pass
         bag = self.bag_of("press.bag", harness.press(5))
-        code, output = harness.launch("psm_bag.launch", "bag:=" + bag, "scene:=no_such_scene.yaml", "output:=" + self.plots)
+        code, output = harness.launch("scene.launch", "bag:=" + bag, "scene:=no_such_scene.yaml", "output:=" + self.plots)
         self.assertEqual(code, 1, output)
         self.assertIn("no_such_scene.yaml", output)
         self.assertIn("REQUIRED process [tissue_contact-", output)
@@ -107,7 +107,7 @@ class Demo(harness.TestCase):
         bag = self.bag_of("press.bag", harness.press(20))
         master = rosgraph.Master(rospy.get_name())
         before = (master.getParam("/run_id"), sorted(rospy.get_param_names()), master.getSystemState())
-        code, output = harness.launch("psm_bag.launch", "bag:=" + bag,
+        code, output = harness.launch("scene.launch", "bag:=" + bag,
                                       "scene:=package://tissue_contact/test/ros/press.yaml",
                                       "output:=" + self.plots)
         self.assertEqual(code, 0, output)

@@ -42,7 +42,9 @@ private parameters
   ~tf_timeout_s        how long to wait for tf frames that the scene names, s; default 10
   ~publish_mesh        refined (default) or unrefined: the mesh of a tissue that is refined while it is touched, as it is
                        or as it was at the start
-  ~markers/...         force_arrow_m_per_n, displacement_full_scale_m: sizes in RViz
+  ~markers/color       what colours show in RViz: displacement (default), pressure or strain
+  ~markers/...         displacement_full_scale_m, pressure_full_scale_pa, strain_full_scale, force_arrow_m_per_n: fixed
+                       scales in RViz; without them they fit what has been shown so far
   any other argument, also _parameter:=value, is refused; of what is set on the parameter server, misspelt names only
 
 subscribed topics

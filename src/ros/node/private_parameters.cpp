@@ -26,9 +26,15 @@ bool contains(const std::vector<std::string>& all, const std::string& one) {
 constexpr const char* kRobotDescription = "robot_description";
 
 /// Relative to the private namespace. diagnostic_period is diagnostic_updater's; roscpp, rosconsole and tf2_ros read none.
-const std::vector<std::string> kOwnNames = {
-    "diagnostic_period", "markers/displacement_full_scale_m", "markers/force_arrow_m_per_n", "publish_mesh", "scene",
-    "tf_timeout_s"};
+const std::vector<std::string> kOwnNames = {"diagnostic_period",
+                                            "markers/color",
+                                            "markers/displacement_full_scale_m",
+                                            "markers/force_arrow_m_per_n",
+                                            "markers/pressure_full_scale_pa",
+                                            "markers/strain_full_scale",
+                                            "publish_mesh",
+                                            "scene",
+                                            "tf_timeout_s"};
 
 /// @param scene null: none is known yet.
 std::vector<std::string> knownNames(const Scene* scene) {

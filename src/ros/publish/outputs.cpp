@@ -16,21 +16,39 @@ namespace {
 constexpr int kWrenchQueue = 10000;
 
 // Far beyond what RViz can draw on either side.
-constexpr Range kFullScaleRange{1e-9, 1e3, "m"};
-constexpr Range kForceArrowRange{1e-9, 1e6, "m/N"};
+constexpr Range kFullScaleRange{1e-9, 1e12, "SI units", "leave it out and it fits the scene"};
+constexpr Range kForceArrowRange{1e-9, 1e6, "m/N", "leave it out and it fits the scene"};
 
 MarkerStyle markerStyle(const ros::NodeHandle& node) {
   MarkerStyle style;
-  style.displacement_full_scale_m =
-      numberParameter(node, "markers/displacement_full_scale_m", style.displacement_full_scale_m, kFullScaleRange);
-  style.force_arrow_m_per_n =
-      numberParameter(node, "markers/force_arrow_m_per_n", style.force_arrow_m_per_n, kForceArrowRange);
+  const std::string color = "markers/color";
+  style.color =
+      toSurfaceColor("parameter '" + node.resolveName(color) + "'", textParameter(node, color, "displacement"));
+  for (const SurfaceColor one : {SurfaceColor::kDisplacement, SurfaceColor::kPressure, SurfaceColor::kStrain}) {
+    const std::string name = std::string("markers/") + colorQuantity(one).full_scale;
+    if (!node.hasParam(name)) continue;
+    const double given = numberParameter(node, name, 0.0, kFullScaleRange);
+    if (one == style.color) style.color_full_scale = given;
+  }
+  const std::string arrow = "markers/force_arrow_m_per_n";
+  if (node.hasParam(arrow)) style.force_arrow_m_per_n = numberParameter(node, arrow, 0.0, kForceArrowRange);
   return style;
 }
 
 PublishedMesh publishedMesh(const ros::NodeHandle& node) {
   const std::string name = "publish_mesh";
   return toPublishedMesh("parameter '" + node.resolveName(name) + "'", textParameter(node, name, "refined"));
+}
+
+/// Contacts are at nodes of the mesh computed with.
+void checkColor(const Scene& scene, const MarkerStyle& style, PublishedMesh mesh) {
+  if (style.color != SurfaceColor::kPressure || mesh == PublishedMesh::kRefined) return;
+  for (const TissueDescription& tissue : scene.tissues) {
+    if (tissue.refinement.mode == RefinementDescription::Mode::kNever) continue;
+    throw std::invalid_argument(
+        "parameter 'markers/color' is pressure, which is not known at the nodes of the unrefined mesh of tissue '" +
+        tissue.name + "'; start with publish_mesh:=refined, or colour by displacement or strain");
+  }
 }
 
 void checkTopicName(const std::string& kind, const std::string& name) {
@@ -81,6 +99,7 @@ Outputs::Outputs(const ros::NodeHandle& private_node, const Simulator& simulator
       status_rate_(options.status_rate_hz),
       markers_rate_(options.markers_rate_hz) {
   checkNames(simulator, options.tf);
+  checkColor(simulator.scene(), markerStyle(node_), publishedMesh(node_));
   for (const Instrument& instrument : simulator.instruments()) {
     wrenches_.emplace_back();
     wrenches_.back().header.frame_id = instrument.model().links()[static_cast<std::size_t>(instrument.tipLink())].name;

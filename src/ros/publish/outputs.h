@@ -33,7 +33,7 @@ class Outputs {
   /// Refuses the scene before anything is advertised. Simulator and player must outlive this.
   /// @param complete fills in what only its caller knows of a Status.
   /// @throws std::invalid_argument: a name that cannot be part of a topic, tf of two links with one name, a bad private
-  ///   parameter ~publish_mesh, ~markers/displacement_full_scale_m or ~markers/force_arrow_m_per_n.
+  ///   parameter ~publish_mesh or below ~markers.
   Outputs(const ros::NodeHandle& private_node, const Simulator& simulator, const JointStatePlayer& player,
           const PublishOptions& options, std::function<void(Status&)> complete);
 

@@ -10,6 +10,7 @@
 
 #include "mesh/edge_table.h"
 #include "ros/conversions.h"
+#include "simulation/nodal_fields.h"
 
 namespace tissue_contact {
 namespace {
@@ -17,15 +18,7 @@ namespace {
 using visualization_msgs::Marker;
 
 const char* const kForceNamespace = "contact_forces";
-
-std_msgs::ColorRGBA color(float r, float g, float b, float a = 1.0F) {
-  std_msgs::ColorRGBA rgba;
-  rgba.r = r;
-  rgba.g = g;
-  rgba.b = b;
-  rgba.a = a;
-  return rgba;
-}
+const char* const kForceTexts = "force_texts";
 
 geometry_msgs::Vector3 scale(double x, double y, double z) { return toVector(Vector3(x, y, z)); }
 
@@ -58,13 +51,18 @@ void setGeometry(const ShapeGeometry& geometry, const TriangleMesh* mesh, Marker
   }
 }
 
-/// Outward normals of the surface nodes, weighted by area (not unit); 0 for inner nodes.
-void sumNormals(const std::vector<Triangle>& triangles, const NodalVectors& x, NodalVectors& normals) {
-  normals.setZero();
-  for (const Triangle& t : triangles) {
-    const Vector3 normal = (x.col(t[1]) - x.col(t[0])).cross(x.col(t[2]) - x.col(t[0]));
-    for (const int node : t) normals.col(node) += normal;
+/// Half the width of a shape, m: the middle one of its half extents, so that a rod is as wide as it is thick.
+double halfWidth(const ShapeGeometry& geometry, const TriangleMesh* mesh) {
+  if (const auto* sphere = std::get_if<SphereGeometry>(&geometry)) return sphere->radius_m;
+  if (const auto* cylinder = std::get_if<CylinderGeometry>(&geometry)) return cylinder->radius_m;
+  Vector3 extent = Vector3::Zero();
+  if (const auto* box = std::get_if<BoxGeometry>(&geometry)) {
+    extent = box->size_m;
+  } else if (mesh != nullptr) {
+    extent = mesh->vertices.rowwise().maxCoeff() - mesh->vertices.rowwise().minCoeff();
   }
+  std::sort(extent.data(), extent.data() + 3);
+  return 0.5 * extent[1];
 }
 
 /// RViz does not light coloured triangles, and a dent without shading is not seen as one. Lit alike from two opposite
@@ -79,56 +77,63 @@ void shade(const Vector3& normal, std_msgs::ColorRGBA& rgba) {
   rgba.b *= factor;
 }
 
-}  // namespace
-
-std_msgs::ColorRGBA displacementColor(double fraction) {
-  static constexpr std::array<std::array<double, 3>, 6> kColors = {{{0.95, 0.84, 0.77},
-                                                                    {0.95, 0.66, 0.48},
-                                                                    {0.89, 0.38, 0.30},
-                                                                    {0.68, 0.16, 0.35},
-                                                                    {0.38, 0.09, 0.36},
-                                                                    {0.12, 0.05, 0.22}}};
-  const double position = (fraction > 0.0 ? std::min(fraction, 1.0) : 0.0) * (kColors.size() - 1);
-  const auto low = std::min(static_cast<std::size_t>(position), kColors.size() - 2);
-  const double part = position - static_cast<double>(low);
-  const auto mix = [&](std::size_t c) {
-    return static_cast<float>(kColors[low][c] + part * (kColors[low + 1][c] - kColors[low][c]));
-  };
-  return color(mix(0), mix(1), mix(2));
+/// Full scale starts with little for the scene, so that most of what follows is seen, and enough that touching does not paint all of it.
+/// It ends where nothing is believed any more, or where a free body is on its way.
+FullScale colorScale(const Simulator& simulator, const PictureFrame& frame, const MarkerStyle& style) {
+  const double given = style.color_full_scale;
+  if (style.color == SurfaceColor::kDisplacement) return {given, 0.02 * frame.size(), frame.size()};
+  if (style.color == SurfaceColor::kStrain) return {given, 0.2, 1.0};
+  double modulus_pa = 1e12;
+  for (const TissueDescription& tissue : simulator.scene().tissues) {
+    modulus_pa = std::min(modulus_pa, tissue.material.youngs_modulus_pa);
+  }
+  return {given, 0.1 * modulus_pa, 10.0 * modulus_pa};
 }
+
+/// The force of one contact that the longest arrow starts with, N: the tissue's extents L >= d, E L d / 300, is that of a touch.
+double firstForceScale(const Simulator& simulator) {
+  double force_n = 1e12;
+  for (std::size_t t = 0; t < simulator.tissues().size(); ++t) {
+    const Tissue& tissue = simulator.tissues()[t];
+    const NodalVectors& rest = tissue.restPositions();
+    const Vector3 extent = rest.rowwise().maxCoeff() - rest.rowwise().minCoeff();
+    const double thickness_m = std::max(extent.minCoeff(), tissue.thickness());
+    const double modulus_pa = simulator.scene().tissues[t].material.youngs_modulus_pa;
+    force_n = std::min(force_n, 0.003 * modulus_pa * extent.norm() * thickness_m);
+  }
+  return force_n;
+}
+
+}  // namespace
 
 SceneMarkers::SceneMarkers(const Simulator& simulator, const MarkerStyle& style, bool is_shown)
     : simulator_(simulator),
       style_(style),
+      frame_(pictureFrame(simulator)),
+      color_scale_(colorScale(simulator, frame_, style)),
+      force_scale_(0.0, firstForceScale(simulator), 1e12),
       laid_out_(simulator.scene().tissues.size(), -1),
       edges_(laid_out_.size()),
-      normals_(laid_out_.size()) {
+      areas_(laid_out_.size()),
+      values_(laid_out_.size()),
+      half_widths_(simulator.instruments().size(), 0.0) {
   addTissues();
   for (std::size_t i = 0; i < simulator.instruments().size(); ++i) addInstrument(static_cast<int>(i), is_shown);
+  addForceTexts();
+  legend_.emplace(simulator, frame_, style.color, message_.markers);
   first_arrow_ = message_.markers.size();
 }
 
 void SceneMarkers::addTissues() {
   for (const TissueDescription& tissue : simulator_.scene().tissues) {
-    Marker marker;
-    marker.header.frame_id = simulator_.scene().world_frame;
-    marker.ns = tissue.name;
-    marker.type = Marker::TRIANGLE_LIST;
-    marker.pose.orientation.w = 1.0;
+    Marker& marker = message_.markers.emplace_back(newMarker(simulator_, tissue.name, 0, Marker::TRIANGLE_LIST));
     marker.scale = scale(1.0, 1.0, 1.0);
-    marker.color = color(1.0F, 1.0F, 1.0F);
-    message_.markers.push_back(marker);
+    marker.color = rgba(1.0F, 1.0F, 1.0F);
   }
   for (const TissueDescription& tissue : simulator_.scene().tissues) {
-    Marker marker;
-    marker.header.frame_id = simulator_.scene().world_frame;
-    marker.ns = tissue.name;
-    marker.id = 1;
-    marker.type = Marker::LINE_LIST;
-    marker.pose.orientation.w = 1.0;
-    marker.scale.x = 0.00015;  // m: thin beside elements of some millimetres
-    marker.color = color(0.25F, 0.1F, 0.1F, 0.5F);
-    message_.markers.push_back(marker);
+    Marker& marker = message_.markers.emplace_back(newMarker(simulator_, tissue.name, 1, Marker::LINE_LIST));
+    marker.scale.x = frame_.size() / 700.0;  // about a pixel of a window that shows all
+    marker.color = rgba(0.25F, 0.1F, 0.1F, 0.5F);
   }
 }
 
@@ -143,6 +148,8 @@ void SceneMarkers::addInstrument(int instrument, bool is_shown) {
       const TriangleMesh* surface =
           is_shown ? simulator_.actingSurface(instrument, static_cast<int>(c), static_cast<int>(s)) : nullptr;
       addShape(instrument, link.link, {link.shapes[s].geometry, link.shapes[s].X_LS}, surface, true);
+      double& widest = half_widths_[static_cast<std::size_t>(instrument)];
+      widest = std::max(widest, halfWidth(link.shapes[s].geometry, surface));
     }
   }
   for (std::size_t l = 0; l < tool.model().links().size(); ++l) {
@@ -156,28 +163,37 @@ void SceneMarkers::addInstrument(int instrument, bool is_shown) {
 
 void SceneMarkers::addShape(int instrument, int link, const ShapeDescription& shape, const TriangleMesh* mesh,
                             bool touches) {
-  Marker marker;
-  marker.header.frame_id = simulator_.scene().world_frame;
-  marker.ns = simulator_.instruments()[static_cast<std::size_t>(instrument)].name();
-  marker.id = static_cast<int>(shapes_.size());
-  marker.color = touches ? color(0.75F, 0.78F, 0.82F, 0.8F) : color(0.6F, 0.6F, 0.62F, 0.4F);
+  Marker marker = newMarker(simulator_, simulator_.instruments()[static_cast<std::size_t>(instrument)].name(),
+                            static_cast<int>(shapes_.size()), Marker::TRIANGLE_LIST);
+  marker.color = touches ? rgba(0.75F, 0.78F, 0.82F, 0.55F) : rgba(0.6F, 0.6F, 0.62F, 0.4F);
   setGeometry(shape.geometry, mesh, marker);
   shapes_.push_back({message_.markers.size(), instrument, link, shape.X_LS});
   message_.markers.push_back(marker);
+}
+
+void SceneMarkers::addForceTexts() {
+  first_text_ = message_.markers.size();
+  for (std::size_t i = 0; i < simulator_.instruments().size(); ++i) {
+    message_.markers.push_back(newMarker(simulator_, kForceTexts, static_cast<int>(i), Marker::TEXT_VIEW_FACING));
+    message_.markers.back().scale.z = 1.2 * frame_.letter();
+  }
 }
 
 const visualization_msgs::MarkerArray& SceneMarkers::update(const SceneSnapshot& snapshot) {
   for (std::size_t t = 0; t < laid_out_.size(); ++t) {
     const MeshRevision& mesh = *snapshot.revisions[t];
     if (mesh.revision != laid_out_[t]) layOut(t, mesh);
-    updateTissue(t, mesh, snapshot.positions[t]);
+    findColors(t, mesh, snapshot);
   }
+  for (std::size_t t = 0; t < laid_out_.size(); ++t) updateTissue(t, *snapshot.revisions[t], snapshot.positions[t]);
   for (const ShapeMarker& shape : shapes_) {
     const Pose& X_WL =
         snapshot.link_poses[static_cast<std::size_t>(shape.instrument)][static_cast<std::size_t>(shape.link)];
     message_.markers[shape.marker].pose = toPose(X_WL * shape.X_LS);
   }
   updateForces(snapshot.contacts);
+  updateForceTexts(snapshot);
+  legend_->update(color_scale_.value(), arrowPerNewton(), message_.markers);
   for (Marker& marker : message_.markers) marker.header.stamp = toTime(snapshot.stamp_ns);
   return message_;
 }
@@ -186,7 +202,6 @@ void SceneMarkers::layOut(std::size_t tissue, const MeshRevision& mesh) {
   std::vector<std::array<int, 2>>& edges = edges_[tissue];
   edges.clear();
   for (const EdgeTable::Edge& edge : EdgeTable(mesh.surface)) edges.push_back(edge.nodes);
-  normals_[tissue].resize(3, mesh.nodeCount());
   Marker& triangles = message_.markers[tissue];
   triangles.points.resize(3 * mesh.surface.size());
   triangles.colors.resize(triangles.points.size());
@@ -194,17 +209,31 @@ void SceneMarkers::layOut(std::size_t tissue, const MeshRevision& mesh) {
   laid_out_[tissue] = mesh.revision;
 }
 
+/// And lets the scale grow with them.
+void SceneMarkers::findColors(std::size_t tissue, const MeshRevision& mesh, const SceneSnapshot& snapshot) {
+  const NodalVectors& x = snapshot.positions[tissue];
+  VectorX& values = values_[tissue];
+  nodalAreas(mesh.surface, x, areas_[tissue]);
+  if (style_.color == SurfaceColor::kDisplacement) {
+    values = (x - mesh.rest_positions).colwise().norm();
+  } else if (style_.color == SurfaceColor::kPressure) {
+    nodalPressure(snapshot.contacts, static_cast<int>(tissue), areas_[tissue], mesh.tetrahedra.empty(), values);
+  } else {
+    nodalStrain(mesh.tetrahedra, mesh.surface, mesh.rest_positions, x, values);
+  }
+  for (const Triangle& triangle : mesh.surface) {
+    for (const int node : triangle) color_scale_.take(values[node]);
+  }
+}
+
 void SceneMarkers::updateTissue(std::size_t tissue, const MeshRevision& mesh, const NodalVectors& x) {
-  NodalVectors& normals = normals_[tissue];
-  sumNormals(mesh.surface, x, normals);
   Marker& marker = message_.markers[tissue];
   std::size_t corner = 0;
   for (const Triangle& triangle : mesh.surface) {
     for (const int node : triangle) {
-      const double displacement = (x.col(node) - mesh.rest_positions.col(node)).norm();
       marker.points[corner] = toPoint(x.col(node));
-      marker.colors[corner] = displacementColor(displacement / style_.displacement_full_scale_m);
-      shade(normals.col(node), marker.colors[corner++]);
+      marker.colors[corner] = scaleColor(values_[tissue][node] / color_scale_.value());
+      shade(areas_[tissue].col(node), marker.colors[corner++]);
     }
   }
   Marker& lines = message_.markers[laid_out_.size() + tissue];
@@ -214,10 +243,38 @@ void SceneMarkers::updateTissue(std::size_t tissue, const MeshRevision& mesh, co
   }
 }
 
+/// With the name where there are several, in the colour of what bears most of it.
+void SceneMarkers::updateForceTexts(const SceneSnapshot& snapshot) {
+  const std::vector<Instrument>& instruments = simulator_.instruments();
+  for (std::size_t i = 0; i < instruments.size(); ++i) {
+    Vector3 force_n = Vector3::Zero();
+    double held_n = 0.0;
+    double slides_n = 0.0;
+    for (const SolvedContact& contact : snapshot.contacts) {
+      if (contact.contact.key.instrument != static_cast<int>(i) || contact.state == ContactState::kOpen) continue;
+      force_n -= contact.force_on_tissue_n;
+      (contact.state == ContactState::kStatic ? held_n : slides_n) += contact.force_on_tissue_n.norm();
+    }
+    Marker& marker = message_.markers[first_text_ + i];
+    marker.text = (instruments.size() > 1 ? instruments[i].name() + " " : "") + forceText(force_n.norm());
+    marker.color = slides_n > held_n ? kineticColor() : held_n > 0.0 ? staticColor() : wordColor();
+    const Pose& X_WT = snapshot.link_poses[i][static_cast<std::size_t>(instruments[i].tipLink())];
+    marker.pose.position =
+        toPoint(textPlace(X_WT.translation(), half_widths_[i]) + 1.2 * frame_.halfWidth(marker.text));
+  }
+}
+
+/// Beside an instrument, where neither it nor arrows are as a rule, though not far from its tip however wide it is.
+Vector3 SceneMarkers::textPlace(const Vector3& tip, double half_width_m) const {
+  const double aside = frame_.letter() + std::min(half_width_m, 6.0 * frame_.letter());
+  return tip + aside * frame_.rightwards() + 3.0 * frame_.letter() * frame_.upwards();
+}
+
 /// Arrows that are no longer needed are sent once more as deletions, then forgotten.
 void SceneMarkers::updateForces(const std::vector<SolvedContact>& contacts) {
   std::vector<Marker>& markers = message_.markers;
   while (markers.size() > first_arrow_ && markers.back().action == Marker::DELETE) markers.pop_back();
+  for (const SolvedContact& contact : contacts) force_scale_.take(contact.force_on_tissue_n.norm());
   std::size_t used = first_arrow_;
   for (const SolvedContact& contact : contacts) {
     if (contact.state == ContactState::kOpen || !(contact.force_on_tissue_n.norm() > 0.0)) continue;
@@ -226,25 +283,26 @@ void SceneMarkers::updateForces(const std::vector<SolvedContact>& contacts) {
   for (std::size_t i = used; i < markers.size(); ++i) markers[i].action = Marker::DELETE;
 }
 
+double SceneMarkers::arrowPerNewton() const {
+  if (style_.force_arrow_m_per_n > 0.0) return style_.force_arrow_m_per_n;
+  return frame_.longestArrow() / force_scale_.value();
+}
+
 void SceneMarkers::setArrow(std::size_t index, const SolvedContact& contact) {
   if (index == message_.markers.size()) {
-    Marker marker;
-    marker.header.frame_id = simulator_.scene().world_frame;
-    marker.ns = kForceNamespace;
-    marker.id = static_cast<int>(index - first_arrow_);
-    marker.type = Marker::ARROW;
-    marker.pose.orientation.w = 1.0;
-    marker.scale = scale(0.001, 0.0025, 0.004);  // shaft and head diameter, head length: thin beside a tool of 8 mm
+    Marker marker = newMarker(simulator_, kForceNamespace, static_cast<int>(index - first_arrow_), Marker::ARROW);
+    const double longest = frame_.longestArrow();
+    marker.scale = scale(longest / 30.0, longest / 12.0, longest / 8.0);  // shaft and head diameter, head length
     marker.points.resize(2);
     message_.markers.push_back(marker);
   }
   Marker& marker = message_.markers[index];
   marker.action = Marker::ADD;
-  marker.color = contact.state == ContactState::kStatic ? color(0.1F, 0.45F, 0.95F) : color(0.9F, 0.15F, 0.1F);
+  marker.color = contact.state == ContactState::kStatic ? staticColor() : kineticColor();
   // On the instrument, so that the head stands out of the tissue.
   const Vector3& start = contact.contact.p_WC;
   marker.points[0] = toPoint(start);
-  marker.points[1] = toPoint(start - style_.force_arrow_m_per_n * contact.force_on_tissue_n);
+  marker.points[1] = toPoint(start - arrowPerNewton() * contact.force_on_tissue_n);
 }
 
 }  // namespace tissue_contact

@@ -1,36 +1,27 @@
 /// @file
-/// Room `ros`, private: the scene as RViz markers: surfaces coloured by displacement, instrument shapes, contact forces.
+/// Room `ros`, private: the scene as RViz markers: coloured surfaces, instrument shapes, contact forces, and how to read them.
 #pragma once
 
-#include <std_msgs/ColorRGBA.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "ros/publish/marker_legend.h"
+#include "ros/publish/marker_style.h"
 #include "ros/publish/scene_snapshot.h"
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
 
-/// How markers are drawn, in positive numbers (the node's parameters, which `Outputs` checks). Fixed scales, so that pictures
-/// taken at different times compare.
-struct MarkerStyle {
-  double displacement_full_scale_m = 0.005;  ///< displacement drawn in the last colour, m: a deep press of soft tissue
-  double force_arrow_m_per_n = 0.5;          ///< arrow length per newton: 0.02 N at one contact is seen as 1 cm
-};
-
-/// Colour of a displacement: light skin (0) over red to near black (1), falling in lightness so that it also reads in
-/// grey.
-/// @param fraction of full scale; values outside 0..1 are drawn as the nearer end.
-std_msgs::ColorRGBA displacementColor(double fraction);
-
 /// Keeps one MarkerArray and updates it in place. Everything is drawn in the world frame, so RViz needs no tf.
 /// Namespaces: `<tissue>` (triangles and their edges), `<instrument>` (its touching shapes, and its other links as the
-/// URDF draws them), `contact_forces` (an arrow per touching contact: the force on the instrument, from the contact point;
-/// held contacts blue, sliding ones red).
+/// URDF draws them), `force_texts` (the force of the tissues on each instrument, beside its tip), `legend` (MarkerLegend),
+/// `contact_forces` (an arrow per touching contact: the force on the instrument, from the contact point; held contacts blue, sliding
+/// ones red). Scales are FullScale's: they depend on what this object has drawn so far, and on nothing else.
 class SceneMarkers {
  public:
   /// @param simulator must outlive this; only what never changes is read of it.
@@ -52,18 +43,32 @@ class SceneMarkers {
   void addTissues();
   void addInstrument(int instrument, bool is_shown);
   void addShape(int instrument, int link, const ShapeDescription& shape, const TriangleMesh* mesh, bool touches);
+  void addForceTexts();
   void layOut(std::size_t tissue, const MeshRevision& mesh);
   void updateTissue(std::size_t tissue, const MeshRevision& mesh, const NodalVectors& x);
+  void findColors(std::size_t tissue, const MeshRevision& mesh, const SceneSnapshot& snapshot);
+  void updateForceTexts(const SceneSnapshot& snapshot);
   void updateForces(const std::vector<SolvedContact>& contacts);
   void setArrow(std::size_t index, const SolvedContact& contact);
 
+  double arrowPerNewton() const;
+  Vector3 textPlace(const Vector3& tip, double half_width_m) const;
+
   const Simulator& simulator_;
-  MarkerStyle style_;
-  visualization_msgs::MarkerArray message_;  ///< tissue surfaces, tissue edges, instrument shapes, arrows
+  const MarkerStyle style_;
+  const PictureFrame frame_;
+  FullScale color_scale_;  ///< SI unit
+  FullScale force_scale_;  ///< of one contact, N, of the longest arrow; not with arrows of a given length
+  visualization_msgs::MarkerArray
+      message_;                ///< tissue surfaces, tissue edges, instrument shapes, texts, legend, arrows
   std::vector<int> laid_out_;  ///< per tissue: revision of the mesh that its markers have room for; -1: none
   std::vector<std::vector<std::array<int, 2>>> edges_;  ///< per tissue: nodes of each surface edge
-  std::vector<NodalVectors> normals_;                   ///< per tissue: scratch for shading
+  std::vector<NodalVectors> areas_;                     ///< per tissue: nodalAreas(), for shading and pressure
+  std::vector<VectorX> values_;                         ///< per tissue and node: what is shown by colour
+  std::vector<double> half_widths_;                     ///< per instrument: of the widest shape that touches, m
   std::vector<ShapeMarker> shapes_;
+  std::size_t first_text_ = 0;  ///< one per instrument
+  std::optional<MarkerLegend> legend_;
   std::size_t first_arrow_ = 0;
 };
 
