@@ -187,7 +187,11 @@ void PartFile::place() {
 }
 
 void PartFile::placeBeside(const std::string& ending) {
-  place_.append(ending);
+  try {
+    place_.append(ending);
+  } catch (const std::invalid_argument& error) {  // as in place()
+    throw std::runtime_error(error.what());
+  }
   place();
 }
 
