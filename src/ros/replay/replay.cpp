@@ -17,15 +17,16 @@
 #include <utility>
 #include <vector>
 
+#include "ros/approach_text.h"
 #include "ros/bag/joint_state_bag.h"
 #include "ros/conversions.h"
 #include "ros/replay/bag_recorder.h"
 #include "ros/replay/force_error_summary.h"
 #include "ros/replay/interruption.h"
-#include "ros/replay/plot_forces.h"
 #include "ros/replay/replay_files.h"
 #include "ros/replay/replay_progress.h"
 #include "ros/replay/replay_table.h"
+#include "ros/run_script.h"
 #include "tissue_contact/baselines/delassus.h"
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/core/whole_file.h"
@@ -72,7 +73,9 @@ class Replay {
       throw;
     }
     summarize();
-    if (!options_.plot_folder.empty()) plotForces(options_.out_file, options_.scene_file, options_.plot_folder);
+    if (options_.plot_folder.empty()) return;
+    runScript("plot_forces.py",
+              {"--bag", options_.out_file, "--scene", options_.scene_file, "--output", options_.plot_folder});
   }
 
  private:
@@ -306,14 +309,8 @@ class Replay {
   void summarizeApproach() const {
     std::cerr << kPrefix << "no instrument touched tissue";
     if (approach_.instrument >= 0) {
-      const Instrument& instrument = simulator_.instruments()[static_cast<std::size_t>(approach_.instrument)];
-      const ContactLink& link = instrument.contactLinks()[static_cast<std::size_t>(approach_.link)];
-      std::cerr << "; closest approach " << approach_.distance_m << " m at " << stampText(approach_ns_) << " s: '"
-                << instrument.name() << "', link '"
-                << instrument.model().links()[static_cast<std::size_t>(link.link)].name << "', shape "
-                << approach_.shape + 1 << " of " << link.shapes.size() << ", to tissue '"
-                << scene_.tissues[static_cast<std::size_t>(approach_.tissue)].name
-                << "'; check base_pose and the tissue's pose";
+      std::cerr << "; " << approachText(simulator_, approach_, approach_ns_)
+                << "; check base_pose and the tissue's pose";
     }
     std::cerr << "\n";
   }
