@@ -80,7 +80,7 @@ def draw(scene, frame):
             draw_tissue(axes, tissue, TISSUES[i % len(TISSUES)], across, up)
         for i, instrument in enumerate(scene["instruments"]):
             draw_instrument(axes, instrument, TOOLS[i % len(TOOLS)], across, up)
-        axes.set_aspect("equal", adjustable="box")
+        axes.set_aspect("equal", adjustable="datalim")
         axes.set_xlim(bounds[across][0] - room, bounds[across][1] + room)
         axes.set_ylim(bounds[up][0] - room, bounds[up][1] + room)
         axes.set_title(title)

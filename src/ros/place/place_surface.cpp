@@ -29,7 +29,7 @@ bool meets(const Vector3& a, const Vector3& b, const Vector3& c, double x, doubl
   };
   const Vector3 weights = Vector3(area(b, c), area(c, a), area(a, b)) / normal.z();
   if (!(weights.minCoeff() >= -kOnTheEdge)) return false;
-  point.p_W = weights[0] * a + weights[1] * b + weights[2] * c;
+  point.p_W = Vector3(x, y, weights[0] * a.z() + weights[1] * b.z() + weights[2] * c.z());
   point.normal_W = normal.normalized();
   return true;
 }

@@ -1,5 +1,6 @@
 #include "ros/place/placed_scene.h"
 
+#include <iostream>
 #include <stdexcept>
 #include <string>
 
@@ -13,6 +14,7 @@ namespace tissue_contact {
 PlacedScene::PlacedScene(const PlaceOptions& options)
     : scene(loadScene(options.scene_file, packagePath, parsePublish)),
       environment(bagEnvironment(scene, options.bag_file, options.urdf_file)) {
+  environment.meshes.say = [](const std::string& line) { std::cerr << "tissue_contact_place: " << line << "\n"; };
   if (!options.bag_file.empty()) {
     requireRegularFile(options.bag_file, "bag");
     return;
