@@ -97,7 +97,8 @@ class Replay {
       std::cerr << kPrefix << "begins " << options_.from_s
                 << " s into the recording with undeformed tissue, as if there were nothing before\n";
     }
-    return {toTime(from_ns), toTime(std::min<std::int64_t>(end_ns, from_ns + std::llround(length_s_ * kNanoseconds)))};
+    const bool to_the_end = !(options_.duration_s < length_s - options_.from_s);  // exactly, however long it is
+    return {toTime(from_ns), toTime(to_the_end ? end_ns : from_ns + std::llround(options_.duration_s * kNanoseconds))};
   }
 
   void openResults() {
