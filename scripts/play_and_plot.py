@@ -1,10 +1,8 @@
 #!/usr/bin/python3
 """Plays a bag into tissue_contact_node and plots the force it gives: what launch/*.launch run beside the node.
 
-Waits for the node, plays those topics of the bag that the node listens to, and writes into the output folder
-  <instrument>_force.png     force on the instrument over time, in its tip frame, and how wrong it likely is
-  <instrument>_friction.png  tangential over normal contact force (sums over contacts) over time
-Prints one line per second where there is no display. With `--show true` it first waits for RViz, and repeats the bag
+Waits for the node, plays those topics of the bag that the node listens to, and writes the pictures of plot_forces.py into
+the output folder. Prints one line per second where there is no display. With `--show true` it first waits for RViz, and repeats the bag
 until RViz is closed. When the plots are written it creates the file that TISSUE_CONTACT_DONE_FILE in the environment
 names, if any: roslaunch does not pass exit codes on (see run_launch.py).
 """
@@ -22,16 +20,14 @@ import numpy
 import rosbag
 import rosgraph
 import roslib.packages
-import rospkg
 import rospy
-import yaml
 from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import JointState
 
 from tissue_contact.msg import ContactArray, ContactPoint, Status, TissueMesh, TissueTopology
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
-from whole_file import whole_file
+from plot_forces import Forces, friction_of, plot
 
 QUIET_S = 10.0  # so long after the last joint state the node has either answered or never will
 RVIZ_START_S = 30.0
@@ -40,10 +36,6 @@ LAUNCH_END_S = 10.0  # roslaunch ends its nodes within this, us among them
 
 def fail(message):
     sys.exit("play_and_plot.py: " + message)
-
-
-def vector(v):
-    return numpy.array([v.x, v.y, v.z])
 
 
 class Graph:
@@ -83,9 +75,7 @@ class Recorder:
 
     def __init__(self, node, graph, joint_topics):
         self.lock = threading.Lock()
-        self.forces = {}  # instrument -> list of (time, force in the tip frame)
-        self.errors = {}  # instrument -> list of (time, size of the force, its likely error)
-        self.ratios = {}  # instrument -> list of (time, sum |Ft|, sum Fn)
+        self.forces = Forces()
         self.last_joint_state = None
         self.last_wrench = None
         self.last_contacts = None
@@ -113,26 +103,18 @@ class Recorder:
         with self.lock:
             self.last_wrench = message.header.stamp
             if self.open:
-                self.forces.setdefault(instrument, []).append(
-                    (message.header.stamp.to_sec(), vector(message.wrench.force)))
+                self.forces.take_wrench(instrument, message)
 
     def _take_status(self, message):
         with self.lock:
-            for error in message.force_errors if self.open else ():
-                self.errors.setdefault(error.instrument, []).append((message.header.stamp.to_sec(), error.force, error.error))
+            if self.open:
+                self.forces.take_status(message)
 
     def _take_contacts(self, message):
-        sums = {}
-        for contact in message.contacts:
-            force = vector(contact.force)
-            normal = vector(contact.normal)
-            along = force.dot(normal)
-            tangential, pressing = sums.get(contact.instrument, (0.0, 0.0))
-            sums[contact.instrument] = (tangential + numpy.linalg.norm(force - along * normal), pressing + along)
         with self.lock:
             self.last_contacts = message
-            for instrument, (tangential, pressing) in sums.items() if self.open else ():
-                self.ratios.setdefault(instrument, []).append((message.header.stamp.to_sec(), tangential, pressing))
+            if self.open:
+                self.forces.take_contacts(message)
 
     def _take_topology(self, message):
         with self.lock:
@@ -150,8 +132,8 @@ class Recorder:
     def line(self):
         """One line on how things are now."""
         with self.lock:
-            forces = {name: samples[-1][1] for name, samples in self.forces.items()}
-            begin = min((samples[0][0] for samples in self.forces.values()), default=0.0)
+            forces = {name: samples[-1][1] for name, samples in self.forces.wrenches.items()}
+            begin = min((samples[0][0] for samples in self.forces.wrenches.values()), default=0.0)
             now = self.last_wrench.to_sec() - begin if self.last_wrench else 0.0
             contacts = self.last_contacts.contacts if self.last_contacts else []
             meshes = [(self._rest[name][1], mesh) for name, (revision, mesh) in self._meshes.items()
@@ -164,76 +146,6 @@ class Recorder:
         text = "  ".join("%s %.3f N" % (name, numpy.linalg.norm(force)) for name, force in sorted(forces.items()))
         return "t %6.2f s  force %s  contacts %d static %d kinetic  deepest displacement %.2f mm" % (
             now, text or "-", states.count(ContactPoint.STATIC), states.count(ContactPoint.KINETIC), 1e3 * deepest)
-
-
-def plot(recorder, friction, folder):
-    """Writes the pictures; returns their paths."""
-    import matplotlib
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-    os.makedirs(folder, exist_ok=True)
-    written = []
-    for instrument, samples in sorted(recorder.forces.items()):
-        begin = samples[0][0]
-        figure, axes = new_figure(pyplot, "%s: force of the tissue on the instrument" % instrument)
-        times = numpy.array([t for t, _ in samples]) - begin
-        force = numpy.array([f for _, f in samples])
-        axes.plot(times, numpy.linalg.norm(force, axis=1), "k", linewidth=1.5, label="|F|")
-        errors = numpy.array(recorder.errors.get(instrument, []))
-        if len(errors):
-            axes.fill_between(errors[:, 0] - begin, numpy.maximum(errors[:, 1] - errors[:, 2], 0.0), errors[:, 1] + errors[:, 2],
-                              color="k", alpha=0.12, linewidth=0.0, label="|F|, its likely error")
-        for axis, name in enumerate("xyz"):
-            axes.plot(times, force[:, axis], linewidth=1.0, label="F%s (tip frame)" % name)
-        axes.set_ylabel("force (N)")
-        written.append(finish(pyplot, figure, axes, times[-1], os.path.join(folder, instrument + "_force.png")))
-
-        ratios = numpy.array(recorder.ratios.get(instrument, []))
-        if not len(ratios) or not ratios[:, 2].max() > 0.0:
-            continue
-        pressed = ratios[:, 2] > 0.01 * ratios[:, 2].max()  # a ratio of two near-zeros says nothing
-        figure, axes = new_figure(pyplot, "%s: friction used by the contacts" % instrument)
-        axes.plot(ratios[pressed, 0] - begin, ratios[pressed, 1] / ratios[pressed, 2], ".", markersize=4,
-                  label="Σ|Ft| / ΣFn")
-        for tissue, static, kinetic in friction.get(instrument, []):
-            axes.axhline(static, color="tab:red", linestyle="--", linewidth=1.0, label="μ static (%s)" % tissue)
-            axes.axhline(kinetic, color="tab:green", linestyle=":", linewidth=1.5, label="μ kinetic (%s)" % tissue)
-        axes.set_ylabel("tangential / normal force (-)")
-        axes.set_ylim(bottom=0.0)
-        written.append(finish(pyplot, figure, axes, times[-1], os.path.join(folder, instrument + "_friction.png")))
-    return written
-
-
-def new_figure(pyplot, title):
-    figure, axes = pyplot.subplots(figsize=(9.0, 4.5), dpi=120)
-    axes.set_title(title)
-    axes.set_xlabel("time since the first joint state (s)")
-    axes.grid(True, alpha=0.3)
-    return figure, axes
-
-
-def finish(pyplot, figure, axes, end, path):
-    axes.set_xlim(0.0, max(end, 1e-3))
-    axes.legend(loc="best", fontsize=9)
-    figure.tight_layout()
-    with whole_file(path) as part:
-        figure.savefig(part)
-    pyplot.close(figure)
-    return path
-
-
-def friction_of(scene_file):
-    """instrument -> [(tissue, static, kinetic)] as the scene says it; only for lines in the plot."""
-    table = {}
-    if scene_file.startswith("package://"):
-        package, _, rest = scene_file[len("package://"):].partition("/")
-        scene_file = os.path.join(rospkg.RosPack().get_path(package), rest)
-    elif scene_file.startswith("file://"):
-        scene_file = scene_file[len("file://"):]
-    with open(scene_file, encoding="utf-8") as stream:
-        for pair in (yaml.safe_load(stream) or {}).get("friction") or []:
-            table.setdefault(pair["instrument"], []).append((pair["tissue"], pair["static"], pair["kinetic"]))
-    return table
 
 
 def bag_topics(file):
@@ -326,12 +238,12 @@ def main():
     recorder.open = False
     if rospy.is_shutdown():
         return
-    if not recorder.forces:
+    if not recorder.forces.wrenches:
         fail("the node gave no wrench; its warnings say why")
     if not answered:
         print("the last joint state has no wrench; the node's warnings say why", flush=True)
     try:
-        for path in plot(recorder, friction_of(rospy.get_param(arguments.node + "/scene")), arguments.output):
+        for path in plot(recorder.forces, friction_of(rospy.get_param(arguments.node + "/scene")), arguments.output):
             print("wrote " + path, flush=True)
     except OSError as error:
         fail("cannot write %s: %s" % (error.filename, error.strerror))

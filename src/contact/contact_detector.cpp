@@ -285,11 +285,15 @@ void ContactDetector::lowerClosestApproach(const std::vector<NodalVectors>& posi
     for (const TouchingShape& shape : self.shapes) {
       const Pose X_WS = X_WL.at(shape.instrument).at(shape.link) * shape.X_LS;
       const double bound = closest.distance_m + surface.halfThickness();
-      if (!(surface.box().exteriorDistance(boxAround(*shape.distance, X_WS, 0.0)) < bound)) continue;
-      const double nearest = self.surfaceDistance(surface, shape, X_WS, bound);
+      const double between_boxes = surface.box().exteriorDistance(boxAround(*shape.distance, X_WS, 0.0));
+      if (between_boxes > 0.0 && !(between_boxes < bound)) continue;
+      NearPlace place;
+      const double nearest = self.surfaceDistance(surface, shape, X_WS, bound, &place);
       if (!(nearest < bound)) continue;
       closest = {surface.tissue(), shape.instrument, shape.contact_link, shape.shape,
                  nearest - surface.halfThickness()};
+      for (std::size_t i = 0; i < 3; ++i) closest.p_W += place.weights[static_cast<int>(i)] * surface.x(place.nodes[i]);
+      closest.normal_W = X_WS.linear() * shape.distance->at(X_WS.inverse() * closest.p_W).normal;
     }
   }
 }

@@ -53,6 +53,12 @@ OutputPlace::OutputPlace(const std::string& file) : path(file) {
   look();
 }
 
+void OutputPlace::append(const std::string& ending) {
+  name += ending;
+  path += ending;
+  look();
+}
+
 void OutputPlace::look() {
   struct stat found {};
   existing.reset();
@@ -150,8 +156,10 @@ void PartFile::writeOut() {
 
 void PartFile::finish() { writeOut(); }
 
+std::string PartFile::path() const { return "/proc/self/fd/" + std::to_string(file_.number()); }
+
 void PartFile::giveName() {
-  const std::string self = "/proc/self/fd/" + std::to_string(file_.number());
+  const std::string self = path();
   for (int i = 0; i < kAttempts; ++i) {
     const std::string name = unforeseeableName(place_.name);
     if (linkat(AT_FDCWD, self.c_str(), place_.directory.number(), name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
@@ -176,6 +184,15 @@ void PartFile::place() {
     fail(errno);
   }
   part_name_.clear();
+}
+
+void PartFile::placeBeside(const std::string& ending) {
+  try {
+    place_.append(ending);
+  } catch (const std::invalid_argument& error) {  // as in place()
+    throw std::runtime_error(error.what());
+  }
+  place();
 }
 
 void PartFile::fail(int error) const {

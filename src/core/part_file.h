@@ -19,6 +19,9 @@ struct OutputPlace {
   /// @throws std::invalid_argument when there is no such directory, or something else than a writable regular file.
   explicit OutputPlace(const std::string& file);
 
+  /// Goes on to the place beside this one.
+  /// @throws as the constructor.
+  void append(const std::string& ending);
   /// Looks again at what has the name.
   /// @throws as the constructor.
   void look();
@@ -45,6 +48,10 @@ class PartFile : public std::streambuf {
   void finish();
   /// Takes the place of the target.
   void place();
+  /// Takes the place of the target's name with this behind it.
+  void placeBeside(const std::string& ending);
+  /// Of the open file, whatever name it has.
+  std::string path() const;
 
  protected:
   int_type overflow(int_type c) override;

@@ -41,6 +41,10 @@ void WholeFile::finish() { part_->finish(); }
 
 void WholeFile::commit() { part_->place(); }
 
+std::string WholeFile::path() const { return part_->path(); }
+
+void WholeFile::commitPartial() { part_->placeBeside(kPartialEnding); }
+
 void requireFreeOutputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
   std::vector<OutputPlace> places;
   std::vector<NamedFile> seen;

@@ -204,10 +204,19 @@ void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std:
   message.static_slip = residuals.static_slip_m_per_s;
   message.kinetic_angle = residuals.kinetic_angle_rad;
   message.joint_states_accepted = static_cast<std::uint64_t>(player.count(Verdict::kAccepted));
+  message.joint_states_merged = static_cast<std::uint64_t>(player.merged());
   message.joint_states_refused = 0;
   for (int v = 1; v < kVerdictCount; ++v) {
     message.joint_states_refused += static_cast<std::uint64_t>(player.count(static_cast<Verdict>(v)));
   }
+  const auto refused = [&](Verdict verdict) { return static_cast<std::uint64_t>(player.count(verdict)); };
+  message.refused_duplicate_stamp = refused(Verdict::kDuplicateStamp);
+  message.refused_bad_stamp = refused(Verdict::kBadStamp);
+  message.refused_not_finite = refused(Verdict::kNotFinite);
+  message.refused_bad_length = refused(Verdict::kBadLength);
+  message.refused_no_known_joint = refused(Verdict::kNoKnownJoint);
+  message.refused_late = refused(Verdict::kLate);
+  message.refused_two_clocks = refused(Verdict::kTwoClocks);
   message.resets = static_cast<std::uint64_t>(player.resets());
   message.gaps = static_cast<std::uint64_t>(player.gaps());
 }

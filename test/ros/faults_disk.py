@@ -20,7 +20,7 @@ class FaultsDisk(harness.TestCase):
         with self.assertRaises(OSError), open(os.path.join(disk, "filler"), "wb", buffering=0) as filler:
             while True:
                 filler.write(4096 * b"x")
-        for options in [[target], [good, "--timing", target], [good, "--dump-step", "150", "--dump-file", target]]:
+        for options in [[target], [good, "--timing", target], [good, "--out", target], [good, "--dump-step", "150", "--dump-file", target]]:
             with self.subTest(options=options):
                 code, errors = harness.replay(harness.SCENE, bag, *options)
                 self.assertGreater(code, 0, errors)  # an exit code, not a signal

@@ -42,7 +42,7 @@ class ReplayErrors(harness.TestCase):
     def test_no_bag_and_half_a_bag(self):
         self.assert_refused(harness.SCENE, self.write("text.bag", "not a bag"), "text.bag")
         os.truncate(self.bag, os.path.getsize(self.bag) // 2)
-        self.assert_refused(harness.SCENE, self.bag, self.bag, "reindex")
+        self.assert_refused(harness.SCENE, self.bag, self.bag, "it is cut off; not one chunk of it is whole")
 
     def test_impossible_stamp_is_counted(self):
         all_bits_set = rospy.Time(0)

@@ -22,6 +22,8 @@ struct Approach {
   int link = -1;                                                ///< index into Instrument::contactLinks()
   int shape = -1;                                               ///< index into ContactLink::shapes
   double distance_m = std::numeric_limits<double>::infinity();  ///< < 0: the surface is inside the shape
+  Vector3 p_W = Vector3::Zero();       ///< the surface's point, m
+  Vector3 normal_W = Vector3::Zero();  ///< unit, out of the shape there: moved along it by the distance it just touches
 };
 
 /// Where a tissue's surface is nearest to a shape, or deepest in it.

@@ -30,6 +30,10 @@ class WholeFile {
   /// std::runtime_error naming the file and the reason.
   std::ostream& stream() { return stream_; }
 
+  /// By which a library that opens files by name writes into it, in place of the stream. Valid in this process, until the file has its
+  /// name.
+  std::string path() const;
+
   /// Hands all to the system, so that of several files none takes its place when one does not fit on the disk.
   /// @throws std::runtime_error naming the file and the reason.
   void finish();
@@ -37,6 +41,10 @@ class WholeFile {
   /// Finishes and takes the target's place.
   /// @throws as finish().
   void commit();
+
+  /// The same for what is only a part of the result: takes the place of the target's name with kPartialEnding behind it.
+  void commitPartial();
+  static constexpr const char* kPartialEnding = ".partial";
 
  private:
   std::unique_ptr<PartFile> part_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -121,13 +122,40 @@ void BagReader::readHeader() {
   records.skipData();
   records_position_ = records.position();
   if (index_position_ == 0) {
-    throw BagError("it has no index, so recording has not ended or was cut off", BagError::Remedy::kReindex);
+    throw BagError("it has no index, so recording has not ended or was cut off; " + wholePart(),
+                   BagError::Remedy::kAsSaid);
   }
   if (index_position_ < records_position_ || index_position_ > input_.size()) {
     throw BagError("its index should be at byte " + std::to_string(index_position_) + ", but it has " +
-                       std::to_string(input_.size()) + " bytes: it is cut off",
-                   BagError::Remedy::kReindex);
+                       std::to_string(input_.size()) + " bytes: it is cut off; " + wholePart(),
+                   BagError::Remedy::kAsSaid);
   }
+}
+
+/// What there is of a bag without an index, in words, and how to get at it.
+std::string BagReader::wholePart() const {
+  const std::uint64_t start = records_position_;
+  BagRecords records(openBytes(input_, start, input_.size() - start, Compression::kNone), start, input_.size());
+  std::uint32_t chunks = 0;
+  ros::Time last;
+  try {
+    while (!records.done()) {
+      const Op op = records.next();
+      const std::uint32_t count = op == Op::kIndex ? records.fields().number<std::uint32_t>("count") : 0;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        last = std::max(last, bagTime(records.readNumber<std::uint64_t>()));
+        records.readNumber<std::uint32_t>();
+      }
+      records.skipData();
+      chunks += static_cast<std::uint32_t>(op == Op::kChunk);
+    }
+  } catch (const BagError& end) {  // of the file, or of what is sound in it
+    static_cast<void>(end);
+  }
+  if (chunks == 0) return "not one chunk of it is whole, so nothing can be recovered";
+  std::ostringstream text;
+  text << chunks << " whole chunks, recorded until " << last << " s, can be recovered: `rosbag reindex`";
+  return text.str();
 }
 
 /// What stands behind the last chunk: connections, then a summary of each chunk.

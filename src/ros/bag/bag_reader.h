@@ -99,6 +99,7 @@ class BagReader {
   template <typename Work>
   auto guarded(const Work& work) const;
   void readHeader();
+  std::string wholePart() const;
   void readConnections();
   void readConnection(BagRecords& records);
   void readSummary(BagRecords& records);

@@ -78,9 +78,11 @@ void JointStateBag::findTopics() {
   }
 }
 
-void JointStateBag::forEach(
-    const std::function<void(int topic, JointStateSample sample, ros::Time recorded)>& take) const {
+void JointStateBag::forEach(const std::function<void(int topic, JointStateSample sample, ros::Time recorded)>& take,
+                            const BagWindow& window) const {
   bag_->forEach([&](const BagMessage& message) {
+    if (message.recorded < window.from) return true;
+    if (message.recorded > window.until) return false;
     const std::string& topic = message.connection.topic;
     JointState state;
     try {

@@ -17,6 +17,12 @@ namespace tissue_contact {
 
 class BagReader;
 
+/// Times of recording, both included.
+struct BagWindow {
+  ros::Time from = ros::TIME_MIN;
+  ros::Time until = ros::TIME_MAX;
+};
+
 /// The file is not trusted: whatever it holds, it is read as it was recorded or refused, in memory that its size and
 /// its claims have no say in (limits: bag_reader.h). Refused are all errors of structure, with the file's name; a stamp
 /// or a position that makes no sense is the player's to refuse.
@@ -35,10 +41,11 @@ class JointStateBag {
   const ros::Time& begin() const;                                          ///< when the first was recorded
   const ros::Time& end() const;
 
-  /// By time of recording; among equal times as rosbag::View has them.
+  /// By time of recording; among equal times as rosbag::View has them. What lies outside the window is not read.
   /// @param take index into the topics, sample, time of recording. What it throws goes through.
   /// @throws std::runtime_error at the first place where the bag is damaged.
-  void forEach(const std::function<void(int topic, JointStateSample sample, ros::Time recorded)>& take) const;
+  void forEach(const std::function<void(int topic, JointStateSample sample, ros::Time recorded)>& take,
+               const BagWindow& window = {}) const;
 
  private:
   void findTopics();

@@ -293,21 +293,12 @@ LiveFigures Health::figures() const {
 void Health::addTo(Status& status) const {
   const LiveFigures figures = this->figures();
   const auto count = [](std::int64_t value) { return static_cast<std::uint64_t>(value); };
-  const auto refused = [&](Verdict verdict) { return count(figures.by_verdict[static_cast<std::size_t>(verdict)]); };
   status.policy = figures.newest_state ? Status::POLICY_NEWEST_STATE : Status::POLICY_EVERY_STATE;
   status.lag = figures.lag_s;
   status.real_time_factor = figures.real_time_factor;
   status.joint_states_received = count(figures.received);
-  status.joint_states_merged = count(figures.merged);
   status.joint_states_dropped = count(figures.dropped);
   status.joint_states_waiting = count(figures.waiting);
-  status.refused_duplicate_stamp = refused(Verdict::kDuplicateStamp);
-  status.refused_bad_stamp = refused(Verdict::kBadStamp);
-  status.refused_not_finite = refused(Verdict::kNotFinite);
-  status.refused_bad_length = refused(Verdict::kBadLength);
-  status.refused_no_known_joint = refused(Verdict::kNoKnownJoint);
-  status.refused_late = refused(Verdict::kLate);
-  status.refused_two_clocks = refused(Verdict::kTwoClocks);
   status.lengthened_intervals = count(figures.lengthened);
 }
 

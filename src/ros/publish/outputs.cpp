@@ -1,13 +1,10 @@
 #include "ros/publish/outputs.h"
 
-#include <ros/names.h>
-
-#include <set>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "ros/parameter.h"
+#include "ros/publish/instrument_messages.h"
 
 namespace tissue_contact {
 namespace {
@@ -51,59 +48,19 @@ void checkColor(const Scene& scene, const MarkerStyle& style, PublishedMesh mesh
   }
 }
 
-void checkTopicName(const std::string& kind, const std::string& name) {
-  std::string why;
-  if (name.find('/') == std::string::npos && ros::names::validate("/" + name, why) && !name.empty()) return;
-  throw std::invalid_argument("the " + kind + " name '" + name +
-                              "' becomes part of a topic name and must consist of letters, digits and underscores" +
-                              (why.empty() ? "" : " (" + why + ")"));
-}
-
-/// A tf tree has one parent per frame, so links of different instruments need different names. A root link may be the
-/// world frame itself when it lies there.
-void checkFrameNames(const Simulator& simulator) {
-  std::set<std::string> names = {simulator.scene().world_frame};
-  for (std::size_t i = 0; i < simulator.instruments().size(); ++i) {
-    const Instrument& instrument = simulator.instruments()[i];
-    for (const RobotModel::Link& link : instrument.model().links()) {
-      const bool is_world = link.parent < 0 && link.name == simulator.scene().world_frame &&
-                            simulator.linkPoses(static_cast<int>(i)).front().isApprox(Pose::Identity());
-      if (names.insert(link.name).second || is_world) continue;
-      throw std::invalid_argument("publish.tf: link '" + link.name + "' of instrument '" + instrument.name() +
-                                  "' has the name of the world frame or of another instrument's link; rename one or "
-                                  "set publish.tf to false");
-    }
-  }
-}
-
-void checkNames(const Simulator& simulator, bool with_tf) {
-  for (const Instrument& instrument : simulator.instruments()) checkTopicName("instrument", instrument.name());
-  for (const Tissue& tissue : simulator.tissues()) checkTopicName("tissue", tissue.name());
-  if (with_tf) checkFrameNames(simulator);
-}
-
 }  // namespace
 
 Outputs::Outputs(const ros::NodeHandle& private_node, const Simulator& simulator, const JointStatePlayer& player,
                  const PublishOptions& options, std::function<void(Status&)> complete)
     : node_(private_node),
       simulator_(simulator),
-      player_(player),
       options_(options),
       complete_(std::move(complete)),
       bulky_(simulator, options, markerStyle(node_)),
-      meshes_(shownMeshes(simulator, publishedMesh(node_))),
-      told_revisions_(meshes_.size(), -1),
-      mesh_rate_(options.mesh_rate_hz),
-      contacts_rate_(options.contacts_rate_hz),
-      status_rate_(options.status_rate_hz),
-      markers_rate_(options.markers_rate_hz) {
+      taker_(simulator, player, options, publishedMesh(node_)),
+      wrenches_(wrenchMessages(simulator)) {
   checkNames(simulator, options.tf);
   checkColor(simulator.scene(), markerStyle(node_), publishedMesh(node_));
-  for (const Instrument& instrument : simulator.instruments()) {
-    wrenches_.emplace_back();
-    wrenches_.back().header.frame_id = instrument.model().links()[static_cast<std::size_t>(instrument.tipLink())].name;
-  }
 }
 
 void Outputs::start(std::function<void()> on_newcomer) {
@@ -124,51 +81,28 @@ void Outputs::publishWrenches(const PlayedSample& played) {
 }
 
 void Outputs::publishState(const PlayedSample& played, int substeps, double step_time_s) {
-  if (played.was_reset) {
-    for (MessageTimeRate* rate : {&mesh_rate_, &contacts_rate_, &status_rate_, &markers_rate_}) rate->reset();
-  }
   const bool is_new_stamp = played.stamp_ns != last_stamp_ns_;
   last_stamp_ns_ = played.stamp_ns;
-  publishSnapshot(played.stamp_ns, substeps, step_time_s);
-  if (broadcaster_ && is_new_stamp) publishTransforms(played.stamp_ns);  // tf2 warns about repeated stamps
+  publishSnapshot(played, substeps, step_time_s);
+  if (!broadcaster_ || !is_new_stamp) return;  // tf2 warns about repeated stamps
+  fillTransforms(simulator_, played.stamp_ns, transforms_);
+  broadcaster_->sendTransform(transforms_.transforms);
 }
 
-void Outputs::publishSnapshot(std::int64_t stamp_ns, int substeps, double step_time_s) {
-  const bool mesh_is_due = mesh_rate_.due(stamp_ns);
-  // Of meshes that nobody is shown none needs a topology; where none is shown at all, the newest is told as soon as it is there.
-  const bool topologies = (mesh_is_due || !(options_.mesh_rate_hz > 0.0)) && topologiesChange();
-  const bool mesh = mesh_is_due && bulky_.meshIsWanted();
-  const bool contacts = contacts_rate_.due(stamp_ns) && bulky_.contactsAreWanted();
-  const bool status = status_rate_.due(stamp_ns) && bulky_.statusIsWanted() && isFinite(simulator_.residuals());
-  const bool markers = markers_rate_.due(stamp_ns) && bulky_.markersAreWanted();
-  if (!topologies && !mesh && !contacts && !status && !markers) return;
+void Outputs::publishSnapshot(const PlayedSample& played, int substeps, double step_time_s) {
+  const BulkyTopics due = taker_.due(played, {true, bulky_.meshIsWanted(), bulky_.contactsAreWanted(),
+                                              bulky_.statusIsWanted(), bulky_.markersAreWanted()});
+  if (!due.any()) return;
   std::unique_ptr<SceneSnapshot> snapshot = bulky_.queue().buffer();
-  snapshot->topologies = topologies;
-  snapshot->mesh = mesh;
-  snapshot->contact_array = contacts;
-  snapshot->with_status = status;
-  snapshot->markers = markers;
-  takeSnapshot(simulator_, meshes_, stamp_ns, *snapshot);
-  if (status) {
-    snapshot->status.header.frame_id = simulator_.scene().world_frame;
-    fillStatus(simulator_, player_, stamp_ns, snapshot->status);
-    if (substeps == 0) snapshot->status.discarded = snapshot->status.jumped = 0;  // told with the interval before
-    complete_(snapshot->status);
-    snapshot->status.substeps = static_cast<std::uint32_t>(substeps);
-    snapshot->status.step_time = step_time_s;
-  }
+  const auto complete = [&](Status& status) {
+    complete_(status);
+    status.step_time = step_time_s;
+  };
+  taker_.take(played, due, substeps, complete, *snapshot);
   bulky_.queue().put(std::move(snapshot));
 }
 
-void Outputs::setRates(const PublishOptions& rates) {
-  const auto set = [](double from, double& to, MessageTimeRate& rate) {
-    if (std::exchange(to, from) != from) rate = MessageTimeRate(from);
-  };
-  set(rates.mesh_rate_hz, options_.mesh_rate_hz, mesh_rate_);
-  set(rates.contacts_rate_hz, options_.contacts_rate_hz, contacts_rate_);
-  set(rates.status_rate_hz, options_.status_rate_hz, status_rate_);
-  set(rates.markers_rate_hz, options_.markers_rate_hz, markers_rate_);
-}
+void Outputs::setRates(const PublishOptions& rates) { taker_.setRates(rates); }
 
 /// RViz opened before or between recordings should not stay empty.
 void Outputs::showToNewcomer() {
@@ -176,46 +110,15 @@ void Outputs::showToNewcomer() {
 }
 
 void Outputs::showReset() {
-  for (MessageTimeRate* rate : {&mesh_rate_, &contacts_rate_, &status_rate_, &markers_rate_}) rate->reset();
+  taker_.beginAnew();
   if (bulky_.markersAreWanted()) showMarkers();
 }
 
 void Outputs::showMarkers() {
   if (!isFinite(simulator_)) return;
   std::unique_ptr<SceneSnapshot> snapshot = bulky_.queue().buffer();
-  snapshot->markers = true;
-  takeSnapshot(simulator_, meshes_, last_stamp_ns_, *snapshot);
+  taker_.takeMarkers(last_stamp_ns_, *snapshot);
   bulky_.queue().put(std::move(snapshot));
-}
-
-/// Whether the mesh of a tissue is another than when last asked.
-bool Outputs::topologiesChange() {
-  bool change = false;
-  for (std::size_t t = 0; t < meshes_.size(); ++t) {
-    const int revision =
-        meshes_[t].follow(simulator_.tissues()[t], simulator_.meshRevision(static_cast<int>(t)))->revision;
-    change |= std::exchange(told_revisions_[t], revision) != revision;
-  }
-  return change;
-}
-
-void Outputs::publishTransforms(std::int64_t stamp_ns) {
-  transforms_.clear();
-  for (std::size_t i = 0; i < simulator_.instruments().size(); ++i) {
-    const std::vector<RobotModel::Link>& links = simulator_.instruments()[i].model().links();
-    const std::vector<Pose>& X_WL = simulator_.linkPoses(static_cast<int>(i));
-    for (std::size_t l = 0; l < links.size(); ++l) {
-      const bool is_root = links[l].parent < 0;
-      if (is_root && links[l].name == simulator_.scene().world_frame) continue;
-      const auto parent = static_cast<std::size_t>(is_root ? 0 : links[l].parent);
-      geometry_msgs::TransformStamped& transform = transforms_.emplace_back();
-      transform.header.stamp = toTime(stamp_ns);
-      transform.header.frame_id = is_root ? simulator_.scene().world_frame : links[parent].name;
-      transform.child_frame_id = links[l].name;
-      transform.transform = toTransform(is_root ? X_WL[l] : Pose(X_WL[parent].inverse() * X_WL[l]));
-    }
-  }
-  broadcaster_->sendTransform(transforms_);
 }
 
 }  // namespace tissue_contact

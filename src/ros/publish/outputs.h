@@ -2,10 +2,10 @@
 /// Room `ros`, private: everything the node publishes about a scene. A simulator that was just advanced in, messages out.
 #pragma once
 
-#include <geometry_msgs/TransformStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
+#include <tf2_msgs/TFMessage.h>
 #include <tf2_ros/transform_broadcaster.h>
 
 #include <cstdint>
@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "ros/conversions.h"
-#include "ros/publish/message_time_rate.h"
 #include "ros/publish/publish_options.h"
 #include "ros/publish/snapshot_publisher.h"
+#include "ros/publish/snapshot_taker.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 
 namespace tissue_contact {
@@ -62,30 +62,21 @@ class Outputs {
 
  private:
   void showMarkers();
-  void publishSnapshot(std::int64_t stamp_ns, int substeps, double step_time_s);
-  bool topologiesChange();
-  void publishTransforms(std::int64_t stamp_ns);
+  void publishSnapshot(const PlayedSample& played, int substeps, double step_time_s);
 
   ros::NodeHandle node_;
   const Simulator& simulator_;
-  const JointStatePlayer& player_;
-  PublishOptions options_;
+  const PublishOptions options_;
   const std::function<void(Status&)> complete_;
   SnapshotPublisher bulky_;
-  std::vector<ShownMesh> meshes_;    ///< one per tissue
-  std::vector<int> told_revisions_;  ///< of the last topology of each tissue put into a snapshot; -1: none
+  SnapshotTaker taker_;
   std::int64_t last_stamp_ns_ = 0;
 
   std::vector<ros::Publisher> wrench_publishers_;               ///< one per instrument
   std::unique_ptr<tf2_ros::TransformBroadcaster> broadcaster_;  ///< null: not asked for
 
-  MessageTimeRate mesh_rate_;
-  MessageTimeRate contacts_rate_;
-  MessageTimeRate status_rate_;
-  MessageTimeRate markers_rate_;
-
   std::vector<geometry_msgs::WrenchStamped> wrenches_;
-  std::vector<geometry_msgs::TransformStamped> transforms_;
+  tf2_msgs::TFMessage transforms_;
 };
 
 }  // namespace tissue_contact

@@ -1,11 +1,7 @@
 #include "ros/publish/snapshot_publisher.h"
 
-#include <visualization_msgs/MarkerArray.h>
-
 #include <algorithm>
 #include <utility>
-
-#include "ros/conversions.h"
 
 namespace tissue_contact {
 namespace {
@@ -23,23 +19,25 @@ SnapshotPublisher::SnapshotPublisher(const Simulator& simulator, const PublishOp
     : simulator_(simulator),
       options_(options),
       queue_(kMostSnapshots),
-      scene_markers_(simulator, style, options.markers_rate_hz > 0.0),
-      mesh_messages_(simulator.scene(), meshSink()) {
-  contacts_.header.frame_id = simulator.scene().world_frame;
-}
+      messages_(simulator, style, options.markers_rate_hz > 0.0, sink()) {}
 
 SnapshotPublisher::~SnapshotPublisher() {
   queue_.close();
   if (thread_.joinable()) thread_.join();
 }
 
-MeshSink SnapshotPublisher::meshSink() {
-  MeshSink sink;
-  sink.topology = [this](std::size_t t, const TissueTopology& message) { topology_publishers_[t].publish(message); };
-  sink.wants_mesh = [this](std::size_t t) {
+MessageSink SnapshotPublisher::sink() {
+  MessageSink sink;
+  sink.meshes.topology = [this](std::size_t t, const TissueTopology& message) {
+    topology_publishers_[t].publish(message);
+  };
+  sink.meshes.wants_mesh = [this](std::size_t t) {
     return t < mesh_publishers_.size() && mesh_publishers_[t].getNumSubscribers() > 0;
   };
-  sink.mesh = [this](std::size_t t, const TissueMesh& message) { mesh_publishers_[t].publish(message); };
+  sink.meshes.mesh = [this](std::size_t t, const TissueMesh& message) { mesh_publishers_[t].publish(message); };
+  sink.contacts = [this](const ContactArray& message) { contacts_publisher_.publish(message); };
+  sink.status = [this](const Status& message) { status_publisher_.publish(message); };
+  sink.markers = [this](const visualization_msgs::MarkerArray& message) { markers_publisher_.publish(message); };
   return sink;
 }
 
@@ -71,19 +69,9 @@ bool SnapshotPublisher::meshIsWanted() const {
 
 void SnapshotPublisher::run() {
   while (std::unique_ptr<SceneSnapshot> snapshot = queue_.take()) {
-    publish(*snapshot);
+    messages_.tell(*snapshot);
     queue_.recycle(std::move(snapshot));
   }
-}
-
-void SnapshotPublisher::publish(const SceneSnapshot& snapshot) {
-  if (snapshot.with_status) status_publisher_.publish(snapshot.status);
-  if (snapshot.contact_array) {
-    fillContacts(simulator_, snapshot, contacts_);
-    contacts_publisher_.publish(contacts_);
-  }
-  mesh_messages_.tell(snapshot);
-  if (snapshot.markers) markers_publisher_.publish(scene_markers_.update(snapshot));
 }
 
 }  // namespace tissue_contact

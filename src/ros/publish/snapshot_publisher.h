@@ -12,11 +12,9 @@
 #include <thread>
 #include <vector>
 
-#include "ros/publish/mesh_messages.h"
 #include "ros/publish/publish_options.h"
-#include "ros/publish/scene_markers.h"
 #include "ros/publish/scene_snapshot.h"
-#include "tissue_contact/ContactArray.h"
+#include "ros/publish/snapshot_messages.h"
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
@@ -47,9 +45,8 @@ class SnapshotPublisher {
   SnapshotQueue& queue() { return queue_; }
 
  private:
-  MeshSink meshSink();
+  MessageSink sink();
   void run();
-  void publish(const SceneSnapshot& snapshot);
 
   const Simulator& simulator_;
   const PublishOptions options_;
@@ -61,10 +58,7 @@ class SnapshotPublisher {
   ros::Publisher status_publisher_;
   ros::Publisher markers_publisher_;
 
-  // The publishing thread's alone.
-  SceneMarkers scene_markers_;
-  MeshMessages mesh_messages_;
-  ContactArray contacts_;
+  SnapshotMessages messages_;  ///< the publishing thread's alone
 
   std::thread thread_;
 };

@@ -2,28 +2,33 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "ros/approach_text.h"
 #include "ros/bag/joint_state_bag.h"
 #include "ros/bag/recorded_changes.h"
 #include "ros/conversions.h"
-#include "ros/publish/publish_options.h"
+#include "ros/replay/bag_recorder.h"
 #include "ros/replay/force_error_summary.h"
+#include "ros/replay/interruption.h"
+#include "ros/replay/replay_files.h"
 #include "ros/replay/replay_progress.h"
 #include "ros/replay/replay_table.h"
-#include "scene/read_more.h"
+#include "ros/run_script.h"
 #include "tissue_contact/baselines/delassus.h"
-#include "tissue_contact/core/read_file.h"
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/core/whole_file.h"
 #include "tissue_contact/ros/environment.h"
@@ -39,61 +44,11 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kPrefix = "tissue_contact_replay: ";
 
-std::vector<NamedFile> outputsOf(const ReplayOptions& options) {
-  return {{"--csv", options.csv_file}, {"--timing", options.timing_file}, {"--dump-file", options.dump_file}};
-}
-
-void addMeshes(const std::vector<ShapeDescription>& shapes, const std::string& whose, std::vector<NamedFile>& files) {
-  for (const ShapeDescription& shape : shapes) {
-    if (const auto* mesh = std::get_if<MeshGeometry>(&shape.geometry)) files.push_back({whose, mesh->file});
-  }
-}
-
-std::vector<NamedFile> filesOf(const Scene& scene) {
-  std::vector<NamedFile> files = {{"--scene", scene.file}};
-  for (const TissueDescription& tissue : scene.tissues) {
-    const std::string whose = "the scene's tissue mesh";
-    if (const auto* mesh = std::get_if<MeshDescription>(&tissue.geometry)) files.push_back({whose, mesh->file});
-    if (const auto* shell = std::get_if<ShellDescription>(&tissue.geometry)) files.push_back({whose, shell->file});
-  }
-  for (const InstrumentDescription& instrument : scene.instruments) {
-    files.push_back({"the scene's URDF", instrument.urdf_file});
-    for (const ContactLinkDescription& link : instrument.contact_links) {
-      addMeshes(link.shapes, "the scene's shape", files);
-    }
-  }
-  return files;
-}
-
-/// Reads the scene; refuses a bag that is no regular file, and results that would replace the scene, the bag, a URDF or a
-/// mesh the scene names, or each other.
-Scene loadReplayedScene(const ReplayOptions& options) {
-  requireRegularFile(options.bag_file, "bag");
-  requireFreeOutputs(outputsOf(options),
-                     {{"--scene", options.scene_file}, {"--bag", options.bag_file}, {"--urdf", options.urdf_file}});
-  // Nothing is published here, but a mistake is one wherever the scene is used.
-  Scene scene = loadScene(options.scene_file, packagePath, parsePublish);
-  requireFreeOutputs(outputsOf(options), filesOf(scene));
-  return scene;
-}
-
-/// The same for the meshes that the robot models name.
-void requireModelsKept(const ReplayOptions& options, const Simulator& simulator) {
-  std::vector<NamedFile> meshes;
-  for (const Instrument& instrument : simulator.instruments()) {
-    for (const RobotModel::Link& link : instrument.model().links()) {
-      addMeshes(link.geometry.collision, "the URDF's mesh", meshes);
-      addMeshes(link.geometry.visual, "the URDF's mesh", meshes);
-    }
-  }
-  requireFreeOutputs(outputsOf(options), meshes);
-}
-
 class Replay {
  public:
   explicit Replay(const ReplayOptions& options)
       : options_(options),
-        scene_(loadReplayedScene(options)),
+        scene_(loadReplayedScene(options, publish_)),
         simulator_(scene_, bagEnvironment(scene_, options.bag_file, options.urdf_file)),
         player_(simulator_),
         force_errors_(simulator_.instruments().size()) {
@@ -109,33 +64,100 @@ class Replay {
       std::cerr << kPrefix << "warning: the bag has no message on " << joinedNames(bag.missingTopics())
                 << "; its joints stay where the scene puts them\n";
     }
-    ReplayTable table(options_.csv_file);
+    const BagWindow window = windowOf(bag);
+    openResults();
+    try {
+      play(bag, window);
+      commitResults();
+    } catch (...) {
+      progress_.reset();
+      keepPartial();
+      throw;
+    }
+    summarize();
+    if (options_.plot_folder.empty()) return;
+    runScript("plot_forces.py",
+              {"--bag", options_.out_file, "--scene", options_.scene_file, "--output", options_.plot_folder});
+  }
+
+ private:
+  /// The part of the recording that --from and --duration choose.
+  BagWindow windowOf(const JointStateBag& bag) {
+    constexpr double kNanoseconds = 1e9;
+    const auto begin_ns = static_cast<std::int64_t>(bag.begin().toNSec());
+    const auto end_ns = static_cast<std::int64_t>(bag.end().toNSec());
+    const double length_s = static_cast<double>(end_ns - begin_ns) / kNanoseconds;
+    if (options_.from_s > length_s) {
+      std::ostringstream text;
+      text << "--from " << options_.from_s << ": the joint states of bag '" << options_.bag_file << "' last only "
+           << length_s << " s";
+      throw std::invalid_argument(text.str());
+    }
+    const std::int64_t from_ns = begin_ns + std::llround(options_.from_s * kNanoseconds);
+    length_s_ = std::min(length_s - options_.from_s, options_.duration_s);
+    if (options_.from_s > 0.0) {
+      std::cerr << kPrefix << "begins " << options_.from_s
+                << " s into the recording with undeformed tissue, as if there were nothing before\n";
+    }
+    const bool to_the_end = !(options_.duration_s < length_s - options_.from_s);  // exactly, however long it is
+    return {toTime(from_ns), toTime(to_the_end ? end_ns : from_ns + std::llround(options_.duration_s * kNanoseconds))};
+  }
+
+  void openResults() {
+    if (!options_.csv_file.empty()) table_.emplace(options_.csv_file);
     if (!options_.timing_file.empty()) timing_.emplace(options_.timing_file);
     if (!options_.dump_file.empty()) dump_.emplace(options_.dump_file);
+    if (options_.out_file.empty()) return;
+    recorder_ = std::make_unique<BagRecorder>(options_.out_file, simulator_, player_, publish_);
+    AdvanceLimits limits;
+    limits.interrupted = [] { return SignalWatch::signal() != 0; };
+    player_.setLimits(limits);
+    watch_.emplace();
+  }
+
+  void play(const JointStateBag& bag, const BagWindow& window) {
     start_ = Clock::now();
-    length_s_ = bag.end().toSec() - bag.begin().toSec();  // a ros::Duration ends after 68 years
     progress_.emplace(std::cerr, isatty(STDERR_FILENO) == 1, kPrefix, length_s_);
-    bag.forEach([&](int topic, JointStateSample sample, ros::Time recorded) {
-      played_s_ = recorded.toSec() - bag.begin().toSec();
+    const auto take = [&](int topic, JointStateSample sample, ros::Time recorded) {
+      played_s_ = recorded.toSec() - window.from.toSec();  // a ros::Duration ends after 68 years
+      recorded_ = recorded;
       player_.push(topic, std::move(sample));
-      playAll(table);
-    });
+      playAll();
+    };
+    bag.forEach(take, window);
     player_.finish();
-    playAll(table);
+    playAll();
     progress_.reset();
+  }
+
+  void commitResults() {
     requireDumped();
+    if (recorded_.isZero()) throw std::runtime_error("no joint state was recorded between --from and its --duration");
     if (player_.count(Verdict::kAccepted) == 0) {
       throw std::runtime_error("no joint state of bag '" + options_.bag_file +
                                "' was accepted; the first was refused: " + first_refusal_);
     }
-    table.finish();
+    if (table_) table_->finish();
     if (timing_) timing_->finish();
-    table.commit();
+    if (recorder_) recorder_->finish();
+    if (table_) table_->commit();
     if (timing_) timing_->commit();
-    summarize();
+    if (recorder_) recorder_->commit();
+    watch_.reset();
   }
 
- private:
+  /// Of what was recorded before the replay ended early.
+  void keepPartial() {
+    if (!recorder_) return;
+    try {
+      if (!recorder_->commitPartial()) return;
+      std::cerr << kPrefix << "ended after " << played_s_ << " s of " << length_s_ << " s; what was recorded is in '"
+                << options_.out_file << WholeFile::kPartialEnding << "'\n";
+    } catch (const std::exception& error) {
+      std::cerr << kPrefix << error.what() << "\n";
+    }
+  }
+
   double wallTime() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
   /// After every implicit step, since one interval may take long.
@@ -144,6 +166,11 @@ class Replay {
     if (!touched_) {
       for (const SolvedContact& contact : simulator_.contacts()) {
         touched_ |= contact.contact.key.instrument >= 0 && contact.state != ContactState::kOpen;
+      }
+      if (touched_ && options_.from_s > 0.0 && simulator_.stepCount() == 1) {
+        std::cerr << kPrefix
+                  << "warning: an instrument touches tissue where --from begins, and what it did to it before is "
+                  << "missing; begin before it touches\n";
       }
     }
     if (progress_) progress_->at(played_s_, wallTime());
@@ -164,13 +191,15 @@ class Replay {
                              std::to_string(simulator_.stepCount()) + " steps; ask for one of those");
   }
 
-  void playAll(ReplayTable& table) {
+  void playAll() {
     while (true) {
+      if (watch_ && SignalWatch::signal() != 0) throw Interrupted(SignalWatch::signal());
       retune();
       const long steps_before = simulator_.stepCount();
       const Clock::time_point start = Clock::now();
       const auto played = player_.playNext();
       if (!played) return;
+      if (played->interrupted) continue;
       const std::chrono::duration<double> elapsed = Clock::now() - start;
       const long steps = simulator_.stepCount() - (played->was_reset ? 0 : steps_before);
       note(*played, steps);
@@ -180,7 +209,8 @@ class Replay {
         throw std::runtime_error("the step ending at " + stampText(played->stamp_ns) + " s gave no finite answer");
       }
       if (!touched_) noteApproach(played->stamp_ns);
-      table.add(simulator_, *played, steps);
+      if (table_) table_->add(simulator_, *played, steps);
+      if (recorder_) recorder_->record(*played, static_cast<int>(steps), recorded_);
       noteForceErrors(*played);
       if (timing_ && steps > 0) timing_->add(played->stamp_ns, elapsed.count(), steps);
     }
@@ -286,7 +316,7 @@ class Replay {
     std::cerr << "; " << player_.resets() << " resets, " << player_.gaps() << " gaps, " << jumps_ << " jumps, "
               << not_converged_ << " intervals not converged, " << discarded_ << " without a finite answer, "
               << implausible_ << " with forces that no tissue bears, " << pinched_ << " with pinched contacts -> "
-              << options_.csv_file << "\n"
+              << options_.csv_file << (table_ && recorder_ ? ", " : "") << options_.out_file << "\n"
               << kPrefix << length_s_ << " s of recording in " << wallTime() << " s\n";
     if (!first_refusal_.empty())
       std::cerr << kPrefix << "first refusal in bag '" << options_.bag_file << "': " << first_refusal_ << "\n";
@@ -301,30 +331,29 @@ class Replay {
   void summarizeApproach() const {
     std::cerr << kPrefix << "no instrument touched tissue";
     if (approach_.instrument >= 0) {
-      const Instrument& instrument = simulator_.instruments()[static_cast<std::size_t>(approach_.instrument)];
-      const ContactLink& link = instrument.contactLinks()[static_cast<std::size_t>(approach_.link)];
-      std::cerr << "; closest approach " << approach_.distance_m << " m at " << stampText(approach_ns_) << " s: '"
-                << instrument.name() << "', link '"
-                << instrument.model().links()[static_cast<std::size_t>(link.link)].name << "', shape "
-                << approach_.shape + 1 << " of " << link.shapes.size() << ", to tissue '"
-                << scene_.tissues[static_cast<std::size_t>(approach_.tissue)].name
-                << "'; check base_pose and the tissue's pose";
+      std::cerr << "; " << approachText(simulator_, approach_, approach_ns_)
+                << "; check base_pose and the tissue's pose";
     }
     std::cerr << "\n";
   }
 
   ReplayOptions options_;
+  PublishOptions publish_;
   Scene scene_;
   Simulator simulator_;
   JointStatePlayer player_;
   std::optional<RecordedChanges> changes_;
   std::optional<std::int64_t> played_ns_;  ///< stamp of the moment played last
+  std::optional<ReplayTable> table_;
   std::optional<TimingTable> timing_;
-  std::optional<WholeFile> dump_;  ///< until it is written
+  std::unique_ptr<BagRecorder> recorder_;
+  std::optional<SignalWatch> watch_;  ///< while there is something to be kept
+  std::optional<WholeFile> dump_;     ///< until it is written
   std::optional<ReplayProgress> progress_;
   Clock::time_point start_;
-  double length_s_ = 0.0;  ///< of the recording
-  double played_s_ = 0.0;  ///< how much of it is played
+  double length_s_ = 0.0;  ///< of what is played of the recording
+  double played_s_ = 0.0;  ///< how much of that
+  ros::Time recorded_;     ///< the joint state pushed last; zero: none
   bool touched_ = false;   ///< an instrument has, since the start
   Approach approach_;      ///< until then
   std::int64_t approach_ns_ = 0;
@@ -356,6 +385,9 @@ int runReplay(int argc, char** argv) {
       replay(options);
     }
     return 0;
+  } catch (const Interrupted& end) {
+    std::raise(end.signal());  // as it ends whoever does not wait for it
+    return 1;
   } catch (const std::exception& error) {
     std::cerr << kPrefix << error.what() << "\n";
     return 1;

@@ -1,7 +1,8 @@
 /// @file
-/// Room `ros`, private: offline replay: a bag and a scene in, a CSV file out. No roscore.
+/// Room `ros`, private: offline replay: a bag and a scene in, a CSV file, a bag and plots out. No roscore.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,12 +11,15 @@ namespace tissue_contact {
 struct ReplayOptions {
   std::string scene_file;
   std::string bag_file;
-  std::string csv_file;
-  std::string urdf_file;  ///< empty: no scene parameter holds a URDF
-  std::string
-      changes_topic;  ///< of Changes messages in the bag; empty: the only topic that has some; "none": not played back
-  std::string timing_file;  ///< empty: wall times are not written
-  long dump_step = 0;       ///< implicit step whose contact problem is written to `dump_file`, from 1; 0: none
+  std::string csv_file;                                         ///< empty: none
+  std::string out_file;                                         ///< bag of what the node would publish; empty: none
+  std::string plot_folder;                                      ///< for plots of `out_file`; empty: none
+  double from_s = 0.0;                                          ///< of the recording are played: from this on,
+  double duration_s = std::numeric_limits<double>::infinity();  ///< and so long
+  std::string urdf_file;                                        ///< empty: no scene parameter holds a URDF
+  std::string changes_topic;                                    ///< of Changes in the bag; empty: the only one there; "none"
+  std::string timing_file;                                      ///< empty: wall times are not written
+  long dump_step = 0;  ///< implicit step whose contact problem is written to `dump_file`, from 1; 0: none
   std::string dump_file;
   bool help = false;  ///< show the usage and do nothing
 };
@@ -27,9 +31,10 @@ std::string replayUsage();
 /// @throws std::invalid_argument naming the argument that is unknown, given twice, missing or without a value.
 ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments);
 
-/// Plays every joint state of the bag and writes the CSV file; progress and a summary go to stderr.
+/// Plays the joint states of the bag and writes the results; progress and a summary go to stderr. When it ends early the bag it
+/// was writing is left beside its place, as far as it has come, with WholeFile::kPartialEnding.
 /// @throws std::exception saying what is wrong: a scene, bag or URDF that cannot be read, a bag without the scene's
-///   topics or without one acceptable joint state, a wrench that is not finite, a file that cannot be written.
+///   topics or without one acceptable joint state, a wrench that is not finite, a file that cannot be written; Interrupted.
 void replay(const ReplayOptions& options);
 
 /// main() of tissue_contact_replay.

@@ -1,20 +1,39 @@
 #include <cstdint>
+#include <stdexcept>
 
 #include "ros/replay/replay.h"
 #include "tissue_contact/core/command_line.h"
 
 namespace tissue_contact {
+namespace {
+
+constexpr Range kFrom{0.0, 1e9, "s"};
+constexpr Range kDuration{0.0, 1e9, "s", "", true};
+
+}  // namespace
+
 std::string replayUsage() {
-  return "usage: tissue_contact_replay --scene SCENE.yaml --bag IN.bag --csv OUT.csv [--urdf ROBOT.urdf]\n"
-         "         [--changes TOPIC] [--timing TIMES.csv] [--dump-step N --dump-file PROBLEM.txt]\n"
+  return "usage: tissue_contact_replay --scene SCENE.yaml --bag IN.bag [--csv OUT.csv] [--out OUT.bag [--plot DIR]]\n"
+         "         [--from S] [--duration S] [--urdf ROBOT.urdf] [--changes TOPIC] [--timing TIMES.csv]\n"
+         "         [--dump-step N --dump-file PROBLEM.txt]\n"
          "\n"
          "Plays the joint states of a bag through a scene, with the stepping of tissue_contact_node but without a\n"
-         "roscore, and writes one CSV line per state of an arm: the same bytes every time.\n"
+         "roscore, and writes one CSV line per state of an arm, or what the node publishes: the same bytes every "
+         "time.\n"
+         "--csv or --out is needed.\n"
          "\n"
          "  --scene FILE  the scene (doc/scene.md)\n"
          "  --bag FILE    a ROS bag with the scene's joint-state topics; tf frames are taken from its /tf_static and "
          "/tf\n"
          "  --csv FILE    the result; replaced when the replay is complete, untouched when it fails or is interrupted\n"
+         "  --out FILE    a bag of what a node called /tissue_contact publishes, in time with the bag that is played, "
+         "so that\n"
+         "                `rosbag play IN.bag OUT.bag` shows both; what is recorded when the replay fails or is "
+         "interrupted is\n"
+         "                left in FILE.partial\n"
+         "  --plot DIR    pictures of that bag: force over time, friction over normal force\n"
+         "  --from S      begin so many seconds into the recording, with undeformed tissue\n"
+         "  --duration S  play so many seconds of it\n"
          "  --urdf FILE   text for the robot_description parameter that the scene takes its URDF from\n"
          "  --changes TOPIC  numbers of the scene changed while the node ran, played back at the same moments: their "
          "topic, if "
@@ -28,19 +47,30 @@ std::string replayUsage() {
          "\n"
          "Results replace regular files only, and keep their permissions: no input, link, device, FIFO or folder.\n"
          "Inputs must be regular files.\n"
-         "Exit code: 0 when the CSV was written, 1 with a message on stderr otherwise.\n";
+         "Exit code: 0 when the results were written, 1 with a message on stderr otherwise.\n";
 }
 
 ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
-  const CommandLine line(
-      arguments,
-      {{"--scene", "--bag", "--csv", "--urdf", "--changes", "--timing", "--dump-step", "--dump-file"}, {}, {}});
+  const CommandLine line(arguments, {{"--scene", "--bag", "--csv", "--out", "--plot", "--from", "--duration", "--urdf", "--changes",
+                                      "--timing", "--dump-step", "--dump-file"},
+                                     {},
+                                     {}});
   ReplayOptions options;
   options.help = line.help();
   if (options.help) return options;
   options.scene_file = line.required("--scene");
   options.bag_file = line.required("--bag");
-  options.csv_file = line.required("--csv");
+  options.csv_file = line.value("--csv");
+  options.out_file = line.value("--out");
+  if (options.csv_file.empty() && options.out_file.empty()) {
+    throw std::invalid_argument("--csv or --out is missing; see --help");
+  }
+  options.plot_folder = line.value("--plot");
+  if (line.has("--plot") && options.out_file.empty()) {
+    throw std::invalid_argument("--plot needs --out: the pictures are of that bag");
+  }
+  options.from_s = line.number("--from", options.from_s, kFrom);
+  options.duration_s = line.number("--duration", options.duration_s, kDuration);
   options.urdf_file = line.value("--urdf");
   options.changes_topic = line.value("--changes");
   options.timing_file = line.value("--timing");

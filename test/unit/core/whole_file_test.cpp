@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -147,6 +148,35 @@ TEST_P(PartFileTest, LongNamesFit) {
 
 INSTANTIATE_TEST_SUITE_P(BothKinds, PartFileTest,
                          testing::Values(PartFile::Kind::kUnnamedIfPossible, PartFile::Kind::kNamed));
+
+/// As a library does that opens files by name.
+TEST_P(PartFileTest, IsWrittenByItsPath) {
+  write("result", "before");
+  PartFile part(path("result"), GetParam());
+  std::ofstream(part.path()) << "by another";
+  EXPECT_EQ(read("result"), "before");
+  part.place();
+  EXPECT_EQ(read("result"), "by another");
+  EXPECT_EQ(names(), std::vector<std::string>{"result"});
+}
+
+TEST_P(PartFileTest, APartialResultTakesAPlaceBeside) {
+  write("result", "before");
+  for (const std::string text : {"half", "three quarters"}) {
+    PartFile part(path("result"), GetParam());
+    std::ostream(&part) << text;
+    part.placeBeside(WholeFile::kPartialEnding);
+    EXPECT_EQ(read("result"), "before");
+    EXPECT_EQ(read("result.partial"), text);
+  }
+  EXPECT_EQ(names(), (std::vector<std::string>{"result", "result.partial"}));
+  write("victim", "whole");
+  fs::remove(path("result.partial"));
+  fs::create_symlink("victim", path("result.partial"));
+  PartFile part(path("result"), GetParam());
+  EXPECT_THROW(part.placeBeside(WholeFile::kPartialEnding), std::runtime_error);
+  EXPECT_EQ(read("victim"), "whole");
+}
 
 TEST_F(WholeFileTest, AnUnfinishedNamedFileSaysSo) {
   const PartFile file(path("out"), PartFile::Kind::kNamed);

@@ -324,13 +324,15 @@ TEST_P(CompressedBag, CutAtEveryPercent) {
   const std::string bytes = sound(400, GetParam(), 4000);
   const std::vector<Row> rows = rowsOf(directory_.path("sound.bag"));
   ASSERT_EQ(rows.size(), 400u);
-  const std::size_t first_chunk = recordOf(bytes, kChunkOp).position;
+  const RecordPlace first_chunk = recordOf(bytes, kChunkOp);
   const MemoryLimit limit(kSmall);
   for (std::size_t percent = 1; percent < 100; ++percent) {
     SCOPED_TRACE(percent);
     const std::string cut = bytes.substr(0, bytes.size() * percent / 100);
-    if (cut.size() < first_chunk) {
+    if (cut.size() < first_chunk.position) {
       expectRefused(cut, {"copy it again"});  // reindexing has nothing to work on
+    } else if (cut.size() < first_chunk.data + first_chunk.size) {
+      expectRefused(cut, {"cut off", "nothing can be recovered"});
     } else {
       expectRefused(cut, {"cut off", "rosbag reindex"});
     }

@@ -22,11 +22,21 @@ TEST(ReplayOptions, AreFilledIn) {
   EXPECT_EQ(options.dump_step, 7);
   EXPECT_EQ(options.dump_file, "p.txt");
   EXPECT_FALSE(options.help);
+  EXPECT_EQ(options.out_file, "");
+  EXPECT_EQ(options.from_s, 0.0);
   EXPECT_TRUE(parseReplayOptions({"--bag", "b", "-h"}).help);
+  const ReplayOptions part =
+      parseReplayOptions({"--scene=s", "--bag=b", "--out=o.bag", "--plot=p", "--from=1.5", "--duration", "2"});
+  EXPECT_EQ(part.csv_file, "");
+  EXPECT_EQ(part.out_file, "o.bag");
+  EXPECT_EQ(part.plot_folder, "p");
+  EXPECT_EQ(part.from_s, 1.5);
+  EXPECT_EQ(part.duration_s, 2.0);
 }
 
 TEST(ReplayOptions, HelpNamesAll) {
-  for (const char* key : {"--scene", "--bag", "--csv", "--urdf", "--timing", "--dump-step", "--dump-file", "--help"}) {
+  for (const char* key : {"--scene", "--bag", "--csv", "--out", "--plot", "--from", "--duration", "--urdf", "--timing",
+                          "--dump-step", "--dump-file", "--help"}) {
     EXPECT_NE(replayUsage().find(key), std::string::npos) << key;
   }
 }
@@ -35,6 +45,7 @@ TEST(ReplayOptions, WhatIsMissingIsNamed) {
   expectMissing({}, "--scene");
   expectMissing({"--scene", "s", "--csv", "c"}, "--bag");
   expectMissing({"--scene", "s", "--bag", "b"}, "--csv");
+  expectMissing({"--scene", "s", "--bag", "b", "--csv", "c", "--plot", "p"}, "--out");
   const std::vector<std::string> all = {"--scene", "s", "--bag", "b", "--csv", "c"};
   for (const auto& [given, missing] :
        {std::pair("--dump-step=1", "--dump-file"), std::pair("--dump-file=p", "--dump-step")}) {
