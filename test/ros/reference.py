@@ -157,17 +157,16 @@ class Reference(harness.TestCase):
         for row in TABLES["Private parameters"]:
             if row["type"] not in ("number", "word", "switch"):
                 continue
-            with self.subTest(parameter=row["parameter"]):
-                said = self.refusal("_scene:=" + harness.SCENE, "_%s:=bad_value" % row["parameter"])
-                allowed, default = re.search(r'bad_value"; it must be (.*?); default ([\w.+-]+)', said).groups()
-                if row["type"] == "number":
-                    self.assertEqual(read_numbers(row["allowed"]), read_numbers(allowed)[:2])
-                    self.assertEqual(float(row["default"]), float(default))
-                    self.assertEqual(row["unit"], re.search(r"<=? \S+ ?(.*)", allowed).group(1))
-                else:
-                    self.assertEqual(row["allowed"].replace("`", ""), allowed.replace(" or ", ", "))
-                    self.assertEqual(row["default"], default)
-                checked += 1
+            said = self.refusal("_scene:=" + harness.SCENE, "_%s:=bad_value" % row["parameter"])
+            allowed, default = re.search(r'bad_value"; it must be (.*?); default ([\w.+-]+)', said).groups()
+            if row["type"] == "number":
+                self.assertEqual(read_numbers(row["allowed"]), read_numbers(allowed)[:2], said)
+                self.assertEqual(float(row["default"]), float(default), said)
+                self.assertEqual(row["unit"], re.search(r"<=? \S+ ?(.*)", allowed).group(1), said)
+            else:
+                self.assertEqual(row["allowed"].replace("`", ""), allowed.replace(" or ", ", "), said)
+                self.assertEqual(row["default"], default, said)
+            checked += 1
         self.assertGreaterEqual(checked, 4)
 
     # ------------------------------------------------------------------ messages, tables, programs
@@ -177,10 +176,10 @@ class Reference(harness.TestCase):
         self.assertGreaterEqual(len(files), 6)
         for file in files:
             name = os.path.splitext(os.path.basename(file))[0]
-            with self.subTest(message=name), open(file, encoding="utf-8") as stream:
+            with open(file, encoding="utf-8") as stream:
                 found = [re.match(r"([\w/\[\]]+)\s+(\w+(?:=\d+)?)\s*(?:#\s*(.*))?$", line) for line in stream]
-                fields = [(m[2], m[1], self.unit_at_the_start(m[3] or "")) for m in found if m]
-                self.assertEqual([(row["field"], row["type"], row["unit"]) for row in TABLES[name]], fields)
+            fields = [(m[2], m[1], self.unit_at_the_start(m[3] or "")) for m in found if m]
+            self.assertEqual([(row["field"], row["type"], row["unit"]) for row in TABLES[name]], fields, name)
 
     @staticmethod
     def unit_at_the_start(comment):

@@ -18,6 +18,7 @@
 #include "ros/conversions.h"
 #include "ros/publish/publish_options.h"
 #include "ros/replay/force_error_summary.h"
+#include "ros/replay/joint_names.h"
 #include "ros/replay/replay_progress.h"
 #include "ros/replay/replay_table.h"
 #include "scene/read_more.h"
@@ -95,6 +96,7 @@ class Replay {
         scene_(loadReplayedScene(options)),
         simulator_(scene_, bagEnvironment(scene_, options.bag_file, options.urdf_file)),
         player_(simulator_),
+        joint_names_(simulator_, player_),
         force_errors_(simulator_.instruments().size()) {
     requireModelsKept(options, simulator_);
     for (const std::string& line : simulator_.advice()) std::cerr << kPrefix << "advisor: " << line << "\n";
@@ -115,6 +117,7 @@ class Replay {
     progress_.emplace(std::cerr, isatty(STDERR_FILENO) == 1, kPrefix, length_s_);
     bag.forEach([&](int topic, JointStateSample sample, ros::Time recorded) {
       played_s_ = recorded.toSec() - bag.begin().toSec();
+      joint_names_.note(topic, sample.names);
       player_.push(topic, std::move(sample));
       playAll(table);
     });
@@ -258,6 +261,7 @@ class Replay {
   }
 
   void summarize() const {
+    for (const std::string& line : joint_names_.findings()) std::cerr << kPrefix << "warning: " << line << "\n";
     std::cerr << kPrefix << player_.count(Verdict::kAccepted) << " joint states accepted";
     for (int v = 1; v < kVerdictCount; ++v) {
       const auto verdict = static_cast<Verdict>(v);
@@ -296,6 +300,7 @@ class Replay {
   Scene scene_;
   Simulator simulator_;
   JointStatePlayer player_;
+  JointNames joint_names_;
   std::optional<TimingTable> timing_;
   std::optional<WholeFile> dump_;  ///< until it is written
   std::optional<ReplayProgress> progress_;
