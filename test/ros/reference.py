@@ -8,6 +8,7 @@ import re
 import socket
 import subprocess
 import threading
+import xmlrpc.client
 
 import rosgraph
 import rosgraph.network
@@ -77,6 +78,9 @@ class Headers:
     def __init__(self, topics):
         self._headers, self._lock = {}, threading.Lock()
         self._subscribers = [rospy.Subscriber(topic, rospy.AnyMsg, self._take, topic) for topic in topics]
+        node = xmlrpc.client.ServerProxy(rosgraph.Master("/test").lookupNode(harness.NODE))
+        harness.wait_until(lambda: set(topics) <= {to[4] for to in node.getBusInfo("/test")[2] if to[1:3] == [rospy.get_name(), "o"]},
+                           "a connection of each topic")  # what was published before does not come
 
     def _take(self, message, topic):
         if message._connection_header["callerid"] == harness.NODE:

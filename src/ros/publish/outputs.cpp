@@ -30,7 +30,8 @@ MarkerStyle markerStyle(const ros::NodeHandle& node) {
 
 PublishedMesh publishedMesh(const ros::NodeHandle& node) {
   const std::string name = "publish_mesh";
-  return toPublishedMesh("parameter '" + node.resolveName(name) + "'", textParameter(node, name, "refined"));
+  return toPublishedMesh("parameter '" + node.resolveName(name) + "'",
+                         textParameter(node, name, kDefaultPublishedMesh));
 }
 
 void checkTopicName(const std::string& kind, const std::string& name) {
