@@ -9,16 +9,37 @@
 
 namespace tissue_contact {
 
-double numberParameter(const ros::NodeHandle& node, const std::string& name, double otherwise, const Range& range) {
-  double value = otherwise;
-  const std::string what = "parameter '" + node.resolveName(name) + "'";
+namespace {
+
+/// @param otherwise told as the default.
+std::optional<double> givenNumber(const ros::NodeHandle& node, const std::string& name, const std::string& otherwise,
+                                  const Range& range) {
   XmlRpc::XmlRpcValue given;
-  if (node.getParam(name, given) && !node.getParam(name, value)) {
+  if (!node.getParam(name, given)) return std::nullopt;
+  const std::string what = "parameter '" + node.resolveName(name) + "'";
+  const std::string fix = "default " + otherwise + (*range.fix == '\0' ? "" : "; ") + range.fix;
+  double value = 0.0;
+  if (!node.getParam(name, value)) {
     std::ostringstream text;
     text << given;
-    throw std::invalid_argument(what + " is " + inQuotes(text.str()) + "; it must be a number " + range.text());
+    throw std::invalid_argument(what + " is " + inQuotes(text.str()) + "; it must be a number " + range.text() + "; " +
+                                fix);
   }
-  return range.require(what, value);
+  Range with_default = range;
+  with_default.fix = fix.c_str();
+  return with_default.require(what, value);
+}
+
+}  // namespace
+
+double numberParameter(const ros::NodeHandle& node, const std::string& name, double otherwise, const Range& range) {
+  std::ostringstream told;
+  told << otherwise;
+  return givenNumber(node, name, told.str(), range).value_or(otherwise);
+}
+
+std::optional<double> numberParameter(const ros::NodeHandle& node, const std::string& name, const Range& range) {
+  return givenNumber(node, name, "auto", range);
 }
 
 std::string textParameter(const ros::NodeHandle& node, const std::string& name, const std::string& otherwise) {

@@ -4,6 +4,7 @@
 
 #include <ros/node_handle.h>
 
+#include <optional>
 #include <string>
 
 #include "tissue_contact/core/range.h"
@@ -11,8 +12,11 @@
 namespace tissue_contact {
 
 /// A parameter that is a number; `otherwise` where it is not set.
-/// @throws std::invalid_argument naming it, what was given, and the range.
+/// @throws std::invalid_argument naming it, what was given, the range and the default, which test/ros/reference.py reads there.
 double numberParameter(const ros::NodeHandle& node, const std::string& name, double otherwise, const Range& range);
+
+/// A parameter that is a number; none where it is not set: "auto". @throws likewise.
+std::optional<double> numberParameter(const ros::NodeHandle& node, const std::string& name, const Range& range);
 
 /// A parameter as text, also where it is set to something else; `otherwise` where it is not set.
 std::string textParameter(const ros::NodeHandle& node, const std::string& name, const std::string& otherwise);

@@ -105,6 +105,18 @@ class ReplayOutputs(harness.TestCase):
         self.assertAlmostEqual(float(found.group(1)), 0.003, delta=1e-8)
         self.assertEqual(found.group(2), harness.stamp_text(samples[20][0]))
 
+    def test_a_joint_that_goes_by_another_name_is_told(self):
+        def said(names):
+            stamped = [(harness.TOPIC, harness.joint_state(stamp, (0.0,) * len(names), names), stamp) for stamp, _ in self.samples]
+            harness.write_messages(self.path("names.bag"), stamped)
+            return self.replayed(harness.SCENE, self.path("names.bag"), self.path("names.csv"))
+
+        errors = said(["x", "y", "depth", "lamp"])
+        for words in ["these joints of 'probe'", "them: z;", "joints: depth, lamp.", "joint_names"]:
+            self.assertIn(words, errors)
+        for usual in [["x", "y"], ["x", "y", "z", "lamp"]]:  # a joint that was not recorded; joints of others
+            self.assertNotIn("joint_names", said(usual))
+
     def test_a_bag_that_touches_says_nothing_of_it(self):
         self.assertNotIn("approach", self.replay("out.csv"))
 

@@ -13,9 +13,9 @@ namespace {
 
 /// In the order of SurfaceColor.
 constexpr std::array<ColorQuantity, 3> kQuantities = {
-    {{"displacement", "displacement_full_scale_m", "displacement, mm", 1e3},
-     {"pressure", "pressure_full_scale_pa", "contact pressure, kPa", 1e-3},
-     {"strain", "strain_full_scale", "equivalent strain, %", 100.0}}};
+    {{"displacement", "displacement_full_scale_m", "m", "displacement, mm", 1e3},
+     {"pressure", "pressure_full_scale_pa", "Pa", "contact pressure, kPa", 1e-3},
+     {"strain", "strain_full_scale", "", "equivalent strain, %", 100.0}}};
 
 }  // namespace
 
@@ -25,7 +25,7 @@ SurfaceColor toSurfaceColor(const std::string& what, const std::string& name) {
   for (std::size_t i = 0; i < kQuantities.size(); ++i) {
     if (name == kQuantities[i].name) return static_cast<SurfaceColor>(i);
   }
-  throw std::invalid_argument(what + " is " + inQuotes(name) + "; it must be displacement, pressure or strain");
+  throw std::invalid_argument(what + " is " + inQuotes(name) + "; it must be displacement, pressure or strain; default displacement");
 }
 
 std_msgs::ColorRGBA rgba(float r, float g, float b, float a) {

@@ -14,6 +14,7 @@ enum class SurfaceColor { kDisplacement, kPressure, kStrain };
 struct ColorQuantity {
   const char* name;        ///< as in the parameter ~markers/color
   const char* full_scale;  ///< parameter below ~markers
+  const char* unit;        ///< of that
   const char* title;       ///< of the colour bar, with the unit
   double shown_per_si;     ///< what the bar's unit is of the SI unit
 };

@@ -1,5 +1,7 @@
 #include "ros/publish/outputs.h"
 
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -13,7 +15,8 @@ namespace {
 constexpr int kWrenchQueue = 10000;
 
 // Far beyond what RViz can draw on either side.
-constexpr Range kFullScaleRange{1e-9, 1e12, "SI units", "leave it out and it fits the scene"};
+constexpr double kLeastScale = 1e-9;
+constexpr double kMostScale = 1e12;
 constexpr Range kForceArrowRange{1e-9, 1e6, "m/N", "leave it out and it fits the scene"};
 
 MarkerStyle markerStyle(const ros::NodeHandle& node) {
@@ -23,18 +26,18 @@ MarkerStyle markerStyle(const ros::NodeHandle& node) {
       toSurfaceColor("parameter '" + node.resolveName(color) + "'", textParameter(node, color, "displacement"));
   for (const SurfaceColor one : {SurfaceColor::kDisplacement, SurfaceColor::kPressure, SurfaceColor::kStrain}) {
     const std::string name = std::string("markers/") + colorQuantity(one).full_scale;
-    if (!node.hasParam(name)) continue;
-    const double given = numberParameter(node, name, 0.0, kFullScaleRange);
-    if (one == style.color) style.color_full_scale = given;
+    const std::optional<double> given = numberParameter(
+        node, name, {kLeastScale, kMostScale, colorQuantity(one).unit, "leave it out and it fits the scene"});
+    if (one == style.color) style.color_full_scale = given.value_or(0.0);
   }
-  const std::string arrow = "markers/force_arrow_m_per_n";
-  if (node.hasParam(arrow)) style.force_arrow_m_per_n = numberParameter(node, arrow, 0.0, kForceArrowRange);
+  style.force_arrow_m_per_n = numberParameter(node, "markers/force_arrow_m_per_n", kForceArrowRange).value_or(0.0);
   return style;
 }
 
 PublishedMesh publishedMesh(const ros::NodeHandle& node) {
   const std::string name = "publish_mesh";
-  return toPublishedMesh("parameter '" + node.resolveName(name) + "'", textParameter(node, name, "refined"));
+  return toPublishedMesh("parameter '" + node.resolveName(name) + "'",
+                         textParameter(node, name, kDefaultPublishedMesh));
 }
 
 /// Contacts are at nodes of the mesh computed with.

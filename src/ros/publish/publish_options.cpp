@@ -25,7 +25,8 @@ PublishOptions parsePublish(const YamlMap& file) {
 PublishedMesh toPublishedMesh(const std::string& what, const std::string& name) {
   if (name == "refined") return PublishedMesh::kRefined;
   if (name == "unrefined") return PublishedMesh::kUnrefined;
-  throw std::invalid_argument(what + " is " + inQuotes(name) + "; it must be refined or unrefined");
+  throw std::invalid_argument(what + " is " + inQuotes(name) + "; it must be refined or unrefined; default " +
+                              kDefaultPublishedMesh);
 }
 
 }  // namespace tissue_contact

@@ -28,6 +28,8 @@ enum class PublishedMesh {
   kUnrefined,  ///< for ever the one at the start, its nodes where those of the refined mesh are
 };
 
+inline constexpr const char* kDefaultPublishedMesh = "refined";
+
 /// @return the mesh of that name; @throws std::invalid_argument beginning with `what`.
 PublishedMesh toPublishedMesh(const std::string& what, const std::string& name);
 

@@ -24,6 +24,7 @@
 #include "ros/replay/bag_recorder.h"
 #include "ros/replay/force_error_summary.h"
 #include "ros/replay/interruption.h"
+#include "ros/replay/joint_names.h"
 #include "ros/replay/replay_files.h"
 #include "ros/replay/replay_progress.h"
 #include "ros/replay/replay_table.h"
@@ -51,6 +52,7 @@ class Replay {
         scene_(loadReplayedScene(options, publish_)),
         simulator_(scene_, bagEnvironment(scene_, options.bag_file, options.urdf_file)),
         player_(simulator_),
+        joint_names_(simulator_, player_),
         force_errors_(simulator_.instruments().size()) {
     requireModelsKept(options, simulator_);
     if (options.changes_topic != "none") changes_.emplace(options.bag_file, options.changes_topic, scene_);
@@ -121,6 +123,7 @@ class Replay {
     const auto take = [&](int topic, JointStateSample sample, ros::Time recorded) {
       played_s_ = recorded.toSec() - window.from.toSec();  // a ros::Duration ends after 68 years
       recorded_ = recorded;
+      joint_names_.note(topic, sample.names);
       player_.push(topic, std::move(sample));
       playAll();
     };
@@ -308,6 +311,7 @@ class Replay {
   }
 
   void summarize() const {
+    for (const std::string& line : joint_names_.findings()) std::cerr << kPrefix << "warning: " << line << "\n";
     std::cerr << kPrefix << player_.count(Verdict::kAccepted) << " joint states accepted";
     for (int v = 1; v < kVerdictCount; ++v) {
       const auto verdict = static_cast<Verdict>(v);
@@ -345,6 +349,7 @@ class Replay {
   std::optional<RecordedChanges> changes_;
   std::optional<std::int64_t> played_ns_;  ///< stamp of the moment played last
   std::optional<ReplayTable> table_;
+  JointNames joint_names_;
   std::optional<TimingTable> timing_;
   std::unique_ptr<BagRecorder> recorder_;
   std::optional<SignalWatch> watch_;  ///< while there is something to be kept

@@ -60,7 +60,7 @@ TEST(PublishedMesh, IsOneOfTwoWords) {
   EXPECT_EQ(toPublishedMesh("p", "unrefined"), PublishedMesh::kUnrefined);
   for (const char* bad : {"", "Refined", "coarse", "0", "unrefined "}) {
     EXPECT_EQ(refusal([&] { toPublishedMesh("parameter 'p'", bad); }),
-              "parameter 'p' is \"" + std::string(bad) + "\"; it must be refined or unrefined");
+              "parameter 'p' is \"" + std::string(bad) + "\"; it must be refined or unrefined; default refined");
   }
 }
 
