@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "tissue_contact/contact/mesh_preparation.h"
+#include "tissue_contact/mesh/mesh_preparation.h"
 #include "tissue_contact/core/resolve_path.h"
 #include "tissue_contact/core/types.h"
 
