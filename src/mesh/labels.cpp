@@ -50,7 +50,8 @@ std::string groupNames(const MeshLabels& labels) {
   for (const MeshLabels::Group& group : labels.groups) {
     names.push_back(group.name.empty() ? std::to_string(group.number) : group.name);
   }
-  return names.empty() ? "the mesh has no physical groups (they are Gmsh's, in .msh files)" : "there are: " + listOf(names);
+  return names.empty() ? "the mesh has no physical groups (they are Gmsh's, in .msh files)"
+                       : "there are: " + listOf(names);
 }
 
 MemberRegion membersOf(const GroupRegion& region, const MeshLabels& labels) {
@@ -91,8 +92,9 @@ MemberRegion membersOf(const CellDataRegion& region, const MeshLabels& labels, c
     throw std::invalid_argument("no tetrahedron has " + label + "; values are: " + valuesText(data.values));
   }
   throw std::invalid_argument("there is no cell data " + inQuotes(region.name) + "; " +
-                              (names.empty() ? "the mesh has none of one number per cell (they are VTK's, in .vtk files)"
-                                             : "there are: " + listOf(names)));
+                              (names.empty()
+                                   ? "the mesh has none of one number per cell (they are VTK's, in .vtk files)"
+                                   : "there are: " + listOf(names)));
 }
 
 }  // namespace

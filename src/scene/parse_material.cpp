@@ -68,7 +68,8 @@ void parseConstants(const YamlMap& map, MaterialDescription& material) {
   if (const YamlCursor* value = map.find("poissons_ratio")) {
     material.poissons_ratio = value->number(MaterialDescription::kPoissonsRatio);
   }
-  if (const YamlCursor* value = map.find("density_kg_per_m3")) material.density_kg_per_m3 = value->number(kDensityRange);
+  if (const YamlCursor* value = map.find("density_kg_per_m3"))
+    material.density_kg_per_m3 = value->number(kDensityRange);
 }
 
 TissueRegion parseTissueRegion(const YamlCursor& cursor, const TissueDescription& tissue) {

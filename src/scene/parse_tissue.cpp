@@ -54,14 +54,17 @@ void requireCells(const YamlMap& map, const std::string& file) {
   const std::string ending = lowerExtension(file);
   const bool is_surface = ending != ".msh" && ending != ".vtk";
   if (is_surface && map.find("cell_size_m") == nullptr) {
-    map.get("file").fail("is a surface; to fill it with tetrahedra give the edge of the cells as well: cell_size_m: 0.006");
+    map.get("file").fail(
+        "is a surface; to fill it with tetrahedra give the edge of the cells as well: cell_size_m: 0.006");
   }
   for (const char* key : {"cell_size_m", "cell_size_inside_m"}) {
     const YamlCursor* value = is_surface ? nullptr : map.find(key);
-    if (value != nullptr) value->fail("is for surfaces (.stl, .obj, .ply); this file has tetrahedra of its own: remove the key");
+    if (value != nullptr)
+      value->fail("is for surfaces (.stl, .obj, .ply); this file has tetrahedra of its own: remove the key");
   }
   const YamlCursor* unreferenced = is_surface ? map.find("remove_unreferenced_nodes") : nullptr;
-  if (unreferenced != nullptr) unreferenced->fail("is for tetrahedral meshes; a surface that is filled has no such nodes");
+  if (unreferenced != nullptr)
+    unreferenced->fail("is for tetrahedral meshes; a surface that is filled has no such nodes");
 }
 
 MeshDescription parseMesh(const YamlCursor& cursor, const PathContext& paths) {

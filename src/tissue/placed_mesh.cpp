@@ -43,7 +43,8 @@ struct VolumeMesh {
 
 bool namesAnyLabels(const TissueDescription& tissue) {
   return namesLabels(tissue.fixed) || namesLabels(tissue.pressure_where) ||
-         std::any_of(tissue.regions.begin(), tissue.regions.end(), [](const auto& r) { return namesLabels(r.where); }) ||
+         std::any_of(tissue.regions.begin(), tissue.regions.end(),
+                     [](const auto& r) { return namesLabels(r.where); }) ||
          std::any_of(tissue.attachments.begin(), tissue.attachments.end(),
                      [](const auto& a) { return namesLabels(a.where); });
 }

@@ -16,8 +16,9 @@
 namespace tissue_contact {
 namespace {
 
-constexpr double kLargestHole = 3.0;  // cells across: what a fan of triangles spans without changing what cells can resolve
-constexpr double kLeastPart = 2.0;    // cells across: smaller ones hold no tetrahedron worth having
+constexpr double kLargestHole =
+    3.0;  // cells across: what a fan of triangles spans without changing what cells can resolve
+constexpr double kLeastPart = 2.0;  // cells across: smaller ones hold no tetrahedron worth having
 
 std::string placeText(const Vector3& p) {
   std::ostringstream text;
@@ -112,8 +113,8 @@ void requireManifold(const TriangleMesh& mesh, const EdgeTable& edges, const std
   }
   if (first == nullptr) return;
   const Vector3 middle = 0.5 * (mesh.vertices.col(first->nodes[0]) + mesh.vertices.col(first->nodes[1]));
-  throw std::invalid_argument(source + ": " + counted(count, "edge") +
-                              " of more than two triangles, the first at " + placeText(middle) +
+  throw std::invalid_argument(source + ": " + counted(count, "edge") + " of more than two triangles, the first at " +
+                              placeText(middle) +
                               ": walls meet there, so that nothing says what is inside; remove inner walls (Blender: "
                               "Select > All by Trait > Non Manifold)");
 }
@@ -234,10 +235,10 @@ void requireOneBody(TriangleMesh& mesh, const std::string& source, std::vector<s
     if (tree.windingNumber(mesh.vertices.col(parts[p].root)) > 0.5) continue;
     const Crossings crossings = findCrossings(mesh);
     if (crossings.count > 0) throw std::invalid_argument(source + ": it cannot be filled: " + crossingText(crossings));
-    throw std::invalid_argument(source + ": it has " + std::to_string(parts.size()) +
-                                " separate parts, one of them around " + placeText(parts[p].box.center()) + " and " +
-                                millimetres(parts[p].size()) +
-                                " across; a tissue is one body: save each part in a file of its own and make it a tissue");
+    throw std::invalid_argument(
+        source + ": it has " + std::to_string(parts.size()) + " separate parts, one of them around " +
+        placeText(parts[p].box.center()) + " and " + millimetres(parts[p].size()) +
+        " across; a tissue is one body: save each part in a file of its own and make it a tissue");
   }
   for (Triangle& t : mesh.triangles) {
     if (root[t[0]] != parts.front().root) std::swap(t[1], t[2]);

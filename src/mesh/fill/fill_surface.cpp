@@ -84,7 +84,8 @@ bool readNotes(const std::string& content, std::vector<std::string>& notes) {
   return true;
 }
 
-void tell(const MeshDescription& description, const std::vector<std::string>& notes, const MeshPreparation& preparation) {
+void tell(const MeshDescription& description, const std::vector<std::string>& notes,
+          const MeshPreparation& preparation) {
   if (!preparation.say) return;
   for (const std::string& note : notes) preparation.say(sourceOf(description) + ": " + note);
 }
@@ -93,20 +94,21 @@ void tell(const MeshDescription& description, const std::vector<std::string>& no
 void requireFittingCells(const ClosedSurface& surface, const MeshDescription& description) {
   const Vector3 size = surface.mesh.vertices.rowwise().maxCoeff() - surface.mesh.vertices.rowwise().minCoeff();
   const double cell = description.cell_size_m;
-  const std::string sizes = sourceOf(description) + ": with scale_m_per_unit " +
-                            text(description.scale_m_per_unit, 3) + " it is " + text(size.x(), 3) + " x " +
-                            text(size.y(), 3) + " x " + text(size.z(), 3) + " m";
+  const std::string sizes = sourceOf(description) + ": with scale_m_per_unit " + text(description.scale_m_per_unit, 3) +
+                            " it is " + text(size.x(), 3) + " x " + text(size.y(), 3) + " x " + text(size.z(), 3) +
+                            " m";
   if (size.maxCoeff() < kFewestCells * cell) {
-    throw std::invalid_argument(sizes + ", fewer than three cells of cell_size_m " + text(cell, 3) +
-                                " m; give a smaller cell_size_m, or the scale_m_per_unit of its unit (1 for metres, 0.001 for "
-                                "millimetres)");
+    throw std::invalid_argument(
+        sizes + ", fewer than three cells of cell_size_m " + text(cell, 3) +
+        " m; give a smaller cell_size_m, or the scale_m_per_unit of its unit (1 for metres, 0.001 for "
+        "millimetres)");
   }
   const double count = kTetrahedraPerVolume * surface.volume / std::pow(optionsOf(description).inside_cell_m, 3);
   if (count <= static_cast<double>(kMostElements)) return;
-  throw std::invalid_argument(
-      sizes + ", which takes some " + text(count) + " tetrahedra of cell_size_m " + text(cell, 3) + " m, more than " +
-      std::to_string(kMostElements) +
-      (size.maxCoeff() > kLongOrgan ? "; if it is in millimetres, give scale_m_per_unit: 0.001" : "; give a larger cell_size_m"));
+  throw std::invalid_argument(sizes + ", which takes some " + text(count) + " tetrahedra of cell_size_m " +
+                              text(cell, 3) + " m, more than " + std::to_string(kMostElements) +
+                              (size.maxCoeff() > kLongOrgan ? "; if it is in millimetres, give scale_m_per_unit: 0.001"
+                                                            : "; give a larger cell_size_m"));
 }
 
 [[noreturn]] void refuseFilling(const MeshDescription& description, const Crossings& crossings,
@@ -149,7 +151,8 @@ Filled fill(const MeshDescription& description, const std::string& version) {
   if (filled.made.file.empty()) refuseFilling(description, crossings, filled.made.complaint);
   const double share = filled.made.quality.volume / surface.volume;
   if (!(std::abs(share - 1.0) <= kMostVolumeError)) {
-    refuseFilling(description, crossings, "its tetrahedra have " + text(100.0 * share, 3) + " % of the surface's volume");
+    refuseFilling(description, crossings,
+                  "its tetrahedra have " + text(100.0 * share, 3) + " % of the surface's volume");
   }
   if (crossings.count > 0) {
     filled.notes.push_back("it passes through itself in " + std::to_string(crossings.count) +

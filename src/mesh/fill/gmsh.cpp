@@ -25,7 +25,8 @@ constexpr double kGrowth = 0.5;  // length that cells gain per length away from 
 
 [[noreturn]] void refuseMissing() {
   throw std::invalid_argument(
-      "filling a surface with tetrahedra takes the program gmsh, which is not installed; install it (apt-get install gmsh), "
+      "filling a surface with tetrahedra takes the program gmsh, which is not installed; install it (apt-get install "
+      "gmsh), "
       "or fill the surface elsewhere and name the .msh or .vtk file");
 }
 
@@ -64,8 +65,8 @@ GmshResult attempt(const TriangleMesh& surface, const FillOptions& options, doub
   const ScratchFolder folder;
   writeSurface(surface, options.cell_m, folder.path("surface.msh"));
   std::ofstream(folder.path("fill.geo")) << gmshScript(options, edge_angle);
-  const ProgramEnd end = runProgram({"gmsh", "-3", "fill.geo", "-o", "filled.msh", "-nt", "1", "-v", "3"},
-                                    folder.path(), kLimits);
+  const ProgramEnd end =
+      runProgram({"gmsh", "-3", "fill.geo", "-o", "filled.msh", "-nt", "1", "-v", "3"}, folder.path(), kLimits);
   if (!end.found) refuseMissing();
   GmshResult result;
   result.complaint = errorsIn(end.output);

@@ -25,7 +25,7 @@ std::string gmshVersion();
 std::string gmshScript(const FillOptions& options, double edge_angle);
 
 struct GmshResult {
-  std::string file;      ///< content of the .msh, m; empty: it failed
+  std::string file;       ///< content of the .msh, m; empty: it failed
   std::string complaint;  ///< what gmsh said then
   TetMesh mesh;
   MeshQuality quality;

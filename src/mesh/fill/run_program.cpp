@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostOutput = std::size_t{1} << 16U;
 constexpr rlim_t kMostFile = rlim_t{1} << 30U;  // bytes
-constexpr int kNotFound = 127;  // as shells have it
+constexpr int kNotFound = 127;                  // as shells have it
 
 [[noreturn]] void refuse(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 

@@ -26,7 +26,8 @@ struct ProgramEnd {
 /// OpenMP. It dies with this process. For start-up, not for a step.
 /// @param folder its working directory.
 /// @throws std::system_error when no process can be started.
-ProgramEnd runProgram(const std::vector<std::string>& arguments, const std::string& folder, const ProgramLimits& limits);
+ProgramEnd runProgram(const std::vector<std::string>& arguments, const std::string& folder,
+                      const ProgramLimits& limits);
 
 /// A folder that exists as long as this object, which only its owner may enter.
 class ScratchFolder {

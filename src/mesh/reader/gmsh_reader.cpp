@@ -101,9 +101,9 @@ class GmshReader {
   bool have_nodes_ = false;
   bool have_elements_ = false;
   bool with_labels_;
-  std::map<std::pair<int, std::int64_t>, std::size_t> group_of_;                     ///< by dimension and number
-  std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> numbers_of_;     ///< of an entity's groups
-  std::vector<std::int64_t> numbers_;                                                ///< of the groups of what is read now
+  std::map<std::pair<int, std::int64_t>, std::size_t> group_of_;                  ///< by dimension and number
+  std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> numbers_of_;  ///< of an entity's groups
+  std::vector<std::int64_t> numbers_;                                             ///< of the groups of what is read now
 };
 
 MeshFileContents GmshReader::read() {
@@ -379,7 +379,8 @@ void GmshReader::readPhysicalNames() {
     const std::size_t from = rest.find('"');
     const std::size_t to = rest.rfind('"');
     if (dimension < 0 || dimension > 3 || from == std::string_view::npos || to == from) {
-      in_.fail("a physical group must be its dimension, 0 to 3, its number and its name in quotes; export the mesh again");
+      in_.fail(
+          "a physical group must be its dimension, 0 to 3, its number and its name in quotes; export the mesh again");
     }
     group(static_cast<int>(dimension), number).name = std::string(rest.substr(from + 1, to - from - 1));
   }

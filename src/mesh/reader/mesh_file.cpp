@@ -78,7 +78,8 @@ TetMesh loadTetMesh(const MeshDescription& description, const MeshPreparation& p
   }
   TetMesh mesh{columnsOf(contents.nodes), std::move(contents.tetrahedra)};
   if (labels != nullptr) {
-    *labels = {mesh.positions * description.scale_m_per_unit, std::move(contents.groups), std::move(contents.cell_data)};
+    *labels = {mesh.positions * description.scale_m_per_unit, std::move(contents.groups),
+               std::move(contents.cell_data)};
   }
   if (description.remove_unreferenced_nodes) dropUnusedNodes(mesh.positions, mesh.tetrahedra);
   scale(description, mesh.positions);

@@ -15,7 +15,7 @@ namespace tissue_contact {
 struct MeshFileContents {
   std::vector<Vector3> nodes;
   std::vector<Tetrahedron> tetrahedra;
-  std::size_t other_elements = 0;  ///< elements skipped because they are no tetrahedra
+  std::size_t other_elements = 0;         ///< elements skipped because they are no tetrahedra
   std::vector<MeshLabels::Group> groups;  ///< none unless asked for
   std::vector<MeshLabels::CellData> cell_data;
 };

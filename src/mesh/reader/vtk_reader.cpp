@@ -326,7 +326,7 @@ ValueType VtkReader::readAnyType(const std::string& name) {
                                   [&](const ValueType& known) { return type_name == known.name; });
   if (type == std::end(kValueTypes)) {
     in_.fail("the array " + quoted(name) + " has the type " + quoted(type_name) +
-             ", which is not read; export the file without it");
+             ", which is not read; export the file without field data of this kind");
   }
   return *type;
 }

@@ -31,7 +31,8 @@ const char* const kCellData =
     "# vtk DataFile Version 3.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\n"
     "POINTS 5 double\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\n"
     "CELLS 3 14\n3 2 3 4\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 3\n5 10 10\n"
-    "POINT_DATA 5\nVECTORS u float\n0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\nSCALARS t double 1\nLOOKUP_TABLE default\n1 2 3 4 5\n"
+    "POINT_DATA 5\nVECTORS u float\n0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\nSCALARS t double 1\nLOOKUP_TABLE default\n1 2 3 4 "
+    "5\n"
     "CELL_DATA 3\nSCALARS region int\nLOOKUP_TABLE default\n1 1 2\n"
     "FIELD more 2\nstiffness 1 3 double\n0 5 2.5\nfibre 3 3 float\n0 0 1 0 0 1 0 0 1\n";
 
@@ -47,7 +48,8 @@ Loaded load(const std::string& bytes) {
 }
 
 std::vector<bool> heldNodes(const Loaded& loaded, const Region& region) {
-  return fixedNodes(loaded.mesh.positions, withPlaces({region}, loaded.labels, loaded.mesh, "fixed", "tissue"), "tissue");
+  return fixedNodes(loaded.mesh.positions, withPlaces({region}, loaded.labels, loaded.mesh, "fixed", "tissue"),
+                    "tissue");
 }
 
 std::vector<bool> heldElements(const Loaded& loaded, const Region& region) {
@@ -77,7 +79,8 @@ TEST(MeshLabels, PhysicalGroupsOfEveryVersion) {
 
 TEST(MeshLabels, UnknownGroupsAreToldWhatThereIs) {
   const Loaded loaded = load(kGroups22);
-  expectRefusal([&] { heldNodes(loaded, GroupRegion{"tumor"}); }, {"no group \"tumor\"", "tumour", "free end", "rest", "4"});
+  expectRefusal([&] { heldNodes(loaded, GroupRegion{"tumor"}); },
+                {"no group \"tumor\"", "tumour", "free end", "rest", "4"});
   expectRefusal([&] { heldNodes(load(kCellData), GroupRegion{"tumour"}); }, {"no physical groups", ".msh"});
 }
 
@@ -88,24 +91,29 @@ TEST(MeshLabels, CellDataOfScalarsAndFields) {
   EXPECT_EQ(heldNodes(loaded, CellDataRegion{"region", 1.0}), (std::vector<bool>{true, true, true, true, false}))
       << "a triangle's value is not a tetrahedron's";
   expectRefusal([&] { heldNodes(loaded, CellDataRegion{"region", 3.0}); }, {"region", "= 3", "values are: 1, 2"});
-  expectRefusal([&] { heldNodes(loaded, CellDataRegion{"fibre", 1.0}); },
-                {"no cell data \"fibre\"", "there are: region, stiffness"});
+  expectRefusal(
+      [&] {
+        heldNodes(loaded, CellDataRegion{"fibre", 1.0});
+      },
+      {"no cell data \"fibre\"", "there are: region, stiffness"});
 }
 
 TEST(MeshLabels, AreNotLookedAtUnlessAskedFor) {
   const std::string damaged = replaced(kGroups22, "3 7 \"tumour\"", "3 7 tumour");
   EXPECT_NO_THROW(loadBytes(damaged));
-  expectRefusal([&] { load(damaged); }, {":7:", "in quotes"});
+  expectRefusal([&] { load(damaged); }, {":6:", "in quotes"});
   EXPECT_NO_THROW(loadBytes(std::string(kCellData) + "rubbish"));
 }
 
 TEST(MeshLabels, DamagedOnesAreRefused) {
-  expectRefusal([&] { load(std::string(kCellData) + "rubbish\n"); }, {"\"RUBBISH\"", "not read"});
-  expectRefusal([&] { load(replaced(kCellData, "CELL_DATA 3", "CELL_DATA 4")); }, {"CELL_DATA is for 4", "there are 3"});
+  expectRefusal([&] { load(std::string(kCellData) + "rubbish\n"); }, {"RUBBISH", "not read"});
+  expectRefusal([&] { load(replaced(kCellData, "CELL_DATA 3", "CELL_DATA 4")); },
+                {"CELL_DATA is for 4", "there are 3"});
   expectRefusal([&] { load(replaced(kCellData, "1 1 2\n", "1 1\n")); }, {"FIELD"});
   std::string many = "17";
   for (int i = 1; i <= 17; ++i) many += " " + std::to_string(i);
-  expectRefusal([&] { load(replaced(kGroups41, "1 1 1 1 6 0\n", "1 1 1 " + many + " 0\n")); }, {"17 physical groups", "16"});
+  expectRefusal([&] { load(replaced(kGroups41, "1 1 1 1 6 0\n", "1 1 1 " + many + " 0\n")); },
+                {"17 physical groups", "16"});
 }
 
 }  // namespace

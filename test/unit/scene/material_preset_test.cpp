@@ -1,9 +1,10 @@
 /// Materials by name, surfaces to be filled, groups and cell data in scenes; the table of doc/organ.md against the code.
+#include "tissue_contact/tissue/material_preset.h"
+
 #include <sstream>
 
 #include "scene_fixture.h"
 #include "tissue_contact/core/read_file.h"
-#include "tissue_contact/tissue/material_preset.h"
 
 namespace tissue_contact {
 namespace {
@@ -36,19 +37,21 @@ TEST_F(SceneTest, WhatIsGivenBesideAPresetCounts) {
 }
 
 TEST_F(SceneTest, ARegionMayNameAMaterial) {
-  const std::string text = std::string(kOrgan) +
-                           "    regions:\n      - name: stone\n        where: [sphere: {center_m: [0, 0, 0], radius_m: 1}]\n"
-                           "        material: liver_tumour\n";
+  const std::string text =
+      std::string(kOrgan) +
+      "    regions:\n      - name: stone\n        where: [sphere: {center_m: [0, 0, 0], radius_m: 1}]\n"
+      "        material: liver_tumour\n";
   const TissueDescription organ = parse(text).tissues.at(0);
   EXPECT_EQ(organ.regions.at(0).material.youngs_modulus_pa, materialPreset("liver_tumour").youngs_modulus_pa);
   EXPECT_EQ(organ.material.youngs_modulus_pa, materialPreset("liver").youngs_modulus_pa);
 }
 
 TEST_F(SceneTest, UnknownMaterialsAreToldWhichThereAre) {
-  expectContains(refusal([&] { parse(replaced(kOrgan, "liver", "livre")); }),
-                 {"tissues[0].material", "\"livre\"", "did you mean \"liver\"", "kidney", "plastisol", "youngs_modulus_pa"});
-  expectContains(refusal([&] { parse(replaced(kOrgan, "liver", "{preset: stone}")); }), {"tissues[0].material.preset"});
-  expectContains(refusal([&] { parse(replaced(kOrgan, "liver", "{youngs_modulus_pa: 5000, poissons_ratio: 0.4}")); }),
+  expectContains(
+      refusal(replaced(kOrgan, "liver", "livre")),
+      {"tissues[0].material", "\"livre\"", "did you mean \"liver\"", "kidney", "plastisol", "youngs_modulus_pa"});
+  expectContains(refusal(replaced(kOrgan, "liver", "{preset: stone}")), {"tissues[0].material.preset"});
+  expectContains(refusal(replaced(kOrgan, "liver", "{youngs_modulus_pa: 5000, poissons_ratio: 0.4}")),
                  {"density_kg_per_m3"});
 }
 
@@ -80,7 +83,8 @@ TEST(MaterialPresets, TheDocumentHasExactlyTheTable) {
   for (std::string line; std::getline(lines, line);) rows += line.rfind("| `", 0) == 0 ? 1 : 0;
   EXPECT_EQ(rows, materialPresets().size());
   for (const MaterialPreset& preset : materialPresets()) {
-    EXPECT_NE(text.find(documentRow(preset) + "\n"), std::string::npos) << "doc/organ.md needs the line\n" << documentRow(preset);
+    EXPECT_NE(text.find(documentRow(preset) + "\n"), std::string::npos) << "doc/organ.md needs the line\n"
+                                                                        << documentRow(preset);
   }
 }
 
@@ -94,7 +98,7 @@ TEST_F(SceneTest, ASurfaceNeedsCellsAndAMeshHasItsOwn) {
       parse(scene("file: a.stl, cell_size_m: 0.006, cell_size_inside_m: 0.012")).tissues.at(0).geometry);
   EXPECT_EQ(filled.cell_size_m, 0.006);
   EXPECT_EQ(filled.cell_size_inside_m, 0.012);
-  const auto refused = [&](const std::string& mesh) { return refusal([&] { parse(scene(mesh)); }); };
+  const auto refused = [&](const std::string& mesh) { return refusal(scene(mesh)); };
   expectContains(refused("file: a.stl"), {"tissues[0].mesh.file", "is a surface", "cell_size_m"});
   expectContains(refused("file: a.msh, cell_size_m: 0.006"), {"tissues[0].mesh.cell_size_m", "remove the key"});
   expectContains(refused("file: a.stl, cell_size_m: 6"), {"cell_size_m", "metres"});
@@ -105,7 +109,8 @@ TEST_F(SceneTest, ASurfaceNeedsCellsAndAMeshHasItsOwn) {
 
 TEST_F(SceneTest, PlacesMayBeGroupsAndCellData) {
   const TissueDescription organ =
-      parse(std::string(kOrgan) + "    fixed: [group: base, group: 3, cell_data: {name: region, value: 2}]\n").tissues.at(0);
+      parse(std::string(kOrgan) + "    fixed: [group: base, group: 3, cell_data: {name: region, value: 2}]\n")
+          .tissues.at(0);
   EXPECT_EQ(std::get<GroupRegion>(organ.fixed.at(0)).name, "base");
   EXPECT_EQ(std::get<GroupRegion>(organ.fixed.at(1)).name, "3");
   EXPECT_EQ(std::get<CellDataRegion>(organ.fixed.at(2)).name, "region");

@@ -50,7 +50,8 @@ TEST(SceneDocument, HasExactlyTheKeysOfTheLoader) {
 
 TEST_F(SceneTest, ExampleOfTheDocumentLoadsAndUsesEveryKey) {
   for (const char* directory : {"meshes", "urdf"}) std::filesystem::create_directory(path(directory));
-  for (const char* file : {"meshes/liver.vtk", "meshes/kidney.stl", "meshes/phantom.vtk", "meshes/cover.stl", "meshes/gut.obj", "urdf/psm_classic.urdf"})
+  for (const char* file : {"meshes/liver.vtk", "meshes/kidney.stl", "meshes/phantom.vtk", "meshes/cover.stl",
+                           "meshes/gut.obj", "urdf/psm_classic.urdf"})
     write(file, "x");
   const std::string yaml = example();
   const Scene scene = parse(yaml);
