@@ -84,6 +84,7 @@ std::vector<Part> listParts(const TriangleMesh& mesh, const std::vector<int>& ro
     for (const int v : t) part.box.extend(Vector3(mesh.vertices.col(v)));
   }
   std::vector<Part> list;
+  list.reserve(parts.size());
   for (const auto& [first, part] : parts) list.push_back(part);
   std::stable_sort(list.begin(), list.end(), [](const Part& a, const Part& b) { return a.size() > b.size(); });
   return list;

@@ -29,8 +29,8 @@ std::optional<Vector3> crossing(const Vector3& from, const Vector3& to, const Ve
 
 std::optional<Vector3> crossing(const Vector3* a, const Vector3* b) {
   for (int k = 0; k < 3; ++k) {
-    if (const auto place = crossing(a[k], a[(k + 1) % 3], b)) return place;
-    if (const auto place = crossing(b[k], b[(k + 1) % 3], a)) return place;
+    if (auto place = crossing(a[k], a[(k + 1) % 3], b)) return place;
+    if (auto place = crossing(b[k], b[(k + 1) % 3], a)) return place;
   }
   return std::nullopt;
 }

@@ -91,7 +91,7 @@ std::string gmshVersion() {
   const ScratchFolder folder;
   const ProgramEnd end = runProgram({"gmsh", "--version"}, folder.path(), kLimits);
   if (!end.found) refuseMissing();
-  const std::string version = printable(end.output.substr(0, end.output.find('\n')));
+  std::string version = printable(end.output.substr(0, end.output.find('\n')));
   if (!end.well || version.empty() || version.size() > 64) {
     throw std::invalid_argument("the program gmsh does not run: `gmsh --version` says " + inQuotes(version));
   }
