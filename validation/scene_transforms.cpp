@@ -11,10 +11,9 @@ void scale(Region& region, double length) {
     box->max_m *= length;
   } else if (auto* plane = std::get_if<PlaneRegion>(&region)) {
     plane->point_m *= length;
-  } else {
-    auto& sphere = std::get<SphereRegion>(region);
-    sphere.center_m *= length;
-    sphere.radius_m *= length;
+  } else if (auto* sphere = std::get_if<SphereRegion>(&region)) {
+    sphere->center_m *= length;
+    sphere->radius_m *= length;
   }
 }
 

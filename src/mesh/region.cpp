@@ -24,6 +24,18 @@ bool holds(const SphereRegion& sphere, const Vector3& x, double rounding) {
   return (x - sphere.center_m).norm() <= sphere.radius_m + rounding;
 }
 
+bool holds(const MemberRegion& members, const Vector3& x, double rounding) {
+  const std::vector<Vector3>& places = *members.places;
+  const auto first = std::lower_bound(places.begin(), places.end(), x.x() - rounding,
+                                      [](const Vector3& place, double from) { return place.x() < from; });
+  for (auto place = first; place != places.end() && place->x() <= x.x() + rounding; ++place) {
+    if ((*place - x).norm() <= rounding) return true;
+  }
+  return false;
+}
+bool holds(const GroupRegion&, const Vector3&, double) { return false; }     // they have no places
+bool holds(const CellDataRegion&, const Vector3&, double) { return false; }  // before withPlaces()
+
 bool holds(const Region& region, const Vector3& x, double rounding) {
   return std::visit([&](const auto& shape) { return holds(shape, x, rounding); }, region);
 }
@@ -38,6 +50,10 @@ void describe(const PlaneRegion& plane, std::ostream& out) {
 void describe(const SphereRegion& sphere, std::ostream& out) {
   out << "sphere around (" << sphere.center_m.transpose() << ") m of radius " << sphere.radius_m << " m";
 }
+
+void describe(const MemberRegion& members, std::ostream& out) { out << members.label; }
+void describe(const GroupRegion& group, std::ostream& out) { out << "group '" << group.name << "'"; }
+void describe(const CellDataRegion& data, std::ostream& out) { out << "cell data '" << data.name << "'"; }
 
 [[noreturn]] void refuseRegion(const NodalVectors& x, const Region& region, std::size_t index, const std::string& entry,
                                const std::string& what, const std::string& source) {

@@ -1,4 +1,5 @@
 #include <set>
+#include <stdexcept>
 
 #include "scene/scene_ranges.h"
 #include "scene/scene_sections.h"
@@ -9,6 +10,7 @@ namespace {
 
 constexpr Range kDensityRange{1.0, 1e5, "kg/m^3", "give kilograms per cubic metre: water is 1000, not 1"};
 constexpr Range kBendingRange{0.0, 1e6, "N m", "0 bends freely; leave it out for a plate of the given thickness"};
+constexpr Range kLabelRange{-1e300, 1e300};
 
 constexpr std::pair<const char*, Dilatation> kDilatations[] = {
     {"auto", Dilatation::kAuto}, {"element", Dilatation::kElement}, {"patch", Dilatation::kPatch}};
@@ -43,6 +45,31 @@ std::vector<PronyTerm> parsePronySeries(const YamlCursor& cursor) {
   return terms;
 }
 
+const MaterialPreset& presetAt(const YamlCursor& cursor) {
+  const std::string name = cursor.text();
+  try {
+    return materialPreset(name);
+  } catch (const std::invalid_argument& error) {
+    cursor.fail(error.what());
+  }
+}
+
+void setConstants(const MaterialPreset& preset, MaterialDescription& material) {
+  material.youngs_modulus_pa = preset.youngs_modulus_pa;
+  material.poissons_ratio = preset.poissons_ratio;
+  material.density_kg_per_m3 = preset.density_kg_per_m3;
+}
+
+/// What the map gives of them.
+void parseConstants(const YamlMap& map, MaterialDescription& material) {
+  if (const YamlCursor* value = map.find("youngs_modulus_pa")) material.youngs_modulus_pa = value->number(kYoungRange);
+  if (const YamlCursor* value = map.find("poissons_ratio")) {
+    material.poissons_ratio = value->number(MaterialDescription::kPoissonsRatio);
+  }
+  if (const YamlCursor* value = map.find("density_kg_per_m3"))
+    material.density_kg_per_m3 = value->number(kDensityRange);
+}
+
 TissueRegion parseTissueRegion(const YamlCursor& cursor, const TissueDescription& tissue) {
   const YamlMap map = cursor.map();
   TissueRegion region;
@@ -51,11 +78,8 @@ TissueRegion parseTissueRegion(const YamlCursor& cursor, const TissueDescription
   MaterialDescription& material = region.material;
   material = tissue.material;
   if (const YamlCursor* value = map.find("material")) {
-    const YamlMap given = value->map();
-    if (const YamlCursor* v = given.find("youngs_modulus_pa")) material.youngs_modulus_pa = v->number(kYoungRange);
-    if (const YamlCursor* v = given.find("poissons_ratio"))
-      material.poissons_ratio = v->number(MaterialDescription::kPoissonsRatio);
-    if (const YamlCursor* v = given.find("density_kg_per_m3")) material.density_kg_per_m3 = v->number(kDensityRange);
+    if (const MaterialPreset* preset = findPreset(*value)) setConstants(*preset, material);
+    if (!value->isScalar()) parseConstants(value->map(), material);
   }
   region.damping_stiffness_s = tissue.damping.stiffness_s;
   if (const YamlCursor* value = map.find("damping")) {
@@ -70,8 +94,13 @@ TissueRegion parseTissueRegion(const YamlCursor& cursor, const TissueDescription
 
 Region parseRegion(const YamlCursor& cursor) {
   const YamlMap map = cursor.map();
-  const std::string kind = map.exactlyOne({"box", "plane", "sphere"});
+  const std::string kind = map.exactlyOne({"box", "plane", "sphere", "group", "cell_data"});
   const YamlCursor& value = map.get(kind);
+  if (kind == "group") return GroupRegion{value.text()};
+  if (kind == "cell_data") {
+    const YamlMap data = value.map();
+    return CellDataRegion{data.get("name").text(), data.get("value").number(kLabelRange)};
+  }
   if (kind == "box") return parseBoxRegion(value);
   if (kind == "plane") return parsePlaneRegion(value);
   const YamlMap sphere = value.map();
@@ -92,20 +121,30 @@ void requireFewPlaces(const YamlCursor& element, const std::string& kind, std::s
 }
 
 MaterialDescription parseMaterial(const YamlCursor& cursor, bool is_membrane) {
-  const YamlMap map = cursor.map();
   MaterialDescription material;
   material.model = is_membrane ? ElasticModel::kMembrane : ElasticModel::kCorotational;
+  if (const MaterialPreset* preset = findPreset(cursor)) setConstants(*preset, material);
+  if (cursor.isScalar()) return material;
+  const YamlMap map = cursor.map();
   if (const YamlCursor* value = map.find("model")) material.model = value->choice(kElasticModelNames);
   if (const YamlCursor* value = map.find("dilatation")) material.dilatation = value->choice(kDilatations);
-  material.youngs_modulus_pa = map.get("youngs_modulus_pa").number(kYoungRange);
-  material.poissons_ratio = map.get("poissons_ratio").number(MaterialDescription::kPoissonsRatio);
-  material.density_kg_per_m3 = map.get("density_kg_per_m3").number(kDensityRange);
+  if (map.find("preset") == nullptr) {
+    for (const char* key : {"youngs_modulus_pa", "poissons_ratio", "density_kg_per_m3"}) map.get(key);
+  }
+  parseConstants(map, material);
   if (const YamlCursor* value = map.find("prony_series")) material.prony_series = parsePronySeries(*value);
   if (const YamlCursor* value = map.find("bending_stiffness_n_m")) {
     if (!is_membrane) value->fail("only a sheet or shell has a bending stiffness of its own; remove the key");
     material.bending_stiffness_n_m = value->number(kBendingRange);
   }
   return material;
+}
+
+const MaterialPreset* findPreset(const YamlCursor& material) {
+  if (material.isScalar()) return &presetAt(material);
+  const YamlMap map = material.map();
+  const YamlCursor* value = map.find("preset");
+  return value == nullptr ? nullptr : &presetAt(*value);
 }
 
 DampingDescription parseDamping(const YamlCursor& cursor) {

@@ -12,6 +12,8 @@ constexpr int kMaxSheetCellsPerAxis = 1000;  // 2 triangles per cell: as many el
 constexpr int kMostRefinedNodes = 300'000;
 
 constexpr Range kSizeRange{1e-6, 10.0, "m", "give metres, not millimetres"};
+constexpr Range kCellRange{1e-5, 1.0, "m", "give metres: 6 mm is 0.006"};
+constexpr double kMostCoarsening = 20.0;
 constexpr Range kThicknessRange{1e-6, 1.0, "m", "give metres: 2 mm is 0.002"};
 constexpr Range kGrowthRange{1.0, 3.0};
 constexpr Range kScaleRange{1e-6, 1000.0, "m per file unit", "a file in millimetres has 0.001"};
@@ -47,13 +49,37 @@ BlockDescription parseBlock(const YamlCursor& cursor) {
   return block;
 }
 
+/// A surface needs a size of cells, a tetrahedral mesh has its own.
+void requireCells(const YamlMap& map, const std::string& file) {
+  const std::string ending = lowerExtension(file);
+  const bool is_surface = ending != ".msh" && ending != ".vtk";
+  if (is_surface && map.find("cell_size_m") == nullptr) {
+    map.get("file").fail(
+        "is a surface; to fill it with tetrahedra give the edge of the cells as well: cell_size_m: 0.006");
+  }
+  for (const char* key : {"cell_size_m", "cell_size_inside_m"}) {
+    const YamlCursor* value = is_surface ? nullptr : map.find(key);
+    if (value != nullptr)
+      value->fail("is for surfaces (.stl, .obj, .ply); this file has tetrahedra of its own: remove the key");
+  }
+  const YamlCursor* unreferenced = is_surface ? map.find("remove_unreferenced_nodes") : nullptr;
+  if (unreferenced != nullptr)
+    unreferenced->fail("is for tetrahedral meshes; a surface that is filled has no such nodes");
+}
+
 MeshDescription parseMesh(const YamlCursor& cursor, const PathContext& paths) {
   const YamlMap map = cursor.map();
   MeshDescription mesh;
-  mesh.file = parseFile(map.get("file"), paths, {".msh", ".vtk"});
+  mesh.file = parseFile(map.get("file"), paths, {".msh", ".vtk", ".stl", ".obj", ".ply"});
+  requireCells(map, mesh.file);
   if (const YamlCursor* value = map.find("scale_m_per_unit")) mesh.scale_m_per_unit = value->number(kScaleRange);
   if (const YamlCursor* value = map.find("remove_unreferenced_nodes")) {
     mesh.remove_unreferenced_nodes = value->boolean();
+  }
+  if (const YamlCursor* value = map.find("cell_size_m")) mesh.cell_size_m = value->number(kCellRange);
+  if (const YamlCursor* value = map.find("cell_size_inside_m")) {
+    mesh.cell_size_inside_m = value->number(
+        Range{mesh.cell_size_m, kMostCoarsening * mesh.cell_size_m, "m", "from cell_size_m to twenty times that"});
   }
   return mesh;
 }
@@ -133,6 +159,9 @@ TissueDescription parseTissue(const YamlCursor& cursor, const PathContext& paths
   if (const YamlCursor* value = map.find("refinement")) tissue.refinement = parseRefinement(*value);
   if (const YamlCursor* value = map.find("pose")) tissue.pose = parsePose(*value);
   tissue.material = parseMaterial(map.get("material"), isMembrane(tissue));
+  if (const MaterialPreset* preset = findPreset(map.get("material"))) {
+    tissue.damping.stiffness_s = preset->damping_stiffness_s;
+  }
   if (const YamlCursor* value = map.find("damping")) tissue.damping = parseDamping(*value);
   if (const YamlCursor* value = map.find("fibre_direction")) tissue.fibre_direction = parseDirection(*value);
   if (const YamlCursor* value = map.find("regions")) tissue.regions = parseTissueRegions(*value, tissue);

@@ -26,12 +26,6 @@ bool isNamePart(const std::string& text) {
   return !text.empty() && isLetter(text.front()) && std::all_of(text.begin(), text.end(), is_allowed);
 }
 
-std::string lowerExtension(const std::string& file) {
-  std::string extension = fs::path(file).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
-
 Quaternion parseQuaternion(const YamlCursor& cursor) {
   const std::vector<YamlCursor> components = cursor.tuple(4);
   const Range range{-1.0 - kQuaternionNormTolerance, 1.0 + kQuaternionNormTolerance};
@@ -51,6 +45,12 @@ Quaternion fromRollPitchYaw(const Vector3& rpy) {
 }
 
 }  // namespace
+
+std::string lowerExtension(const std::string& file) {
+  std::string extension = fs::path(file).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
 
 std::string parseName(const YamlCursor& cursor) {
   std::string name = cursor.text();

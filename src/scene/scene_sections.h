@@ -14,6 +14,7 @@
 #include "tissue_contact/mesh/region_description.h"
 #include "tissue_contact/simulation/scene.h"
 #include "tissue_contact/tissue/material_description.h"
+#include "tissue_contact/tissue/material_preset.h"
 #include "tissue_contact/tissue/tissue_description.h"
 
 namespace tissue_contact {
@@ -45,6 +46,8 @@ std::string parseRosName(const YamlCursor& cursor);
 std::string parseFrame(const YamlCursor& cursor);
 /// Absolute path of a regular file that exists and whose name ends in one of `extensions` (lower case, with the dot).
 std::string parseFile(const YamlCursor& cursor, const PathContext& paths, const std::vector<std::string>& extensions);
+/// Ending of a file name, with the dot.
+std::string lowerExtension(const std::string& file);
 PoseDescription parsePose(const YamlCursor& cursor);
 /// A direction of any length but 0; returned as a unit vector.
 Vector3 parseDirection(const YamlCursor& cursor);
@@ -54,6 +57,8 @@ Region parseRegion(const YamlCursor& cursor);
 std::vector<Region> parsePlaces(const YamlCursor& cursor, std::size_t fewest);
 /// Refuses an entry of a tissue with which all of its `kind` have too many places.
 void requireFewPlaces(const YamlCursor& element, const std::string& kind, std::size_t places);
+/// The preset that a material names, alone or as `preset`; null: none.
+const MaterialPreset* findPreset(const YamlCursor& material);
 /// `is_membrane`: the tissue is a sheet or shell.
 MaterialDescription parseMaterial(const YamlCursor& cursor, bool is_membrane);
 DampingDescription parseDamping(const YamlCursor& cursor);

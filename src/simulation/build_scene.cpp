@@ -70,9 +70,9 @@ std::vector<Tissue> buildTissues(const Scene& scene, const SceneEnvironment& env
       };
       if (description.refinement.mode == RefinementDescription::Mode::kNever) {
         refinements.emplace_back();
-        tissues.emplace_back(description, X_WT, on_size);
+        tissues.emplace_back(description, X_WT, on_size, environment.meshes);
       } else {
-        refinements.push_back(std::make_unique<TissueRefinement>(description, X_WT, on_size));
+        refinements.push_back(std::make_unique<TissueRefinement>(description, X_WT, on_size, environment.meshes));
         tissues.push_back(refinements.back()->tissue());
       }
     });

@@ -16,7 +16,7 @@ namespace tissue_contact {
 
 /// @throws std::invalid_argument naming what is wrong in the scene or its files.
 std::vector<Instrument> buildInstruments(const Scene& scene, const SceneEnvironment& environment);
-/// @param refinements gets one per tissue, null where the mesh never changes. They refer to the scene.
+/// @param refinements gets one per tissue, null where the mesh never changes.
 std::vector<Tissue> buildTissues(const Scene& scene, const SceneEnvironment& environment,
                                  std::vector<std::unique_ptr<TissueRefinement>>& refinements);
 

@@ -73,13 +73,17 @@ NodalVectors NodeTransfer::carried(const NodalVectors& before) const {
   return now;
 }
 
-TissueRefinement::TissueRefinement(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size)
-    : description_(description),
+TissueRefinement::TissueRefinement(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size,
+                                   const MeshPreparation& preparation)
+    : TissueRefinement(refinableMesh(description, on_size, preparation), X_WT) {}
+
+TissueRefinement::TissueRefinement(RefinableMesh&& mesh, const Pose& X_WT)
+    : description_(std::move(mesh.description)),
       X_WT_(X_WT),
       X_TW_(X_WT.inverse()),
-      bisection_(refinableMesh(description, on_size)),
+      bisection_(std::move(mesh.bisection)),
       nodes_at_most_(
-          static_cast<int>(mostNodes(description.refinement, static_cast<std::size_t>(bisection_.unrefinedNodes())))) {
+          static_cast<int>(mostNodes(description_.refinement, static_cast<std::size_t>(bisection_.unrefinedNodes())))) {
   refineWithin(mesh_);
 }
 

@@ -18,6 +18,8 @@
 
 namespace tissue_contact {
 
+struct RefinableMesh;
+
 /// A place of a tissue's surface that is to be fine.
 struct TouchedPlace {
   Vector3 rest_W;       ///< at rest, m, world frame
@@ -40,9 +42,9 @@ class TissueRefinement {
   /// Length that cells gain per length of distance beyond the reach: steeper ones err more with as many nodes (doc/accuracy.md).
   static constexpr double kGrowth = 0.5;
 
-  /// @param description outlives this.
   /// @throws std::invalid_argument see Tissue.
-  TissueRefinement(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size);
+  TissueRefinement(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size,
+                   const MeshPreparation& preparation = {});
 
   Tissue tissue() const { return {description_, X_WT_, mesh_}; }  ///< with the present mesh
   int revision() const { return revision_; }                      ///< how often the mesh has changed
@@ -67,6 +69,8 @@ class TissueRefinement {
   double reach(double cell_m) const;
 
  private:
+  TissueRefinement(RefinableMesh&& mesh, const Pose& X_WT);
+
   struct Focus {
     Vector3 p_T;
     double asked_m;     ///< cells that a place asked for
@@ -84,7 +88,7 @@ class TissueRefinement {
   void refineBeside(const std::vector<Focus>& kept, BisectedMesh& refined);
   bool refineWithin(BisectedMesh& refined);
 
-  const TissueDescription& description_;
+  TissueDescription description_;
   Pose X_WT_;
   Pose X_TW_;
   Bisection bisection_;

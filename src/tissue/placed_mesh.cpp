@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "mesh/labels.h"
 #include "mesh/region.h"
 #include "tissue/element_patches.h"
 #include "tissue_contact/core/entry_error.h"
@@ -37,9 +38,36 @@ void tellSize(const NodalVectors& positions, std::size_t elements, const MeshSiz
 struct VolumeMesh {
   TetMesh mesh;
   std::vector<int> patch_of;
+  MeshLabels labels;  ///< where the description names some
 };
 
-VolumeMesh volumeMesh(const TissueDescription& description, const std::string& source, const MeshSizeCheck& on_size) {
+bool namesAnyLabels(const TissueDescription& tissue) {
+  return namesLabels(tissue.fixed) || namesLabels(tissue.pressure_where) ||
+         std::any_of(tissue.regions.begin(), tissue.regions.end(),
+                     [](const auto& r) { return namesLabels(r.where); }) ||
+         std::any_of(tissue.attachments.begin(), tissue.attachments.end(),
+                     [](const auto& a) { return namesLabels(a.where); });
+}
+
+/// The description with groups and cell data as the places they are.
+TissueDescription withPlaces(const TissueDescription& given, const MeshLabels& labels, const TetMesh& mesh) {
+  TissueDescription tissue = given;
+  const auto resolve = [&](std::vector<Region>& regions, const std::string& entry) {
+    regions = withPlaces(regions, labels, mesh, entry, tissueLabel(given));
+  };
+  resolve(tissue.fixed, "fixed");
+  resolve(tissue.pressure_where, "pressure_where");
+  for (std::size_t r = 0; r < tissue.regions.size(); ++r) {
+    resolve(tissue.regions[r].where, elementOf("regions", r) + ".where");
+  }
+  for (std::size_t a = 0; a < tissue.attachments.size(); ++a) {
+    resolve(tissue.attachments[a].where, elementOf("attachments", a) + ".where");
+  }
+  return tissue;
+}
+
+VolumeMesh volumeMesh(const TissueDescription& description, const std::string& source, const MeshSizeCheck& on_size,
+                      const MeshPreparation& preparation) {
   VolumeMesh made;
   const auto check = [&](const std::string& owner) {
     tellSize(made.mesh.positions, made.mesh.tetrahedra.size(), on_size);
@@ -56,7 +84,7 @@ VolumeMesh volumeMesh(const TissueDescription& description, const std::string& s
   } else {
     const auto& mesh = std::get<MeshDescription>(description.geometry);
     atEntry("mesh.file", [&] {
-      made.mesh = loadTetMesh(mesh);
+      made.mesh = loadTetMesh(mesh, preparation, namesAnyLabels(description) ? &made.labels : nullptr);
       check(source + ", mesh file '" + mesh.file + "'");
     });
     made.patch_of = patchesByFaces(made.mesh.positions, made.mesh.tetrahedra);
@@ -84,13 +112,9 @@ void setSheet(TriangleMesh mesh, double thickness, const std::string& source, co
   placed.thickness = thickness;
 }
 
-void setGeometry(const TissueDescription& description, const std::string& source, const MeshSizeCheck& on_size,
+void setMembrane(const TissueDescription& description, const std::string& source, const MeshSizeCheck& on_size,
                  PlacedMesh& placed) {
-  if (!isMembrane(description)) {
-    VolumeMesh made = volumeMesh(description, source, on_size);
-    std::vector<Triangle> surface = boundaryTriangles(made.mesh.tetrahedra);
-    setVolume(std::move(made.mesh), std::move(surface), std::move(made.patch_of), placed);
-  } else if (const auto* sheet = std::get_if<SheetDescription>(&description.geometry)) {
+  if (const auto* sheet = std::get_if<SheetDescription>(&description.geometry)) {
     atEntry("sheet", [&] { setSheet(makeSheetMesh(*sheet), sheet->thickness_m, source, on_size, placed); });
   } else {
     const auto& shell = std::get<ShellDescription>(description.geometry);
@@ -247,21 +271,34 @@ void finish(const TissueDescription& description, const Pose& X_WT, PlacedMesh& 
 
 std::string tissueLabel(const TissueDescription& description) { return "tissue '" + description.name + "'"; }
 
-PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size) {
-  checkTissue(description);
+PlacedMesh placeMesh(const TissueDescription& given, const Pose& X_WT, const MeshSizeCheck& on_size,
+                     const MeshPreparation& preparation) {
+  checkTissue(given);
+  const std::string source = tissueLabel(given);
   PlacedMesh placed;
-  setGeometry(description, tissueLabel(description), on_size, placed);
+  VolumeMesh made;
+  if (isMembrane(given)) {
+    setMembrane(given, source, on_size, placed);
+  } else {
+    made = volumeMesh(given, source, on_size, preparation);
+  }
+  const TissueDescription description = withPlaces(given, made.labels, made.mesh);
+  if (!isMembrane(given)) {
+    std::vector<Triangle> surface = boundaryTriangles(made.mesh.tetrahedra);
+    setVolume(std::move(made.mesh), std::move(surface), std::move(made.patch_of), placed);
+  }
   placed.element_places = centroids(placed.rest, placed.tetrahedra);
   placed.surface_places = centroids(placed.rest, placed.surface);
-  placed.fixed = fixedNodes(placed.rest, description.fixed, tissueLabel(description));
+  placed.fixed = fixedNodes(placed.rest, description.fixed, source);
   finish(description, X_WT, placed);
   return placed;
 }
 
-Bisection refinableMesh(const TissueDescription& description, const MeshSizeCheck& on_size) {
+RefinableMesh refinableMesh(const TissueDescription& description, const MeshSizeCheck& on_size,
+                            const MeshPreparation& preparation) {
   checkTissue(description);
-  const VolumeMesh made = volumeMesh(description, tissueLabel(description), on_size);
-  return {made.mesh, made.patch_of};
+  const VolumeMesh made = volumeMesh(description, tissueLabel(description), on_size, preparation);
+  return {withPlaces(description, made.labels, made.mesh), Bisection(made.mesh, made.patch_of)};
 }
 
 PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const BisectedMesh& mesh) {

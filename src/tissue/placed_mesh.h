@@ -35,11 +35,18 @@ struct PlacedMesh {
 };
 
 /// @throws std::invalid_argument naming the tissue: see Tissue.
-PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size);
+PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size,
+                     const MeshPreparation& preparation);
+
+struct RefinableMesh {
+  TissueDescription description;  ///< with groups and cell data as the places they are
+  Bisection bisection;
+};
 
 /// The mesh that a volume's description asks for, to be refined. A block's cells are split into six tetrahedra.
 /// @throws std::invalid_argument naming the tissue: see Tissue.
-Bisection refinableMesh(const TissueDescription& description, const MeshSizeCheck& on_size);
+RefinableMesh refinableMesh(const TissueDescription& description, const MeshSizeCheck& on_size,
+                            const MeshPreparation& preparation);
 
 /// The same as placeMesh() above with that mesh, refined.
 PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const BisectedMesh& mesh);

@@ -214,8 +214,9 @@ struct Tissue::ElasticParts {
   std::vector<NodeSpring> springs;
 };
 
-Tissue::Tissue(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size)
-    : Tissue(description, placeMesh(description, X_WT, on_size)) {}
+Tissue::Tissue(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size,
+               const MeshPreparation& preparation)
+    : Tissue(description, placeMesh(description, X_WT, on_size, preparation)) {}
 
 Tissue::Tissue(const TissueDescription& description, const Pose& X_WT, const BisectedMesh& mesh)
     : Tissue(description, placeMesh(description, X_WT, mesh)) {}

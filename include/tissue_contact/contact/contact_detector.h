@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "tissue_contact/contact/contact.h"
-#include "tissue_contact/contact/mesh_preparation.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/instrument/instrument.h"
+#include "tissue_contact/mesh/mesh_preparation.h"
 #include "tissue_contact/mesh/tissue_surface.h"
 
 namespace tissue_contact {

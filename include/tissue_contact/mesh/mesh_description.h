@@ -28,11 +28,14 @@ struct BlockDescription {
   std::array<AxisGrading, 3> grading;
 };
 
-/// A tetrahedral mesh file (.msh, .vtk). File coordinates times `scale_m_per_unit` are metres in the tissue frame T.
+/// A tetrahedral mesh file (.msh, .vtk), or a surface (.stl, .obj, .ply) to be filled with tetrahedra. File coordinates times
+/// `scale_m_per_unit` are metres in the tissue frame T.
 struct MeshDescription {
   std::string file;  ///< absolute path
   double scale_m_per_unit = 1.0;
   bool remove_unreferenced_nodes = false;  ///< drop nodes that no tetrahedron uses instead of refusing the file
+  double cell_size_m = 0.0;         ///< 0: a tetrahedral mesh; else the edge of the cells that fill the surface, m
+  double cell_size_inside_m = 0.0;  ///< of the cells deep inside; 0: the same
 };
 
 /// Generated flat sheet (membrane, cloth, strip). Tissue frame T: origin at its centre, normal along z.

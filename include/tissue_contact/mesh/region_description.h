@@ -2,7 +2,10 @@
 /// Room `mesh`: parts of space that name nodes and elements.
 #pragma once
 
+#include <memory>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "tissue_contact/core/types.h"
 
@@ -21,6 +24,18 @@ struct SphereRegion {
   Vector3 center_m = Vector3::Zero();
   double radius_m = 0.0;
 };
-using Region = std::variant<BoxRegion, PlaneRegion, SphereRegion>;
+struct GroupRegion {  ///< a physical group of a Gmsh mesh
+  std::string name;   ///< or its number, as text
+};
+struct CellDataRegion {  ///< the tetrahedra of a VTK mesh whose value in an array of cell data is this
+  std::string name;
+  double value = 0.0;
+};
+/// Either of the two once the mesh is read: points within rounding of these, m in T.
+struct MemberRegion {
+  std::string label;                                   ///< for messages
+  std::shared_ptr<const std::vector<Vector3>> places;  ///< by x, then y, then z
+};
+using Region = std::variant<BoxRegion, PlaneRegion, SphereRegion, GroupRegion, CellDataRegion, MemberRegion>;
 
 }  // namespace tissue_contact

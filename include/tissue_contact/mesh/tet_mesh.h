@@ -7,9 +7,12 @@
 
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/mesh/mesh_description.h"
+#include "tissue_contact/mesh/mesh_preparation.h"
 #include "tissue_contact/mesh/region_description.h"
 
 namespace tissue_contact {
+
+struct MeshLabels;
 
 struct TetMesh {
   NodalVectors positions;  ///< m, tissue frame T
@@ -33,13 +36,16 @@ void checkBlock(const BlockDescription& block);
 /// Of makeBlockMesh() where nothing else is said.
 constexpr int kTetrahedraPerCell = 5;
 
-/// Reads Gmsh .msh (2.x, 4.0, 4.1) or legacy VTK (1 to 5), ASCII and binary; the contents decide which, not the name.
+/// Reads a tetrahedral mesh, or fills a surface (fill/fill_surface.h) where the description has a cell_size_m. Of the former:
+/// Gmsh .msh (2.x, 4.0, 4.1) or legacy VTK (1 to 5), ASCII and binary; the contents decide which, not the name.
 /// Other elements than tetrahedra are skipped; tetrahedra of higher order are refused. Coordinates are multiplied by
 /// the scale. Node and element order is the file's; unreferenced nodes are dropped if the description says so, else
 /// kept for checkTetMesh to name. The result has finite nodes, indices in range and a tetrahedron at least: whether it
 /// is fit for elasticity, checkTetMesh tells. Memory follows the file's size (1 GiB at most).
+/// @param labels gets what a tetrahedral mesh file calls its parts (src/mesh/labels.h); null: that is not looked at.
 /// @throws std::invalid_argument naming the file, the line (ASCII) or byte (binary) and the fix.
-TetMesh loadTetMesh(const MeshDescription& description);
+TetMesh loadTetMesh(const MeshDescription& description, const MeshPreparation& preparation = {},
+                    MeshLabels* labels = nullptr);
 
 /// Refuses what the elasticity cannot use.
 /// @throws std::invalid_argument naming `source` and the 0-based index: no tetrahedra, non-finite node, node index out

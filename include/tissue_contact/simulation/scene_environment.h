@@ -5,9 +5,9 @@
 #include <functional>
 #include <string>
 
-#include "tissue_contact/contact/mesh_preparation.h"
 #include "tissue_contact/core/resolve_path.h"
 #include "tissue_contact/core/types.h"
+#include "tissue_contact/mesh/mesh_preparation.h"
 
 namespace tissue_contact {
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tissue_contact/core/types.h"
+#include "tissue_contact/mesh/mesh_preparation.h"
 #include "tissue_contact/tissue/elasticity.h"
 #include "tissue_contact/tissue/material_description.h"
 #include "tissue_contact/tissue/tissue_description.h"
@@ -33,7 +34,9 @@ class Tissue {
   /// geometry or differs between regions, a material, damping or fibre direction out of range, a fixed region that
   /// holds no node, a material region that holds no element, an attachment or pressure that would have no effect.
   /// @param on_size called once the mesh is known and before anything is built from it; may throw to refuse it.
-  Tissue(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size = nullptr);
+  /// @param preparation of a surface that is to be filled.
+  Tissue(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size = nullptr,
+         const MeshPreparation& preparation = {});
   /// The same volume with its mesh refined (src/tissue/placed_mesh.h, refinableMesh()).
   Tissue(const TissueDescription& description, const Pose& X_WT, const BisectedMesh& mesh);
 

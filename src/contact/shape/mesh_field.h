@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "contact/shape/distance_grid.h"
-#include "tissue_contact/contact/mesh_preparation.h"
+#include "tissue_contact/mesh/mesh_preparation.h"
 #include "tissue_contact/mesh/triangle_mesh.h"
 
 namespace tissue_contact {

@@ -12,10 +12,10 @@
 
 #include "contact/shape/gradient_set.h"
 #include "mesh/surface/triangle_geometry.h"
-#include "tissue_contact/contact/mesh_preparation.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/instrument/collision_shape.h"
 #include "tissue_contact/instrument/instrument_description.h"
+#include "tissue_contact/mesh/mesh_preparation.h"
 #include "tissue_contact/mesh/triangle_mesh.h"
 
 namespace tissue_contact {

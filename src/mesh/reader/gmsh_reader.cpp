@@ -1,10 +1,14 @@
 /// @file
 /// Room `mesh`: Gmsh MSH files, ASCII and binary (Gmsh reference manual, "Gmsh file formats"): sections $Nodes and
-/// $Elements in, nodes and tetrahedra out. All other sections are skipped, as the manual asks.
+/// $Elements in, nodes and tetrahedra out, and where asked physical groups ($PhysicalNames, $Entities). All other sections are
+/// skipped, as the manual asks.
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
+#include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,7 +20,11 @@ namespace {
 constexpr int kDouble = 8;       // bytes
 constexpr int kInt = 4;          // bytes
 constexpr int kCount = 8;        // bytes of `unsigned long` (4.0) and `size_t` (4.1)
-constexpr int kTetrahedron = 4;  // element type
+constexpr int kTetrahedron = 4;  // element types
+constexpr int kLine = 1;
+constexpr int kTriangle = 2;
+constexpr int kPoint = 15;
+constexpr std::size_t kMostGroups = 16;
 
 constexpr ItemSize kBlockHeader = {4, 20};  // three ints and a count
 
@@ -57,7 +65,7 @@ class NodeTags {
 
 class GmshReader {
  public:
-  explicit GmshReader(MeshFileCursor& in) : in_(in) {}
+  GmshReader(MeshFileCursor& in, bool with_labels) : in_(in), with_labels_(with_labels) {}
   MeshFileContents read();
 
  private:
@@ -70,6 +78,12 @@ class GmshReader {
   void readBinaryElements2(std::size_t count);
   void readElements4();
   void readElement(std::int64_t tag, std::int64_t type, int tag_bytes);
+  void readTags2(std::size_t count);
+  void readPhysicalNames();
+  void readEntities();
+  void readEntity(int dimension);
+  MeshLabels::Group& group(int dimension, std::int64_t number);
+  void addToGroups(const std::array<int, 4>& nodes, int dimension);
   int nodeCount(std::int64_t type, std::int64_t tag) const;
   std::size_t blockCount(std::int64_t count, std::size_t left, ItemSize item, const char* what) const;
   void readSection(const std::string& name);
@@ -86,6 +100,10 @@ class GmshReader {
   NodeTags tags_;
   bool have_nodes_ = false;
   bool have_elements_ = false;
+  bool with_labels_;
+  std::map<std::pair<int, std::int64_t>, std::size_t> group_of_;                  ///< by dimension and number
+  std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> numbers_of_;  ///< of an entity's groups
+  std::vector<std::int64_t> numbers_;                                             ///< of the groups of what is read now
 };
 
 MeshFileContents GmshReader::read() {
@@ -105,6 +123,8 @@ MeshFileContents GmshReader::read() {
 void GmshReader::readSection(const std::string& name) {
   const std::string end = "$End" + name.substr(1);
   if (name == "$ParametricNodes") in_.fail("$ParametricNodes is not read; save without Mesh.SaveParametric");
+  if (with_labels_ && name == "$PhysicalNames") readPhysicalNames();
+  if (with_labels_ && name == "$Entities" && version_ != Version::k2) readEntities();
   if (name != "$Nodes" && name != "$Elements") return in_.skipPast(end);
   bool& seen = name == "$Nodes" ? have_nodes_ : have_elements_;
   if (seen) in_.fail("a second section " + name + "; there must be one: export the mesh again");
@@ -240,10 +260,17 @@ void GmshReader::readElements2() {
     const std::int64_t tag = in_.integer(kInt, "an element tag");
     const std::int64_t type = in_.integer(kInt, "an element type");
     const std::int64_t stated_tags = in_.integer(kInt, "the number of an element's tags");
-    for (std::size_t t = in_.checkedCount(stated_tags, {1, kInt}, "an element's tags"); t > 0; --t) {
-      in_.integer(kInt, "an element's tag");
-    }
+    readTags2(in_.checkedCount(stated_tags, {1, kInt}, "an element's tags"));
     readElement(tag, type, kInt);
+  }
+}
+
+/// The first is the physical group, 0: none.
+void GmshReader::readTags2(std::size_t count) {
+  numbers_.clear();
+  for (std::size_t t = 0; t < count; ++t) {
+    const std::int64_t tag = in_.integer(kInt, "an element's tag");
+    if (t == 0 && tag != 0) numbers_.push_back(tag);
   }
 }
 
@@ -257,7 +284,7 @@ void GmshReader::readBinaryElements2(std::size_t count) {
     const std::size_t tags = in_.checkedCount(stated_tags, {1, kInt}, "an element's tags");
     for (std::size_t i = 0; i < block; ++i) {
       const std::int64_t tag = in_.integer(kInt, "an element tag");
-      for (std::size_t t = 0; t < tags; ++t) in_.integer(kInt, "an element's tag");
+      readTags2(tags);
       readElement(tag, type, kInt);
     }
     count -= block;
@@ -273,8 +300,11 @@ void GmshReader::readElements4() {
     in_.integer(kCount, "the largest element tag");
   }
   for (std::size_t b = in_.checkedCount(blocks, kBlockHeader, "entity blocks"); b > 0; --b) {
-    in_.integer(kInt, "an entity");
-    in_.integer(kInt, "an entity");
+    const std::int64_t first = in_.integer(kInt, "an entity");
+    const std::int64_t second = in_.integer(kInt, "an entity");
+    const auto entity = version_ == Version::k41 ? std::make_pair(first, second) : std::make_pair(second, first);
+    const auto known = numbers_of_.find({static_cast<int>(entity.first), entity.second});
+    numbers_ = known == numbers_of_.end() ? std::vector<std::int64_t>() : known->second;
     const std::int64_t type = in_.integer(kInt, "an element type");
     const std::size_t count =
         blockCount(in_.integer(kCount, "the number of elements of a block"), left, elementSize(), "elements");
@@ -307,7 +337,13 @@ int GmshReader::nodeCount(std::int64_t type, std::int64_t tag) const {
 void GmshReader::readElement(std::int64_t tag, std::int64_t type, int tag_bytes) {
   const int count = nodeCount(type, tag);
   if (type != kTetrahedron) {
-    for (int i = 0; i < count; ++i) in_.integer(tag_bytes, "a node tag of an element");
+    const bool is_kept = with_labels_ && (type == kPoint || type == kLine || type == kTriangle);
+    std::array<int, 4> nodes = {-1, -1, -1, -1};
+    for (int i = 0; i < count; ++i) {
+      const std::int64_t node_tag = in_.integer(tag_bytes, "a node tag of an element");
+      if (is_kept) nodes[static_cast<std::size_t>(i)] = tags_.find(node_tag);
+    }
+    if (is_kept) addToGroups(nodes, count - 1);
     ++contents_.other_elements;
     return;
   }
@@ -321,10 +357,69 @@ void GmshReader::readElement(std::int64_t tag, std::int64_t type, int tag_bytes)
     }
   }
   contents_.tetrahedra.push_back(tet);
+  if (with_labels_) addToGroups(tet, 3);
+}
+
+MeshLabels::Group& GmshReader::group(int dimension, std::int64_t number) {
+  const auto [found, is_new] = group_of_.emplace(std::make_pair(dimension, number), contents_.groups.size());
+  if (is_new) contents_.groups.push_back({dimension, number, "", {}});
+  return contents_.groups[found->second];
+}
+
+void GmshReader::addToGroups(const std::array<int, 4>& nodes, int dimension) {
+  for (const std::int64_t number : numbers_) group(dimension, number).elements.push_back(nodes);
+}
+
+void GmshReader::readPhysicalNames() {
+  const std::int64_t stated = in_.textInteger("the number of physical names");
+  for (std::size_t i = in_.checkedCount(stated, {3, 6}, "physical names"); i > 0; --i) {
+    const std::int64_t dimension = in_.textInteger("the dimension of a physical group");
+    const std::int64_t number = in_.textInteger("the number of a physical group");
+    const std::string_view rest = in_.line();
+    const std::size_t from = rest.find('"');
+    const std::size_t to = rest.rfind('"');
+    if (dimension < 0 || dimension > 3 || from == std::string_view::npos || to == from) {
+      in_.fail(
+          "a physical group must be its dimension, 0 to 3, its number and its name in quotes; export the mesh again");
+    }
+    group(static_cast<int>(dimension), number).name = std::string(rest.substr(from + 1, to - from - 1));
+  }
+}
+
+/// Of MSH 4: which entities belong to which physical groups.
+void GmshReader::readEntities() {
+  in_.endLine();
+  std::array<std::size_t, 4> counts{};
+  for (std::size_t& count : counts) {
+    count = in_.checkedCount(in_.integer(kCount, "a number of entities"), {5, 32}, "entities");
+  }
+  for (int dimension = 0; dimension < 4; ++dimension) {
+    for (std::size_t i = 0; i < counts[static_cast<std::size_t>(dimension)]; ++i) readEntity(dimension);
+  }
+}
+
+void GmshReader::readEntity(int dimension) {
+  const std::int64_t tag = in_.integer(kInt, "an entity");
+  const int corners = dimension == 0 && version_ == Version::k41 ? 3 : 6;
+  for (int i = 0; i < corners; ++i) in_.real(kDouble, "a coordinate of an entity");
+  const std::int64_t stated = in_.integer(kCount, "the number of an entity's physical groups");
+  const std::size_t count = in_.checkedCount(stated, {1, kInt}, "physical groups");
+  // Each element of the entity is noted for each of them.
+  if (count > kMostGroups) {
+    in_.fail("an entity belongs to " + std::to_string(count) + " physical groups; at most " +
+             std::to_string(kMostGroups) + " are read: use fewer");
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    // Gmsh writes the number of a group that is oriented the other way with a minus.
+    numbers_of_[{dimension, tag}].push_back(std::abs(in_.integer(kInt, "a physical group")));
+  }
+  if (dimension == 0) return;
+  const std::int64_t bounding = in_.integer(kCount, "the number of an entity's boundaries");
+  for (std::size_t i = in_.checkedCount(bounding, {1, kInt}, "boundaries"); i > 0; --i) in_.integer(kInt, "a boundary");
 }
 
 }  // namespace
 
-MeshFileContents readGmsh(MeshFileCursor& in) { return GmshReader(in).read(); }
+MeshFileContents readGmsh(MeshFileCursor& in, bool with_labels) { return GmshReader(in, with_labels).read(); }
 
 }  // namespace tissue_contact

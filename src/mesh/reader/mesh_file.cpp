@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "mesh/fill/fill_surface.h"
 #include "mesh/nodes.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/read_file.h"
@@ -25,15 +26,15 @@ namespace {
 // times as large.
 constexpr std::uintmax_t kMaximumFileBytes = std::uintmax_t{256} << 20U;
 
-MeshFileContents readContents(const std::string& file) {
+MeshFileContents readContents(const std::string& file, bool with_labels) {
   std::string bytes = readFile(file, "mesh file", kMaximumFileBytes);
   const bool gmsh = !bytes.empty() && bytes[0] == '$';
   const bool vtk = bytes.rfind("# vtk ", 0) == 0;
   const bool xml = !bytes.empty() && bytes[0] == '<';
   const std::string start = quoted(std::string_view(bytes).substr(0, bytes.find_first_of("\r\n")));
   MeshFileCursor in(file, std::move(bytes));
-  if (gmsh) return readGmsh(in);
-  if (vtk) return readVtk(in);
+  if (gmsh) return readGmsh(in, with_labels);
+  if (vtk) return readVtk(in, with_labels);
   if (in.atEnd()) in.fail("the file is empty; it must hold a Gmsh .msh or a legacy VTK mesh");
   in.fail("the file starts with " + start +
           ", which is neither Gmsh .msh ('$MeshFormat') nor legacy VTK ('# vtk DataFile Version')" +
@@ -65,9 +66,10 @@ Vector3 readNode(MeshFileCursor& in, int bytes, std::size_t index) {
   return node;
 }
 
-TetMesh loadTetMesh(const MeshDescription& description) {
+TetMesh loadTetMesh(const MeshDescription& description, const MeshPreparation& preparation, MeshLabels* labels) {
+  if (description.cell_size_m != 0.0) return fillSurface(description, preparation);
   requirePositive("scale_m_per_unit of mesh file '" + description.file + "'", description.scale_m_per_unit, "m");
-  MeshFileContents contents = readContents(description.file);
+  MeshFileContents contents = readContents(description.file, labels != nullptr);
   if (contents.tetrahedra.empty()) {
     throw std::invalid_argument("mesh file '" + description.file + "' holds no tetrahedra (" +
                                 std::to_string(contents.nodes.size()) + " nodes, " +
@@ -75,6 +77,10 @@ TetMesh loadTetMesh(const MeshDescription& description) {
                                 " elements of other kinds); mesh its volume, for instance with gmsh -3");
   }
   TetMesh mesh{columnsOf(contents.nodes), std::move(contents.tetrahedra)};
+  if (labels != nullptr) {
+    *labels = {mesh.positions * description.scale_m_per_unit, std::move(contents.groups),
+               std::move(contents.cell_data)};
+  }
   if (description.remove_unreferenced_nodes) dropUnusedNodes(mesh.positions, mesh.tetrahedra);
   scale(description, mesh.positions);
   return mesh;

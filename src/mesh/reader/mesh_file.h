@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "mesh/labels.h"
 #include "mesh/reader/mesh_file_cursor.h"
 #include "tissue_contact/core/types.h"
 
@@ -14,16 +15,18 @@ namespace tissue_contact {
 struct MeshFileContents {
   std::vector<Vector3> nodes;
   std::vector<Tetrahedron> tetrahedra;
-  std::size_t other_elements = 0;  ///< elements skipped because they are no tetrahedra
+  std::size_t other_elements = 0;         ///< elements skipped because they are no tetrahedra
+  std::vector<MeshLabels::Group> groups;  ///< none unless asked for
+  std::vector<MeshLabels::CellData> cell_data;
 };
 
 /// Gmsh MSH 2.x, 4.0 and 4.1, ASCII and binary of either byte order; `in` at its start.
 /// @throws std::invalid_argument.
-MeshFileContents readGmsh(MeshFileCursor& in);
+MeshFileContents readGmsh(MeshFileCursor& in, bool with_labels);
 
 /// Legacy VTK 1 to 5, ASCII and binary, data set UNSTRUCTURED_GRID; `in` at its start.
 /// @throws std::invalid_argument.
-MeshFileContents readVtk(MeshFileCursor& in);
+MeshFileContents readVtk(MeshFileCursor& in, bool with_labels);
 
 /// Reads three coordinates (`bytes` each if binary) of node `index`.
 /// @throws std::invalid_argument if one is not finite.

@@ -1,12 +1,13 @@
 /// @file
 /// Room `mesh`: legacy VTK files (VTK file formats, "Simple legacy formats"): an UNSTRUCTURED_GRID in, nodes and
 /// tetrahedra out. Up to version 4 a cell is its size and its points; from 5 on, offsets and points are two arrays.
-/// Reading stops behind CELL_TYPES: the point and cell data that may follow are of no use here.
+/// Reading stops behind CELL_TYPES, unless cell data are asked for.
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mesh/reader/mesh_file.h"
@@ -51,7 +52,7 @@ struct Cell {
 
 class VtkReader {
  public:
-  explicit VtkReader(MeshFileCursor& in) : in_(in) {}
+  VtkReader(MeshFileCursor& in, bool with_labels) : in_(in), with_labels_(with_labels) {}
   MeshFileContents read();
 
  private:
@@ -64,6 +65,13 @@ class VtkReader {
   void skipMetadata();
   void skipField();
   void skipFieldArray();
+  std::string fieldArrayName();
+  void readAttributes();
+  void readAttribute(const std::string& keyword);
+  void readScalars();
+  void readFieldArray();
+  void readValues(const std::string& name, std::size_t components, std::size_t tuples, const ValueType& type);
+  ValueType readAnyType(const std::string& name);
   ValueType readType(bool real, const char* what);
   IntegerArray readIntegers(std::size_t count, int bytes, const char* what);
   IntegerArray readNamedIntegers(const char* name, std::size_t count);
@@ -80,6 +88,10 @@ class VtkReader {
   bool have_points_ = false;
   bool have_cells_ = false;
   bool have_types_ = false;
+  bool with_labels_;
+  std::vector<std::size_t> tetrahedra_;  ///< which cells they are
+  std::size_t tuples_ = 0;               ///< of the attributes read now
+  bool of_cells_ = false;                ///< they are cell data
 };
 
 void VtkReader::failAt(const IntegerArray& array, std::size_t index, const std::string& message) {
@@ -91,6 +103,7 @@ void VtkReader::failAt(const IntegerArray& array, std::size_t index, const std::
 MeshFileContents VtkReader::read() {
   readHeader();
   while (!have_types_) readBlock(upperCase(in_.word("POINTS, CELLS or CELL_TYPES")));
+  if (with_labels_) readAttributes();
   return std::move(contents_);
 }
 
@@ -261,6 +274,7 @@ void VtkReader::readCellTypes() {
     }
     if (type == kTetra) {
       contents_.tetrahedra.push_back(tetrahedron(i));
+      tetrahedra_.push_back(i);
     } else {
       ++contents_.other_elements;
     }
@@ -297,24 +311,113 @@ void VtkReader::skipField() {
   for (std::size_t i = 0; i < arrays; ++i) skipFieldArray();
 }
 
-void VtkReader::skipFieldArray() {
+std::string VtkReader::fieldArrayName() {
   std::string name(in_.word("the name of a field array"));
   if (upperCase(name) == "METADATA") {  // of the array before
     skipMetadata();
     name = in_.word("the name of a field array");
   }
-  const auto components = static_cast<std::size_t>(readTotal("components of a field array", {1, 1}));
-  const auto tuples = static_cast<std::size_t>(readTotal("tuples of a field array", {1, 1}));
-  const std::string type_name = upperCase(in_.word("the type of a field array"));
+  return name;
+}
+
+ValueType VtkReader::readAnyType(const std::string& name) {
+  const std::string type_name = upperCase(in_.word("the type of an array"));
   const auto* type = std::find_if(std::begin(kValueTypes), std::end(kValueTypes),
                                   [&](const ValueType& known) { return type_name == known.name; });
   if (type == std::end(kValueTypes)) {
-    in_.fail("field array " + quoted(name) + " has the type " + quoted(type_name) +
-             ", which is not read; export the file without field data");
+    in_.fail("the array " + quoted(name) + " has the type " + quoted(type_name) +
+             ", which is not read; export the file without field data of this kind");
   }
+  return *type;
+}
+
+/// Point data and cell data, to the end of the file.
+void VtkReader::readAttributes() {
+  while (!in_.atEnd()) {
+    const std::string keyword = upperCase(in_.word("CELL_DATA or POINT_DATA"));
+    if (keyword == "CELL_DATA" || keyword == "POINT_DATA") {
+      of_cells_ = keyword == "CELL_DATA";
+      tuples_ = of_cells_ ? cells_.size() : contents_.nodes.size();
+      const std::int64_t stated = in_.textInteger(keyword.c_str());
+      if (stated >= 0 && static_cast<std::uint64_t>(stated) == tuples_) continue;
+      in_.fail(keyword + " is for " + std::to_string(stated) + ", but there are " + std::to_string(tuples_) +
+               "; export the file again");
+    }
+    readAttribute(keyword);
+  }
+}
+
+void VtkReader::readAttribute(const std::string& keyword) {
+  if (keyword == "METADATA") return skipMetadata();
+  if (keyword == "SCALARS") return readScalars();
+  if (keyword == "FIELD") {
+    in_.word("the name of the field");
+    for (std::int64_t left = readTotal("field arrays", {4, 8}); left > 0; --left) readFieldArray();
+    return;
+  }
+  const bool is_vector = keyword == "VECTORS" || keyword == "NORMALS";
+  if (!is_vector && keyword != "TENSORS") {
+    in_.fail("data of the kind " + quoted(keyword) +
+             " are not read (SCALARS, FIELD, VECTORS, NORMALS and TENSORS are); export the file without them");
+  }
+  const std::string name(in_.word("the name of the data"));
+  const ValueType type = readAnyType(name);
+  readValues(name, is_vector ? 3 : 9, tuples_, type);
+}
+
+/// SCALARS name type [components]; LOOKUP_TABLE name; values.
+void VtkReader::readScalars() {
+  const std::string name(in_.word("the name of the scalars"));
+  const ValueType type = readAnyType(name);
+  const std::string_view rest = in_.line();
+  const std::size_t digit = rest.find_first_not_of(" \t\r");
+  std::size_t components = 1;
+  if (digit != std::string_view::npos) {
+    if (rest[digit] < '1' || rest[digit] > '4') in_.fail("scalars have 1 to 4 components; export the file again");
+    components = static_cast<std::size_t>(rest[digit] - '0');
+  }
+  if (upperCase(in_.word("LOOKUP_TABLE")) != "LOOKUP_TABLE") {
+    in_.fail("the scalars " + quoted(name) + " must be followed by LOOKUP_TABLE; export the file again");
+  }
+  in_.word("the name of the lookup table");
+  readValues(name, components, tuples_, type);
+}
+
+void VtkReader::readFieldArray() {
+  const std::string name = fieldArrayName();
+  const auto components = static_cast<std::size_t>(readTotal("components of a field array", {1, 1}));
+  const auto tuples = static_cast<std::size_t>(readTotal("tuples of a field array", {1, 1}));
+  const ValueType type = readAnyType(name);
+  readValues(name, components, tuples, type);
+}
+
+/// Keeps those of cells that are one number each, of the tetrahedra.
+void VtkReader::readValues(const std::string& name, std::size_t components, std::size_t tuples, const ValueType& type) {
+  // Both factors are below the file's size (2^30), so that their product cannot overflow.
+  const auto stated = static_cast<std::int64_t>(components * tuples);
+  const std::size_t count = in_.checkedCount(stated, {1, static_cast<std::size_t>(type.bytes)}, "values of an array");
+  in_.endLine();
+  const bool is_kept = of_cells_ && components == 1 && tuples == cells_.size();
+  MeshLabels::CellData data{name, {}};
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double value = type.real ? in_.real(type.bytes, "a value of an array")
+                                   : static_cast<double>(in_.integer(type.bytes, "a value of an array"));
+    if (!is_kept || next == tetrahedra_.size() || tetrahedra_[next] != i) continue;
+    data.values.push_back(value);
+    ++next;
+  }
+  if (is_kept) contents_.cell_data.push_back(std::move(data));
+}
+
+void VtkReader::skipFieldArray() {
+  const std::string name = fieldArrayName();
+  const auto components = static_cast<std::size_t>(readTotal("components of a field array", {1, 1}));
+  const auto tuples = static_cast<std::size_t>(readTotal("tuples of a field array", {1, 1}));
+  const ValueType type = readAnyType(name);
   // Both factors are below the file's size (2^30), so that their product cannot overflow.
   const auto values = static_cast<std::int64_t>(components * tuples);
-  const auto bytes = static_cast<std::size_t>(type->bytes);
+  const auto bytes = static_cast<std::size_t>(type.bytes);
   const std::size_t count = in_.checkedCount(values, {1, bytes}, "values of a field array");
   in_.endLine();
   if (binary_) return in_.skipBytes(count * bytes);
@@ -323,6 +426,6 @@ void VtkReader::skipFieldArray() {
 
 }  // namespace
 
-MeshFileContents readVtk(MeshFileCursor& in) { return VtkReader(in).read(); }
+MeshFileContents readVtk(MeshFileCursor& in, bool with_labels) { return VtkReader(in, with_labels).read(); }
 
 }  // namespace tissue_contact

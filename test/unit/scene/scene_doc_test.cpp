@@ -50,11 +50,12 @@ TEST(SceneDocument, HasExactlyTheKeysOfTheLoader) {
 
 TEST_F(SceneTest, ExampleOfTheDocumentLoadsAndUsesEveryKey) {
   for (const char* directory : {"meshes", "urdf"}) std::filesystem::create_directory(path(directory));
-  for (const char* file : {"meshes/liver.vtk", "meshes/cover.stl", "meshes/gut.obj", "urdf/psm_classic.urdf"})
+  for (const char* file : {"meshes/liver.vtk", "meshes/kidney.stl", "meshes/phantom.vtk", "meshes/cover.stl",
+                           "meshes/gut.obj", "urdf/psm_classic.urdf"})
     write(file, "x");
   const std::string yaml = example();
   const Scene scene = parse(yaml);
-  EXPECT_EQ(scene.tissues.size(), 4U);
+  EXPECT_EQ(scene.tissues.size(), 6U);
   EXPECT_EQ(scene.instruments.size(), 2U);
   for (const auto& [path, keys] : sceneKeys()) {
     for (const std::string& key : keys) EXPECT_NE(yaml.find(key + ":"), std::string::npos) << path << "." << key;

@@ -1,5 +1,5 @@
 /// @file
-/// Room `contact`: how mesh shapes are prepared at start-up, and where progress of that is told.
+/// Room `mesh`: how meshes are prepared at start-up (surfaces filled, tool shapes sampled), and where progress of that is told.
 #pragma once
 
 #include <functional>

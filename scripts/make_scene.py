@@ -1,0 +1,177 @@
+#!/usr/bin/python3
+"""Makes a scene of an organ from its surface: a probe presses the highest point and drags over it.
+
+Writes a folder with
+  scene.yaml  the organ, filled with tetrahedra when the scene is first run, held at its lowest part; every choice explained
+  probe.bag   joint states of urdf/probe.urdf: press, drag, lift
+and prints the command that turns both into forces. Edit the scene, or record your own robot over it.
+"""
+import argparse
+import math
+import os
+import re
+import sys
+
+import numpy
+
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
+from make_joint_bag import write
+from read_surface import SurfaceError, read_surface
+from whole_file import whole_file
+
+TOPIC = "/probe/joint_states"
+BALL_M = 0.005  # radius of the probe's ball, urdf/probe.urdf
+CLEARANCE_M = 0.005
+SPEED_M_PER_S = 0.02
+HOLD_S = 0.2
+HELD = 0.15  # of the height
+LONGEST_M, SHORTEST_M = 2.0, 0.002  # of an organ
+
+SCENE = """\
+# {name} from {file}, by make_scene.py. Keys and units: doc/scene.md.
+world_frame: world
+
+tissues:
+  - name: {name}
+    mesh:
+      file: {file}
+      scale_m_per_unit: {scale:g}  # it then is {size[0]:.3g} x {size[1]:.3g} x {size[2]:.3g} m
+      cell_size_m: {cell:.3g}  # edge of the tetrahedra: half of it has eight times as many
+    refinement: {{cell_m: {fine:.3g}}}  # and fine ones where the probe is, a third of its ball's radius at most
+    material: {{preset: {material}, model: neo_hookean}}  # doc/organ.md; or youngs_modulus_pa, poissons_ratio, density_kg_per_m3
+    fixed:
+      - plane: {{point_m: [0, 0, {held:.4f}], normal: [0, 0, 1]}}  # the lowest {part:.0f} % of its height
+
+instruments:
+  - name: probe
+    urdf: package://tissue_contact/urdf/probe.urdf
+    base_pose:
+      position_m: [{start[0]:.5f}, {start[1]:.5f}, {start[2]:.5f}]  # the ball {clearance:g} mm above the highest point
+    joint_state_topics: [{topic}]
+    tip_link: tip
+    contact_links: [tip]
+
+friction:  # wet tissue on metal: our choice, to be measured
+  - {{instrument: probe, tissue: {name}, static: 0.3, kinetic: 0.2}}
+
+step:
+  max_step_s: 0.002  # one for each joint state of the recording,
+  joint_states: every_state  # also where the computer is slower than it
+
+publish:
+  tf: true
+"""
+
+
+def fail(message):
+    sys.exit("make_scene.py: " + message)
+
+
+def height_over(corners, x, y):
+    """Of the uppermost triangle over (x, y); NaN where there is none."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        v = ((x - a[:, 0]) * (c[:, 1] - a[:, 1]) - (y - a[:, 1]) * (c[:, 0] - a[:, 0])) / area
+        w = ((b[:, 0] - a[:, 0]) * (y - a[:, 1]) - (b[:, 1] - a[:, 1]) * (x - a[:, 0])) / area
+        hit = (v >= -1e-9) & (w >= -1e-9) & (v + w <= 1.0 + 1e-9)
+        heights = (a[:, 2] + v * (b[:, 2] - a[:, 2]) + w * (c[:, 2] - a[:, 2]))[hit]
+    return heights.max() if len(heights) else math.nan
+
+
+def drag_path(corners, depth_m, length_m):
+    """Positions of the ball's centre (m): above the highest point, pressed in, dragged towards the organ's middle, lifted."""
+    vertices = corners.reshape(-1, 3)
+    top = vertices[vertices[:, 2].argmax()]
+    way = vertices.mean(axis=0)[:2] - top[:2]
+    way = way / numpy.linalg.norm(way) if numpy.linalg.norm(way) > 1e-9 else numpy.array([1.0, 0.0])
+    over = numpy.array([top[0], top[1], top[2] + BALL_M + CLEARANCE_M])
+    path = [over]
+    for along in numpy.linspace(0.0, length_m, 21):
+        x, y = top[:2] + along * way
+        height = height_over(corners, x, y)
+        if math.isnan(height):
+            break
+        path.append(numpy.array([x, y, height + BALL_M - depth_m]))
+    if len(path) < 2:
+        path.append(numpy.array([top[0], top[1], top[2] + BALL_M - depth_m]))
+    path.append(numpy.array([path[-1][0], path[-1][1], over[2]]))
+    return path
+
+
+def timed(path):
+    """[(time (s), position relative to the first)]: at one speed, holding still at the start, pressed, before the lift, at the end."""
+    rows = [(0.0, path[0] - path[0]), (HOLD_S, path[0] - path[0])]
+    for i, (before, after) in enumerate(zip(path, path[1:])):
+        rows.append((rows[-1][0] + max(numpy.linalg.norm(after - before) / SPEED_M_PER_S, 1e-3), after - path[0]))
+        if i in (0, len(path) - 3, len(path) - 2):
+            rows.append((rows[-1][0] + HOLD_S, after - path[0]))
+    return rows
+
+
+def position_at(rows, time):
+    times = [row[0] for row in rows]
+    return [float(numpy.interp(time, times, [row[1][axis] for row in rows])) for axis in range(3)]
+
+
+def require_organ_size(size, scale):
+    advice = "give --scale, metres per unit of the file: 0.001 for millimetres, 1 for metres"
+    if not size.max() <= LONGEST_M:
+        fail("with --scale %g it is %.3g m long, longer than %g m; %s" % (scale, size.max(), LONGEST_M, advice))
+    if not size.max() >= SHORTEST_M:
+        fail("with --scale %g it is %.3g m long, shorter than %g m; %s" % (scale, size.max(), SHORTEST_M, advice))
+
+
+def parse_arguments():
+    def positive(text):
+        value = float(text)
+        if not (math.isfinite(value) and value > 0.0):
+            raise argparse.ArgumentTypeError("%s is not above 0" % text)
+        return value
+
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("surface", help="closed surface: .stl, .obj or .ply")
+    parser.add_argument("--out", required=True, help="folder for the scene and the recording; made if it does not exist")
+    parser.add_argument("--scale", type=positive, default=1.0, help="metres per unit of the file, default: %(default)s")
+    parser.add_argument("--cell-size", type=positive, help="edge of the tetrahedra, m; default: a 25th of the longest side")
+    parser.add_argument("--material", default="liver", help="a name of doc/organ.md, default: %(default)s")
+    parser.add_argument("--depth", type=positive, help="how far the ball presses, m; default: 5 mm, a tenth of the height at most")
+    return parser.parse_args()
+
+
+def main():
+    arguments = parse_arguments()
+    if not re.fullmatch("[a-z][a-z0-9_]*", arguments.material):
+        fail("--material %r is no name of a material; names: doc/organ.md" % arguments.material)
+    try:
+        corners = read_surface(arguments.surface) * arguments.scale
+    except SurfaceError as error:
+        fail(str(error))
+    low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
+    size = high - low
+    require_organ_size(size, arguments.scale)
+    cell = arguments.cell_size or size.max() / 25.0
+    depth = arguments.depth or min(0.005, 0.1 * size[2])
+    path = drag_path(corners, depth, min(0.02, 0.2 * size[:2].max()))
+    rows = timed(path)
+
+    name = re.sub("[^a-z0-9_]", "_", os.path.splitext(os.path.basename(arguments.surface))[0].lower())
+    folder = os.path.abspath(arguments.out)
+    scene, bag = os.path.join(folder, "scene.yaml"), os.path.join(folder, "probe.bag")
+    text = SCENE.format(name=name if name[0].isalpha() else "organ_" + name, file=os.path.abspath(arguments.surface),
+                        scale=arguments.scale, size=size, cell=cell, fine=min(0.3 * BALL_M, 0.5 * cell), material=arguments.material, held=low[2] + HELD * size[2], part=100 * HELD, start=path[0],
+                        clearance=1e3 * CLEARANCE_M, topic=TOPIC)
+    try:
+        os.makedirs(folder, exist_ok=True)
+        with whole_file(scene, [arguments.surface]) as part, open(part, "w", encoding="utf-8") as stream:
+            stream.write(text)
+    except OSError as error:
+        fail("cannot write %s: %s" % (scene, error.strerror))
+    print("%s: the %s, pressed %.1f mm" % (scene, name, 1e3 * depth))
+    write(bag, TOPIC, ["x", "y", "z"], lambda time: position_at(rows, time), rows[-1][0], [arguments.surface])
+    print("forces, with plots:\n  rosrun tissue_contact run_launch.py play_bag.launch scene:=%s bag:=%s output:=%s rate:=0.25" %
+          (scene, bag, os.path.join(folder, "plots")))
+
+
+if __name__ == "__main__":
+    main()

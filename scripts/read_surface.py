@@ -1,0 +1,125 @@
+"""Reads the triangles of a surface file: STL, OBJ, PLY. For the scripts beside this file; the simulator has its own reader."""
+import os
+import struct
+
+import numpy
+
+MOST_BYTES = 64 << 20  # as the simulator reads
+PLY_TYPES = {"char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
+             "uint16": "u2", "int": "i4", "int32": "i4", "uint": "u4", "uint32": "u4", "float": "f4", "float32": "f4",
+             "double": "f8", "float64": "f8"}
+
+
+class SurfaceError(Exception):
+    """Says which file and why."""
+
+
+def read_surface(path):
+    """Corners of the triangles, n x 3 x 3, in the file's unit."""
+    readers = {".stl": read_stl, ".obj": read_obj, ".ply": read_ply}
+    reader = readers.get(os.path.splitext(path)[1].lower())
+    if reader is None:
+        raise SurfaceError("%s has none of the endings %s" % (path, ", ".join(readers)))
+    try:
+        if not os.path.isfile(path):
+            raise SurfaceError("%s is no file" % path)
+        if os.path.getsize(path) > MOST_BYTES:
+            raise SurfaceError("%s has more than %d bytes" % (path, MOST_BYTES))
+        with open(path, "rb") as stream:
+            data = stream.read()
+    except OSError as error:
+        raise SurfaceError("%s cannot be read: %s" % (path, error.strerror)) from error
+    if data.startswith(b"version https://git-lfs"):
+        raise SurfaceError("%s is a git-lfs pointer, not the data itself; fetch it with: git lfs pull" % path)
+    try:
+        corners = reader(data)
+    except (ValueError, IndexError, KeyError, struct.error, UnicodeDecodeError) as error:
+        raise SurfaceError("%s is damaged or no surface: %s" % (path, error)) from error
+    if not len(corners) or not numpy.isfinite(corners).all():
+        raise SurfaceError("%s has %s" % (path, "coordinates that are not finite" if len(corners) else "no triangles"))
+    return corners
+
+
+def read_stl(data):
+    count = struct.unpack("<I", data[80:84])[0] if len(data) >= 84 else -1
+    if len(data) == 84 + 50 * count:
+        return numpy.frombuffer(data, dtype="(3,)<f4, (3, 3)<f4, <u2", offset=84)["f1"].astype(float)
+    words = [line.split() for line in data.decode("ascii").splitlines()]
+    corners = numpy.array([word[1:4] for word in words if word and word[0] == "vertex"], dtype=float)
+    return corners.reshape(-1, 3, 3)
+
+
+def fan(face):
+    """Triangles of a polygon."""
+    return [(face[0], face[i], face[i + 1]) for i in range(1, len(face) - 1)]
+
+
+def picked(vertices, triangles):
+    triangles = numpy.array(triangles, dtype=int).reshape(-1, 3)
+    if len(triangles) and not 0 <= triangles.min() <= triangles.max() < len(vertices):
+        raise ValueError("a face names a vertex that is not there")
+    return numpy.array(vertices, dtype=float).reshape(-1, 3)[triangles]
+
+
+def read_obj(data):
+    vertices, triangles = [], []
+    for line in data.decode("utf-8").splitlines():
+        word = line.split()
+        if word and word[0] == "v":
+            vertices.append([float(text) for text in word[1:4]])
+        elif word and word[0] == "f":
+            face = [int(text.split("/")[0]) for text in word[1:]]
+            triangles += fan([i - 1 if i > 0 else len(vertices) + i for i in face])
+    return picked(vertices, triangles)
+
+
+class PlyNumbers:
+    """The numbers behind the header, one after the other, text or bytes."""
+
+    def __init__(self, data, form):
+        self._words = iter(data.split()) if form == "ascii" else None
+        self._data, self._at = data, 0
+        self._order = ">" if form == "binary_big_endian" else "<"
+
+    def next(self, kind):
+        if self._words is not None:
+            word = next(self._words, None)
+            if word is None:
+                raise ValueError("it ends early")
+            return float(word)
+        kind = numpy.dtype(self._order + kind)
+        if self._at + kind.itemsize > len(self._data):
+            raise ValueError("it ends early")
+        value = numpy.frombuffer(self._data, kind, 1, self._at)[0]
+        self._at += kind.itemsize
+        return float(value)
+
+
+def read_ply(data):
+    end = data.index(b"end_header")
+    header = [line.split() for line in data[:end].decode("ascii").splitlines()]
+    if header[0] != ["ply"]:
+        raise ValueError("its first line is not 'ply'")
+    form = next(words[1] for words in header if words and words[0] == "format")
+    numbers = PlyNumbers(data[data.index(b"\n", end) + 1:], form)
+    elements = []
+    for words in header:
+        if words and words[0] == "element":
+            elements.append((words[1], int(words[2]), []))
+        elif words and words[0] == "property":
+            elements[-1][2].append(words[1:])
+    vertices, triangles = [], []
+    for element, count, properties in elements:
+        for _ in range(count):
+            row = {}
+            for kind in properties:
+                if kind[0] == "list":
+                    length = int(numbers.next(PLY_TYPES[kind[1]]))
+                    row[kind[3]] = [int(numbers.next(PLY_TYPES[kind[2]])) for _ in range(length)]
+                else:
+                    row[kind[1]] = numbers.next(PLY_TYPES[kind[0]])
+            if element == "vertex":
+                vertices.append([row["x"], row["y"], row["z"]])
+            elif element == "face":
+                triangles += fan(row.get("vertex_indices", row.get("vertex_index", [])))
+    return picked(vertices, triangles)

@@ -1,0 +1,290 @@
+#include "mesh/fill/closed_surface.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "mesh/edge_table.h"
+#include "mesh/fill/crossing_triangles.h"
+#include "mesh/nodes.h"
+#include "mesh/reader/mesh_cleanup.h"
+#include "mesh/surface/winding_tree.h"
+
+namespace tissue_contact {
+namespace {
+
+constexpr double kLargestHole =
+    3.0;  // cells across: what a fan of triangles spans without changing what cells can resolve
+constexpr double kLeastPart = 2.0;  // cells across: smaller ones hold no tetrahedron worth having
+
+std::string placeText(const Vector3& p) {
+  std::ostringstream text;
+  text.precision(3);
+  text << "(" << p.transpose() << ") m";
+  return text.str();
+}
+
+std::string millimetres(double length_m) {
+  std::ostringstream text;
+  text.precision(2);
+  text << 1e3 * length_m << " mm";
+  return text.str();
+}
+
+std::string counted(std::size_t count, const std::string& thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
+void dropDuplicates(TriangleMesh& mesh, std::vector<std::string>& notes) {
+  std::set<Triangle> seen;
+  const auto is_seen = [&](Triangle t) {
+    std::sort(t.begin(), t.end());
+    return !seen.insert(t).second;
+  };
+  const std::size_t before = mesh.triangles.size();
+  mesh.triangles.erase(std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), is_seen), mesh.triangles.end());
+  const std::size_t dropped = before - mesh.triangles.size();
+  if (dropped > 0) notes.push_back("dropped " + counted(dropped, "triangle") + " that stood there twice");
+}
+
+/// Per vertex the smallest of its part's vertices; parts are what edges connect.
+std::vector<int> partsOf(const TriangleMesh& mesh) {
+  std::vector<int> root(static_cast<std::size_t>(mesh.vertices.cols()));
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int v) {
+    while (root[v] != v) v = root[v] = root[root[v]];
+    return v;
+  };
+  for (const Triangle& t : mesh.triangles) {
+    for (const int other : {t[1], t[2]}) {
+      const int a = find(t[0]);
+      const int b = find(other);
+      root[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  for (int v = 0; v < static_cast<int>(root.size()); ++v) root[v] = find(v);
+  return root;
+}
+
+struct Part {
+  int root = 0;
+  Eigen::AlignedBox3d box;
+  double size() const { return box.diagonal().norm(); }
+};
+
+/// Largest first.
+std::vector<Part> listParts(const TriangleMesh& mesh, const std::vector<int>& root) {
+  std::map<int, Part> parts;
+  for (const Triangle& t : mesh.triangles) {
+    Part& part = parts[root[t[0]]];
+    part.root = root[t[0]];
+    for (const int v : t) part.box.extend(Vector3(mesh.vertices.col(v)));
+  }
+  std::vector<Part> list;
+  list.reserve(parts.size());
+  for (const auto& [first, part] : parts) list.push_back(part);
+  std::stable_sort(list.begin(), list.end(), [](const Part& a, const Part& b) { return a.size() > b.size(); });
+  return list;
+}
+
+void dropSmallParts(TriangleMesh& mesh, double cell_m, std::vector<std::string>& notes) {
+  const std::vector<int> root = partsOf(mesh);
+  const std::vector<Part> parts = listParts(mesh, root);
+  std::set<int> dropped;
+  for (std::size_t p = 1; p < parts.size(); ++p) {
+    if (parts[p].size() < kLeastPart * cell_m) dropped.insert(parts[p].root);
+  }
+  if (dropped.empty()) return;
+  const auto is_dropped = [&](const Triangle& t) { return dropped.count(root[t[0]]) > 0; };
+  mesh.triangles.erase(std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), is_dropped), mesh.triangles.end());
+  dropUnusedNodes(mesh.vertices, mesh.triangles);
+  notes.push_back("dropped " + counted(dropped.size(), "loose part") + " smaller than two cells");
+}
+
+void requireManifold(const TriangleMesh& mesh, const EdgeTable& edges, const std::string& source) {
+  std::size_t count = 0;
+  const EdgeTable::Edge* first = nullptr;
+  for (const EdgeTable::Edge& edge : edges) {
+    if (edge.count <= 2) continue;
+    ++count;
+    if (first == nullptr) first = &edge;
+  }
+  if (first == nullptr) return;
+  const Vector3 middle = 0.5 * (mesh.vertices.col(first->nodes[0]) + mesh.vertices.col(first->nodes[1]));
+  throw std::invalid_argument(source + ": " + counted(count, "edge") + " of more than two triangles, the first at " +
+                              placeText(middle) +
+                              ": walls meet there, so that nothing says what is inside; remove inner walls (Blender: "
+                              "Select > All by Trait > Non Manifold)");
+}
+
+/// Neighbours along borders of each vertex that lies on one.
+std::multimap<int, int> bordersOf(const EdgeTable& edges) {
+  std::multimap<int, int> borders;
+  for (const EdgeTable::Edge& edge : edges) {
+    if (edge.count != 1) continue;
+    borders.emplace(edge.nodes[0], edge.nodes[1]);
+    borders.emplace(edge.nodes[1], edge.nodes[0]);
+  }
+  return borders;
+}
+
+/// Takes an edge that begins at `from` out of `borders`. @return where it ends.
+int takeBorder(std::multimap<int, int>& borders, int from) {
+  const auto step = borders.find(from);
+  const int to = step->second;
+  borders.erase(step);
+  auto back = borders.lower_bound(to);
+  while (back->second != from) ++back;
+  borders.erase(back);
+  return to;
+}
+
+/// Loops of border edges, none through a vertex twice. As no edge has more than two triangles, borders lead on at every vertex.
+std::vector<std::vector<int>> borderLoops(const EdgeTable& edges) {
+  std::multimap<int, int> borders = bordersOf(edges);
+  std::vector<std::vector<int>> loops;
+  std::vector<int> way;
+  while (!borders.empty() || way.size() > 1) {
+    if (way.empty()) way.push_back(borders.begin()->first);
+    const int to = takeBorder(borders, way.back());
+    const auto met = std::find(way.begin(), way.end(), to);
+    if (met == way.end()) {
+      way.push_back(to);
+      continue;
+    }
+    loops.emplace_back(met, way.end());
+    way.erase(met + 1, way.end());
+    if (way.size() == 1) way.clear();
+  }
+  return loops;
+}
+
+double widthOf(const TriangleMesh& mesh, const std::vector<int>& loop) {
+  Eigen::AlignedBox3d box;
+  for (const int v : loop) box.extend(Vector3(mesh.vertices.col(v)));
+  return box.diagonal().norm();
+}
+
+Vector3 middleOf(const TriangleMesh& mesh, const std::vector<int>& loop) {
+  Vector3 sum = Vector3::Zero();
+  for (const int v : loop) sum += mesh.vertices.col(v);
+  return sum / static_cast<double>(loop.size());
+}
+
+void refuseOpen(const TriangleMesh& mesh, const std::vector<std::vector<int>>& loops, double allowed_m,
+                const std::string& source) {
+  std::size_t large = 0;
+  const std::vector<int>* widest = nullptr;
+  for (const std::vector<int>& loop : loops) {
+    if (widthOf(mesh, loop) > allowed_m) ++large;
+    if (widest == nullptr || widthOf(mesh, loop) > widthOf(mesh, *widest)) widest = &loop;
+  }
+  if (large == 0) return;
+  throw std::invalid_argument(source + ": it is open: " + counted(large, "hole") + ", the widest " +
+                              millimetres(widthOf(mesh, *widest)) + " across at " + placeText(middleOf(mesh, *widest)) +
+                              "; holes up to three cells (" + millimetres(allowed_m) +
+                              ") are closed, larger ones are yours to close (Blender: Fill; MeshLab: Close Holes), or "
+                              "use the surface as it is as a `shell`");
+}
+
+void closeHoles(TriangleMesh& mesh, double cell_m, const std::string& source, std::vector<std::string>& notes) {
+  const EdgeTable edges(mesh.triangles);
+  requireManifold(mesh, edges, source);
+  const std::vector<std::vector<int>> loops = borderLoops(edges);
+  if (loops.empty()) return;
+  refuseOpen(mesh, loops, kLargestHole * cell_m, source);
+  double widest = 0.0;
+  Eigen::Index centre = mesh.vertices.cols();
+  mesh.vertices.conservativeResize(Eigen::NoChange, centre + static_cast<Eigen::Index>(loops.size()));
+  for (const std::vector<int>& loop : loops) {
+    widest = std::max(widest, widthOf(mesh, loop));
+    mesh.vertices.col(centre) = middleOf(mesh, loop);
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      mesh.triangles.push_back({loop[i], loop[(i + 1) % loop.size()], static_cast<int>(centre)});
+    }
+    ++centre;
+  }
+  notes.push_back("closed " + counted(loops.size(), "hole") + ", up to " + millimetres(widest) + " across");
+}
+
+void turnOutward(TriangleMesh& mesh, const std::string& source) {
+  orientOutward(mesh);
+  const EdgeTable edges(mesh.triangles);
+  for (const EdgeTable::Edge& edge : edges) {
+    const EdgeTable::Uses uses = edges.usesOf(edge);
+    if (uses.size() == 2 && uses[0].forward != uses[1].forward) continue;
+    throw std::invalid_argument(source + ": its inside and outside run into each other at " +
+                                placeText(mesh.vertices.col(edge.nodes[0])) +
+                                " (one-sided like a Moebius strip); it cannot be filled: repair it");
+  }
+}
+
+/// One body, with cavities perhaps. A cavity's triangles are to face into it.
+void requireOneBody(TriangleMesh& mesh, const std::string& source, std::vector<std::string>& notes) {
+  const std::vector<int> root = partsOf(mesh);
+  const std::vector<Part> parts = listParts(mesh, root);
+  if (parts.size() < 2) return;
+  TriangleMesh body{mesh.vertices, {}};
+  for (const Triangle& t : mesh.triangles) {
+    if (root[t[0]] == parts.front().root) body.triangles.push_back(t);
+  }
+  const WindingTree tree(body);
+  for (std::size_t p = 1; p < parts.size(); ++p) {
+    if (tree.windingNumber(mesh.vertices.col(parts[p].root)) > 0.5) continue;
+    const Crossings crossings = findCrossings(mesh);
+    if (crossings.count > 0) throw std::invalid_argument(source + ": it cannot be filled: " + crossingText(crossings));
+    throw std::invalid_argument(
+        source + ": it has " + std::to_string(parts.size()) + " separate parts, one of them around " +
+        placeText(parts[p].box.center()) + " and " + millimetres(parts[p].size()) +
+        " across; a tissue is one body: save each part in a file of its own and make it a tissue");
+  }
+  for (Triangle& t : mesh.triangles) {
+    if (root[t[0]] != parts.front().root) std::swap(t[1], t[2]);
+  }
+  notes.push_back("left " + counted(parts.size() - 1, "closed part") + " inside it hollow");
+}
+
+/// @param given triangles as they were in the file, which those of the mesh begin with.
+void noteTurned(const std::vector<Triangle>& given, const TriangleMesh& mesh, std::vector<std::string>& notes) {
+  std::size_t turned = 0;
+  for (std::size_t t = 0; t < given.size(); ++t) turned += given[t] != mesh.triangles[t] ? 1 : 0;
+  if (turned == given.size()) {
+    notes.emplace_back("it was inside out: turned round");
+  } else if (turned > 0) {
+    notes.push_back("turned " + counted(turned, "triangle") + " that faced the wrong way");
+  }
+}
+
+}  // namespace
+
+double volumeInside(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) return 0.0;
+  const Vector3 apex = mesh.vertices.col(mesh.triangles.front()[0]);
+  double sum = 0.0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vector3 a = mesh.vertices.col(t[0]) - apex;
+    const Vector3 b = mesh.vertices.col(t[1]) - apex;
+    const Vector3 c = mesh.vertices.col(t[2]) - apex;
+    sum += a.cross(b).dot(c) / 6.0;
+  }
+  return sum;
+}
+
+ClosedSurface closeSurface(TriangleMesh mesh, double cell_m, const std::string& source) {
+  ClosedSurface closed;
+  dropDuplicates(mesh, closed.notes);
+  dropSmallParts(mesh, cell_m, closed.notes);
+  const std::vector<Triangle> given = mesh.triangles;
+  closeHoles(mesh, cell_m, source, closed.notes);
+  turnOutward(mesh, source);
+  requireOneBody(mesh, source, closed.notes);
+  noteTurned(given, mesh, closed.notes);
+  closed.volume = volumeInside(mesh);
+  closed.mesh = std::move(mesh);
+  return closed;
+}
+
+}  // namespace tissue_contact

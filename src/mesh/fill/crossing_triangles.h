@@ -1,0 +1,23 @@
+/// @file
+/// Room `mesh`, private: where a surface passes through itself.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "tissue_contact/core/types.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
+
+namespace tissue_contact {
+
+/// Pairs of triangles without a common vertex that cross each other.
+struct Crossings {
+  std::size_t count = 0;
+  Vector3 place = Vector3::Zero();  ///< of the first, m
+};
+Crossings findCrossings(const TriangleMesh& mesh);
+
+/// "it passes through itself; 12 pairs of triangles cross, the first at ...; repair it there ...".
+std::string crossingText(const Crossings& crossings);
+
+}  // namespace tissue_contact

@@ -1,0 +1,137 @@
+#!/usr/bin/python3
+"""From a surface to forces: make_scene.py and a replay of what it writes; surfaces it refuses.
+
+usage: organ_test.py SOURCE_DIRECTORY PROGRAM_DIRECTORY      (in the environment of the package: PROGRAM_DIRECTORY/../../env.sh)
+"""
+import csv
+import math
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SOURCE, PROGRAMS = "", ""
+DEADLINE_S = 300.0
+RADIUS_MM, RINGS = 30.0, 24
+
+
+def run(*command, **more):
+    return subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, universal_newlines=True, timeout=DEADLINE_S, check=False, **more)
+
+
+def ball():
+    """Vertices (mm) and outward triangles of a ball."""
+    around = 2 * RINGS
+    vertices = [(0.0, 0.0, RADIUS_MM), (0.0, 0.0, -RADIUS_MM)]
+    for ring in range(1, RINGS):
+        a = math.pi * ring / RINGS
+        vertices += [(RADIUS_MM * math.sin(a) * math.cos(math.pi * i / RINGS),
+                      RADIUS_MM * math.sin(a) * math.sin(math.pi * i / RINGS), RADIUS_MM * math.cos(a)) for i in range(around)]
+
+    def at(ring, i):
+        return 2 + (ring - 1) * around + i % around
+
+    triangles = []
+    for i in range(around):
+        triangles += [(0, at(1, i), at(1, i + 1)), (at(RINGS - 1, i), 1, at(RINGS - 1, i + 1))]
+        for ring in range(1, RINGS - 1):
+            triangles += [(at(ring, i), at(ring + 1, i), at(ring, i + 1)), (at(ring, i + 1), at(ring + 1, i), at(ring + 1, i + 1))]
+    return vertices, triangles
+
+
+def stl(vertices, triangles):
+    facets = [struct.pack("<12fH", 0, 0, 0, *(x for v in t for x in vertices[v]), 0) for t in triangles]
+    return b" " * 80 + struct.pack("<I", len(facets)) + b"".join(facets)
+
+
+def obj(vertices, triangles):
+    lines = ["v %r %r %r" % v for v in vertices] + ["f %d//1 %d//1 %d//1" % tuple(i + 1 for i in t) for t in triangles]
+    return "\n".join(lines).encode()
+
+
+def ply(vertices, triangles):
+    header = ("ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
+              "element face %d\nproperty list uchar int vertex_indices\nend_header\n" % (len(vertices), len(triangles)))
+    return (header.encode() + b"".join(struct.pack("<3f", *v) for v in vertices) +
+            b"".join(struct.pack("<B3i", 3, *t) for t in triangles))
+
+
+class OrganTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, content):
+        with open(self.path(name), "wb") as stream:
+            stream.write(content)
+        return self.path(name)
+
+    def make(self, surface, *more):
+        return run(sys.executable, os.path.join(SOURCE, "scripts", "make_scene.py"), surface, "--out", self.path("made"), *more)
+
+    def replay(self):
+        """Forces (N), and what was said."""
+        result = run(os.path.join(PROGRAMS, "tissue_contact_replay"), "--scene", self.path("made/scene.yaml"), "--bag",
+                     self.path("made/probe.bag"), "--csv", self.path("out.csv"), env=dict(os.environ, XDG_CACHE_HOME=self.folder))
+        self.assertEqual(result.returncode, 0, result.stdout)
+        with open(self.path("out.csv"), newline="") as stream:
+            return [math.hypot(*(float(row["force_%s_n" % axis]) for axis in "xyz")) for row in csv.DictReader(stream)], result.stdout
+
+    @unittest.skipUnless(shutil.which("gmsh"), "the program gmsh is not installed")
+    def test_a_ball_of_every_format_gives_about_hertz_force(self):
+        # Hertz: 4/3 E/(1 - nu^2) sqrt(R) d^1.5, the ball of 5 mm on one of 30 mm, which yields as a whole too.
+        depth, radius = 0.003, 1.0 / (1.0 / 0.005 + 1.0 / 0.030)
+        hertz = 4.0 / 3.0 * 5400.0 / (1.0 - 0.45 ** 2) * math.sqrt(radius) * depth ** 1.5
+        for name, content in (("a.stl", stl), ("b.obj", obj), ("c.ply", ply)):
+            with self.subTest(name):
+                made = self.make(self.write(name, content(*ball())), "--scale", 0.001, "--cell-size", 0.008, "--depth", depth)
+                self.assertEqual(made.returncode, 0, made.stdout)
+                self.assertIn("rosrun tissue_contact run_launch.py play_bag.launch", made.stdout)
+                forces, said = self.replay()
+                self.assertIn("tetrahedra", said)
+                self.assertEqual(forces[0], 0.0)
+                self.assertGreater(max(forces), 0.4 * hertz)
+                self.assertLess(max(forces), 1.3 * hertz)
+                self.assertEqual(forces[-1], 0.0, "lifted")
+
+    def test_units_are_asked_for(self):
+        surface = self.write("a.stl", stl(*ball()))
+        for scale in (1, 1e-6):
+            made = self.make(surface, "--scale", scale)
+            self.assertEqual(made.returncode, 1, made.stdout)
+            self.assertIn("0.001 for millimetres", made.stdout)
+        self.assertFalse(os.path.exists(self.path("made")))
+
+    def test_what_is_no_surface_is_refused_in_a_line(self):
+        vertices, triangles = ball()
+        cases = {"no.stl": (b"", "no triangles"), "cut.stl": (stl(vertices, triangles)[:-70], "damaged"),
+                 "pointer.stl": (b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 9\n", "git lfs pull"),
+                 "empty.obj": (b"# nothing\n", "no triangles"), "far.obj": (b"v 0 0 0\nf 1 2 3\n", "not there"),
+                 "nan.obj": (b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "not finite"),
+                 "cut.ply": (ply(vertices, triangles)[:-70], "damaged"), "other.vtp": (b"x", "endings")}
+        for name, (content, words) in cases.items():
+            with self.subTest(name):
+                made = self.make(self.write(name, content), "--scale", 0.001)
+                self.assertEqual(made.returncode, 1, made.stdout)
+                self.assertIn(name, made.stdout)
+                self.assertIn(words, made.stdout)
+                self.assertEqual(made.stdout.count("\n"), 1, made.stdout)
+
+    def test_no_folder_to_write_to(self):
+        self.write("made", b"a file")
+        made = self.make(self.write("a.stl", stl(*ball())), "--scale", 0.001)
+        self.assertEqual(made.returncode, 1)
+        self.assertIn("cannot write", made.stdout)
+
+
+if __name__ == "__main__":
+    SOURCE, PROGRAMS = sys.argv[1:3]
+    unittest.main(argv=sys.argv[:1])

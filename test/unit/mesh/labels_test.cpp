@@ -1,0 +1,120 @@
+/// Physical groups of Gmsh files and cell data of VTK files: what they hold, and what is refused.
+#include "mesh/labels.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "mesh/region.h"
+#include "mesh_writers.h"
+
+namespace tissue_contact {
+namespace {
+
+/// Two tetrahedra, the second one's outer face, and one node, in groups; by version of the format.
+const char* const kGroups22 =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
+    "$PhysicalNames\n3\n3 7 \"tumour\"\n2 9 \"free end\"\n3 6 \"rest\"\n$EndPhysicalNames\n"
+    "$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n$EndNodes\n"
+    "$Elements\n4\n1 15 2 4 1 1\n2 2 2 9 1 3 4 5\n3 4 2 6 1 1 2 3 4\n4 4 2 7 1 2 3 4 5\n$EndElements\n";
+
+const char* const kGroups41 =
+    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
+    "$PhysicalNames\n3\n3 7 \"tumour\"\n2 9 \"free end\"\n3 6 \"rest\"\n$EndPhysicalNames\n"
+    "$Entities\n1 0 1 2\n1 0 0 0 1 4\n1 0 0 0 1 1 1 1 -9 0\n1 0 0 0 1 1 1 1 6 0\n2 0 0 0 1 1 1 1 7 1 -1\n$EndEntities\n"
+    "$Nodes\n1 5 1 5\n3 1 0 5\n1\n2\n3\n4\n5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n$EndNodes\n"
+    "$Elements\n4 4 1 4\n0 1 15 1\n1 1\n2 1 2 1\n2 3 4 5\n3 1 4 1\n3 1 2 3 4\n3 2 4 1\n4 2 3 4 5\n$EndElements\n";
+
+const char* const kCellData =
+    "# vtk DataFile Version 3.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+    "POINTS 5 double\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\n"
+    "CELLS 3 14\n3 2 3 4\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 3\n5 10 10\n"
+    "POINT_DATA 5\nVECTORS u float\n0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\nSCALARS t double 1\nLOOKUP_TABLE default\n1 2 3 4 "
+    "5\n"
+    "CELL_DATA 3\nSCALARS region int\nLOOKUP_TABLE default\n1 1 2\n"
+    "FIELD more 2\nstiffness 1 3 double\n0 5 2.5\nfibre 3 3 float\n0 0 1 0 0 1 0 0 1\n";
+
+struct Loaded {
+  TetMesh mesh;
+  MeshLabels labels;
+};
+
+Loaded load(const std::string& bytes) {
+  Loaded loaded;
+  loaded.mesh = loadTetMesh(meshFile(FileOfBytes(bytes).path()), {}, &loaded.labels);
+  return loaded;
+}
+
+std::vector<bool> heldNodes(const Loaded& loaded, const Region& region) {
+  return fixedNodes(loaded.mesh.positions, withPlaces({region}, loaded.labels, loaded.mesh, "fixed", "tissue"),
+                    "tissue");
+}
+
+std::vector<bool> heldElements(const Loaded& loaded, const Region& region) {
+  NodalVectors centroids(3, 2);
+  for (int e = 0; e < 2; ++e) {
+    Vector3 sum = Vector3::Zero();
+    for (const int node : loaded.mesh.tetrahedra[static_cast<std::size_t>(e)]) sum += loaded.mesh.positions.col(node);
+    centroids.col(e) = sum / 4.0;
+  }
+  const auto regions = withPlaces({region}, loaded.labels, loaded.mesh, "where", "tissue");
+  return heldPoints(centroids, regions, "where", "centroid", "tissue");
+}
+
+TEST(MeshLabels, PhysicalGroupsOfEveryVersion) {
+  for (const char* text : {kGroups22, kGroups41}) {
+    SCOPED_TRACE(text);
+    const Loaded loaded = load(text);
+    expectSameMesh(loaded.mesh, twoTetrahedra());
+    EXPECT_EQ(heldElements(loaded, GroupRegion{"tumour"}), (std::vector<bool>{false, true}));
+    EXPECT_EQ(heldElements(loaded, GroupRegion{"7"}), (std::vector<bool>{false, true})) << "by its number";
+    EXPECT_EQ(heldNodes(loaded, GroupRegion{"tumour"}), (std::vector<bool>{false, true, true, true, true}));
+    EXPECT_EQ(heldNodes(loaded, GroupRegion{"free end"}), (std::vector<bool>{false, false, true, true, true}));
+    EXPECT_EQ(heldNodes(loaded, GroupRegion{"4"}), (std::vector<bool>{true, false, false, false, false}));
+    expectRefusal([&] { heldElements(loaded, GroupRegion{"free end"}); }, {"free end", "no centroid"});
+  }
+}
+
+TEST(MeshLabels, UnknownGroupsAreToldWhatThereIs) {
+  const Loaded loaded = load(kGroups22);
+  expectRefusal([&] { heldNodes(loaded, GroupRegion{"tumor"}); },
+                {"no group \"tumor\"", "tumour", "free end", "rest", "4"});
+  expectRefusal([&] { heldNodes(load(kCellData), GroupRegion{"tumour"}); }, {"no physical groups", ".msh"});
+}
+
+TEST(MeshLabels, CellDataOfScalarsAndFields) {
+  const Loaded loaded = load(kCellData);
+  EXPECT_EQ(heldElements(loaded, CellDataRegion{"region", 2.0}), (std::vector<bool>{false, true}));
+  EXPECT_EQ(heldElements(loaded, CellDataRegion{"stiffness", 5.0}), (std::vector<bool>{true, false}));
+  EXPECT_EQ(heldNodes(loaded, CellDataRegion{"region", 1.0}), (std::vector<bool>{true, true, true, true, false}))
+      << "a triangle's value is not a tetrahedron's";
+  expectRefusal([&] { heldNodes(loaded, CellDataRegion{"region", 3.0}); }, {"region", "= 3", "values are: 1, 2"});
+  expectRefusal(
+      [&] {
+        heldNodes(loaded, CellDataRegion{"fibre", 1.0});
+      },
+      {"no cell data \"fibre\"", "there are: region, stiffness"});
+}
+
+TEST(MeshLabels, AreNotLookedAtUnlessAskedFor) {
+  const std::string damaged = replaced(kGroups22, "3 7 \"tumour\"", "3 7 tumour");
+  EXPECT_NO_THROW(loadBytes(damaged));
+  expectRefusal([&] { load(damaged); }, {":6:", "in quotes"});
+  EXPECT_NO_THROW(loadBytes(std::string(kCellData) + "rubbish"));
+}
+
+TEST(MeshLabels, DamagedOnesAreRefused) {
+  expectRefusal([&] { load(std::string(kCellData) + "rubbish\n"); }, {"RUBBISH", "not read"});
+  expectRefusal([&] { load(replaced(kCellData, "CELL_DATA 3", "CELL_DATA 4")); },
+                {"CELL_DATA is for 4", "there are 3"});
+  expectRefusal([&] { load(replaced(kCellData, "1 1 2\n", "1 1\n")); }, {"FIELD"});
+  std::string many = "17";
+  for (int i = 1; i <= 17; ++i) many += " " + std::to_string(i);
+  expectRefusal([&] { load(replaced(kGroups41, "1 1 1 1 6 0\n", "1 1 1 " + many + " 0\n")); },
+                {"17 physical groups", "16"});
+}
+
+}  // namespace
+}  // namespace tissue_contact
