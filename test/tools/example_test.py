@@ -98,7 +98,7 @@ class ExamplePackage(unittest.TestCase):
         pytest = run(*inside, sys.executable, "-m", "pytest", source / "test/test_press.py", TARGET_FORCE_N="2", **home)
         self.assertIn("2 failed, 1 passed", pytest.stdout)
         for done in [gtest, rostest, pytest]:
-            self.assertEqual(done.returncode, 1, done.stdout)
+            self.assertNotEqual(done.returncode, 0, done.stdout)
 
     def test_a_later_version_is_refused(self):
         copy = pathlib.Path(self.folder.name) / "later"

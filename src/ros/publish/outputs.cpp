@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ros/parameter.h"
+#include "ros/publish/crtk_wrench.h"
 
 namespace tissue_contact {
 namespace {
@@ -91,6 +92,12 @@ void Outputs::start(std::function<void()> on_newcomer) {
   for (const Instrument& instrument : simulator_.instruments()) {
     wrench_publishers_.push_back(
         node_.advertise<geometry_msgs::WrenchStamped>(instrument.name() + "/wrench", kWrenchQueue));
+    if (!options_.crtk) continue;
+    for (const auto& [kind, publishers] :
+         {std::pair("/body/", &body_publishers_), std::pair("/spatial/", &spatial_publishers_)}) {
+      publishers->push_back(
+          node_.advertise<geometry_msgs::WrenchStamped>(instrument.name() + kind + "measured_cf", kWrenchQueue));
+    }
   }
   if (options_.tf) broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
   bulky_.start(node_, std::move(on_newcomer));
@@ -101,7 +108,22 @@ void Outputs::publishWrenches(const PlayedSample& played) {
     const auto index = static_cast<std::size_t>(i);
     fillWrench(simulator_.wrench(i), played.stamp_ns, wrenches_[index]);
     wrench_publishers_[index].publish(wrenches_[index]);
+    if (options_.crtk) publishCrtk(i, played.stamp_ns);
   }
+}
+
+void Outputs::publishCrtk(int instrument, std::int64_t stamp_ns) {
+  const auto index = static_cast<std::size_t>(instrument);
+  const Instrument& arm = simulator_.instruments()[index];
+  const std::vector<Pose>& X_WL = simulator_.linkPoses(instrument);
+  const auto tip = static_cast<std::size_t>(arm.tipLink());
+  const Wrench felt = simulator_.wrench(instrument);
+  crtk_.header.frame_id = arm.model().links()[tip].name;
+  fillWrench(bodyMeasuredForce(felt), stamp_ns, crtk_);
+  body_publishers_[index].publish(crtk_);
+  crtk_.header.frame_id = arm.model().links().front().name;
+  fillWrench(spatialMeasuredForce(felt, X_WL.front().inverse() * X_WL[tip]), stamp_ns, crtk_);
+  spatial_publishers_[index].publish(crtk_);
 }
 
 void Outputs::publishState(const PlayedSample& played, int substeps, double step_time_s) {

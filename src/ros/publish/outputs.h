@@ -23,6 +23,7 @@ namespace tissue_contact {
 
 /// Topics, all below the node's private namespace:
 ///   <instrument>/wrench  one for every arm state the simulator was stepped to; at and in the tip link
+///   <instrument>/body/measured_cf, <instrument>/spatial/measured_cf   on request, with each wrench, see crtk_wrench.h
 ///   <tissue>/topology    latched, with the first joint state and after changes of the mesh, no more often than meshes
 ///   <tissue>/mesh, contacts, status, markers   at the scene's rates of message time (0: not advertised)
 ///   /tf                  on request, every moment stepped to: world -> root link -> every link
@@ -55,6 +56,7 @@ class Outputs {
   std::int64_t snapshotsDropped() { return bulky_.queue().dropped(); }
 
  private:
+  void publishCrtk(int instrument, std::int64_t stamp_ns);
   void publishSnapshot(std::int64_t stamp_ns, int substeps, double step_time_s);
   bool topologiesChange();
   void publishTransforms(std::int64_t stamp_ns);
@@ -70,6 +72,8 @@ class Outputs {
   std::int64_t last_stamp_ns_ = 0;
 
   std::vector<ros::Publisher> wrench_publishers_;               ///< one per instrument
+  std::vector<ros::Publisher> body_publishers_;                 ///< one per instrument; empty: not asked for
+  std::vector<ros::Publisher> spatial_publishers_;              ///< likewise
   std::unique_ptr<tf2_ros::TransformBroadcaster> broadcaster_;  ///< null: not asked for
 
   MessageTimeRate mesh_rate_;
@@ -78,6 +82,7 @@ class Outputs {
   MessageTimeRate markers_rate_;
 
   std::vector<geometry_msgs::WrenchStamped> wrenches_;
+  geometry_msgs::WrenchStamped crtk_;
   std::vector<geometry_msgs::TransformStamped> transforms_;
 };
 
