@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Turns a table of joint positions into a recording: joint states at 500 Hz, smoothly from row to row.
 
-The table is a CSV file. Its first line names the columns: time_s, then joints as the scene knows them (rad or m). Each
-further line says where the joints are at a time; times ascend. Between two lines a joint follows the cubic that starts
-and ends at rest, so nothing jerks. Example: config/grasp_path.csv.
+The table is a CSV file. Its first line names the columns: time_s, then joints as the scene knows them (rad or m), or TOPIC:JOINT where
+there are several topics. Each further line says where the joints are at a time; times ascend. Between two lines a joint follows the
+cubic that starts and ends at rest, so nothing jerks. Examples: config/grasp_path.csv, config/two_psm_path.csv.
 The same bytes every time: stamps, positions and record times follow from the table alone.
 """
 import argparse
@@ -63,29 +63,43 @@ def positions(rows, time):
     return rows[-1][1:]
 
 
-def write(output, topic, names, positions_at, length, inputs=()):
-    """Joint states from 0 to `length` (s) with the positions that `positions_at` gives for a time. Says how many."""
+def topics_of(columns, topic):
+    """{topic: [(place, joint name)]} of columns named JOINT, which are of `topic`, or TOPIC:JOINT."""
+    topics = {}
+    for place, column in enumerate(columns):
+        of, _, joint = column.rpartition(":")
+        if not (of or topic) or not joint:
+            fail("column '%s' names no %s: write TOPIC:JOINT, or give --topic" % (column, "joint" if of else "topic"))
+        topics.setdefault(of or topic, []).append((place, joint))
+    return topics
+
+
+def write(output, topics, positions_at, length, inputs=()):
+    """Joint states on {topic: [(place, joint name)]} from 0 to `length` (s), with positions from the places of what `positions_at` gives
+    for a time. Says how many."""
     count = int(round(length * RATE_HZ)) + 1
     try:
         with whole_file(output, inputs) as part, rosbag.Bag(part, "w", compression=rosbag.Compression.BZ2) as bag:
             for i in range(count):
-                message = JointState(name=names, position=positions_at(i / RATE_HZ))
-                message.header.seq = i
-                message.header.stamp = genpy.Time(START_S + i // RATE_HZ, i % RATE_HZ * (1000000000 // RATE_HZ))
-                bag.write(topic, message, message.header.stamp)
+                at = positions_at(i / RATE_HZ)
+                for topic, joints in topics.items():
+                    message = JointState(name=[joint for _, joint in joints], position=[at[place] for place, _ in joints])
+                    message.header.seq = i
+                    message.header.stamp = genpy.Time(START_S + i // RATE_HZ, i % RATE_HZ * (1000000000 // RATE_HZ))
+                    bag.write(topic, message, message.header.stamp)
     except OSError as error:
         fail("cannot write %s: %s" % (output, error.strerror))
-    print("%s: %d joint states on %s" % (output, count, topic))
+    print("%s: %d joint states on %s" % (output, count, ", ".join(topics)))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("table", help="CSV file: time_s and joint positions")
     parser.add_argument("output", help="bag to write")
-    parser.add_argument("--topic", required=True, help="joint-state topic of the scene, such as /PSM1/joint_states")
+    parser.add_argument("--topic", help="joint-state topic of the scene, such as /PSM1/joint_states, of columns that name none")
     arguments = parser.parse_args()
     names, rows = read_table(arguments.table)
-    write(arguments.output, arguments.topic, names, lambda time: positions(rows, rows[0][0] + time),
+    write(arguments.output, topics_of(names, arguments.topic), lambda time: positions(rows, rows[0][0] + time),
           rows[-1][0] - rows[0][0], [arguments.table])
 
 

@@ -83,7 +83,7 @@ const std::map<std::string, std::vector<std::string>>& sceneKeys() {
       {"step", {"max_step_s", "max_gap_s", "joint_states", "max_lag_s"}},
       {"solver", {"method", "relaxation", "iterations", "contact_passes", "tolerance", "time_budget_s", "cone_sides"}},
       {"advisor", {"sleep", "sleep_error", "rotations", "self_contact", "friction_path"}},
-      {"publish", {"mesh_rate_hz", "contacts_rate_hz", "status_rate_hz", "markers_rate_hz", "tf"}},
+      {"publish", {"mesh_rate_hz", "contacts_rate_hz", "status_rate_hz", "markers_rate_hz", "tf", "crtk"}},
   };
   return all;
 }

@@ -20,7 +20,7 @@ import sys
 ROOMS = ["core", "mesh", "instrument", "tissue", "contact", "friction", "solver", "baselines", "simulation", "scene", "ros"]
 MEASURING = ["validation", "benchmark"]
 ROS_ROOMS = {"ros", "benchmark"}
-API = {"ros/environment.h", "scene/load_scene.h", "simulation/joint_state_player.h", "simulation/simulator.h"}
+API = {"ros/environment.h", "ros/lock_step.h", "scene/load_scene.h", "simulation/joint_state_player.h", "simulation/simulator.h"}
 PRIVATE_LIBRARIES = {"fcl", "urdf_model", "urdf_parser", "urdf_world", "console_bridge", "assimp", "yaml-cpp"}
 OPERATING_SYSTEM = {"fcntl.h", "sys", "unistd.h"}
 LINKED = re.compile(r"^(lib(pthread|fcl|urdfdom_model|console_bridge|assimp|yaml-cpp|stdc\+\+|gcc_s|m|c)|ld-linux.*)\.so(\.[0-9.]+)?$")

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""doc/example as another package builds it: against this build, installed into a folder of its own.
+"""doc/example and doc/controller_test as other packages build them: against this build, installed into a folder of its own.
 
 usage: example_test.py SOURCE_DIRECTORY BUILD_DIRECTORY
 """
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -66,6 +67,38 @@ class ExamplePackage(unittest.TestCase):
         self.assertEqual([force[0] for force in forces], ["joint states", "advance"], done.stdout)
         self.assertEqual(forces[0][1:], forces[1][1:])  # the same motion
         self.assertGreater(float(forces[0][3]), 0.1)  # N, upwards: the block pushes back
+
+    def digest_of(self, build, pattern):
+        """What a test of the package has noted in its results."""
+        results = next(build.rglob(pattern)).read_text(encoding="utf-8")
+        return re.search('name="digest" value="(\\d+)"', results).group(1)
+
+    def test_a_controller_is_tested_by_gtest_rostest_and_pytest(self):
+        build = pathlib.Path(self.folder.name) / "controller_build"
+        source = pathlib.Path(self.folder.name) / "controller"  # pytest leaves its cache beside its tests
+        shutil.copytree(SOURCE / "doc/controller_test", source)
+        done = self.configure(source, build)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        done = run("cmake", "--build", build, "--target", "press_controller", "tests")
+        self.assertEqual(done.returncode, 0, done.stdout)
+        home = {"ROS_HOSTNAME": "localhost", "ROS_HOME": self.folder.name + "/ros_home"}
+        done = run("ctest", "--test-dir", build, "--no-tests=error", "--output-on-failure", **home)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertIn("100% tests passed, 0 tests failed out of 3", done.stdout)
+        # In one process and over ROS: the same bits.
+        self.assertEqual(self.digest_of(build, "gtest-in_process_test.xml"), self.digest_of(build, "pytest-press.xml"))
+
+        # A controller that presses too hard.
+        inside = [build / "devel/env.sh"]
+        gtest = run(*inside, next(build.rglob("in_process_test")), TARGET_FORCE_N="2", **home)
+        self.assertIn('(tissue.peakForce("probe")) < (0.6), actual: ', gtest.stdout)
+        self.assertIn("[  FAILED  ] 1 test", gtest.stdout)
+        rostest = run(*inside, "rostest", source / "test/press.test", "target_force_n:=2", **home)
+        self.assertIn("FAILURES: 2", rostest.stdout)
+        pytest = run(*inside, sys.executable, "-m", "pytest", source / "test/test_press.py", TARGET_FORCE_N="2", **home)
+        self.assertIn("2 failed, 1 passed", pytest.stdout)
+        for done in [gtest, rostest, pytest]:
+            self.assertNotEqual(done.returncode, 0, done.stdout)
 
     def test_a_later_version_is_refused(self):
         copy = pathlib.Path(self.folder.name) / "later"

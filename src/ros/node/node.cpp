@@ -52,6 +52,8 @@ subscribed topics
 
 published topics
   ~INSTRUMENT/wrench   geometry_msgs/WrenchStamped of the tissue on the instrument, one per state of the arm stepped to
+  ~INSTRUMENT/body/measured_cf, ~INSTRUMENT/spatial/measured_cf
+                       the same of the instrument on the tissue, where the scene says publish: {crtk: true}
   ~TISSUE/topology     tissue_contact/TissueTopology, latched; again when the mesh has changed
   ~TISSUE/mesh         tissue_contact/TissueMesh
   ~contacts            tissue_contact/ContactArray

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "ros/conversions.h"
+#include "ros/publish/crtk_wrench.h"
 
 namespace tissue_contact {
 namespace {
@@ -52,6 +53,17 @@ std::vector<geometry_msgs::WrenchStamped> wrenchMessages(const Simulator& simula
     messages.back().header.frame_id = instrument.model().links()[static_cast<std::size_t>(instrument.tipLink())].name;
   }
   return messages;
+}
+
+void fillCrtk(const Simulator& simulator, int instrument, std::int64_t stamp_ns, CrtkMessages& messages) {
+  const Instrument& arm = simulator.instruments()[static_cast<std::size_t>(instrument)];
+  const std::vector<Pose>& X_WL = simulator.linkPoses(instrument);
+  const auto tip = static_cast<std::size_t>(arm.tipLink());
+  const Wrench felt = simulator.wrench(instrument);
+  messages.body.header.frame_id = arm.model().links()[tip].name;
+  fillWrench(bodyMeasuredForce(felt), stamp_ns, messages.body);
+  messages.spatial.header.frame_id = arm.model().links().front().name;
+  fillWrench(spatialMeasuredForce(felt, X_WL.front().inverse() * X_WL[tip]), stamp_ns, messages.spatial);
 }
 
 void fillTransforms(const Simulator& simulator, std::int64_t stamp_ns, tf2_msgs::TFMessage& message) {

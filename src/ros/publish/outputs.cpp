@@ -70,6 +70,12 @@ void Outputs::start(std::function<void()> on_newcomer) {
   for (const Instrument& instrument : simulator_.instruments()) {
     wrench_publishers_.push_back(
         node_.advertise<geometry_msgs::WrenchStamped>(instrument.name() + "/wrench", kWrenchQueue));
+    if (!options_.crtk) continue;
+    for (const auto& [kind, publishers] :
+         {std::pair("/body/", &body_publishers_), std::pair("/spatial/", &spatial_publishers_)}) {
+      publishers->push_back(
+          node_.advertise<geometry_msgs::WrenchStamped>(instrument.name() + kind + "measured_cf", kWrenchQueue));
+    }
   }
   if (options_.tf) broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
   bulky_.start(node_, std::move(on_newcomer));
@@ -80,6 +86,10 @@ void Outputs::publishWrenches(const PlayedSample& played) {
     const auto index = static_cast<std::size_t>(i);
     fillWrench(simulator_.wrench(i), played.stamp_ns, wrenches_[index]);
     wrench_publishers_[index].publish(wrenches_[index]);
+    if (!options_.crtk) continue;
+    fillCrtk(simulator_, i, played.stamp_ns, crtk_);
+    body_publishers_[index].publish(crtk_.body);
+    spatial_publishers_[index].publish(crtk_.spatial);
   }
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "ros/conversions.h"
+#include "ros/publish/instrument_messages.h"
 #include "ros/publish/publish_options.h"
 #include "ros/publish/snapshot_publisher.h"
 #include "ros/publish/snapshot_taker.h"
@@ -23,6 +24,7 @@ namespace tissue_contact {
 
 /// Topics, all below the node's private namespace:
 ///   <instrument>/wrench  one for every arm state the simulator was stepped to; at and in the tip link
+///   <instrument>/body/measured_cf, <instrument>/spatial/measured_cf   on request, with each wrench, see crtk_wrench.h
 ///   <tissue>/topology    latched, with the first joint state and after changes of the mesh, no more often than meshes
 ///   <tissue>/mesh, contacts, status, markers   at the scene's rates of message time (0: not advertised)
 ///   /tf                  on request, every moment stepped to: world -> root link -> every link
@@ -73,6 +75,8 @@ class Outputs {
   std::int64_t last_stamp_ns_ = 0;
 
   std::vector<ros::Publisher> wrench_publishers_;               ///< one per instrument
+  std::vector<ros::Publisher> body_publishers_;                 ///< one per instrument; empty: not asked for
+  std::vector<ros::Publisher> spatial_publishers_;              ///< likewise
   std::unique_ptr<tf2_ros::TransformBroadcaster> broadcaster_;  ///< null: not asked for
 
   std::vector<geometry_msgs::WrenchStamped> wrenches_;

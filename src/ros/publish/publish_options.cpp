@@ -19,6 +19,7 @@ PublishOptions parsePublish(const YamlMap& file) {
     if (const YamlCursor* value = map.find(key)) *rate = value->number(kPublishRateRange);
   }
   if (const YamlCursor* value = map.find("tf")) publish.tf = value->boolean();
+  if (const YamlCursor* value = map.find("crtk")) publish.crtk = value->boolean();
   return publish;
 }
 

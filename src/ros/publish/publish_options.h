@@ -18,7 +18,8 @@ struct PublishOptions {
   double contacts_rate_hz = 100.0;
   double status_rate_hz = 10.0;
   double markers_rate_hz = 30.0;
-  bool tf = false;  ///< publish the instrument links' transforms
+  bool tf = false;    ///< publish the instrument links' transforms
+  bool crtk = false;  ///< publish wrenches as CRTK has them, beside ours
 };
 
 /// Which mesh of tissues that are refined while the simulator runs. A parameter of the node and not of the scene: who looks on, and how

@@ -94,7 +94,12 @@ void BagRecorder::record(const PlayedSample& played, int steps, ros::Time record
   for (const int i : played.instruments) {
     auto& wrench = wrenches_[static_cast<std::size_t>(i)];
     fillWrench(simulator_.wrench(i), played.stamp_ns, wrench);
-    write(topicOf(simulator_.instruments()[static_cast<std::size_t>(i)].name() + "/wrench"), wrench);
+    const std::string& name = simulator_.instruments()[static_cast<std::size_t>(i)].name();
+    write(topicOf(name + "/wrench"), wrench);
+    if (!options_.crtk) continue;
+    fillCrtk(simulator_, i, played.stamp_ns, crtk_);
+    write(topicOf(name + "/body/measured_cf"), crtk_.body);
+    write(topicOf(name + "/spatial/measured_cf"), crtk_.spatial);
   }
   const BulkyTopics due = taker_.due(played, {});
   if (due.any()) {

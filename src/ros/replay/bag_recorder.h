@@ -75,6 +75,7 @@ class BagRecorder {
   SnapshotMessages messages_;
   SceneSnapshot snapshot_;
   std::vector<geometry_msgs::WrenchStamped> wrenches_;
+  CrtkMessages crtk_;
   tf2_msgs::TFMessage transforms_;
   Header latched_;
   ros::Time recorded_;

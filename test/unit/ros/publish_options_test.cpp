@@ -26,12 +26,13 @@ class PublishTest : public SceneTest {
 TEST_F(PublishTest, FillsTheSection) {
   const PublishOptions options = read(std::string(kSmallestScene) +
                                       "publish: {mesh_rate_hz: 1, contacts_rate_hz: 2, status_rate_hz: 3, "
-                                      "markers_rate_hz: 0, tf: true}\n");
+                                      "markers_rate_hz: 0, tf: true, crtk: true}\n");
   EXPECT_EQ(options.mesh_rate_hz, 1.0);
   EXPECT_EQ(options.contacts_rate_hz, 2.0);
   EXPECT_EQ(options.status_rate_hz, 3.0);
   EXPECT_EQ(options.markers_rate_hz, 0.0);
   EXPECT_TRUE(options.tf);
+  EXPECT_TRUE(options.crtk);
 }
 
 TEST_F(PublishTest, DefaultsAreThoseOfTheDocument) {
@@ -42,6 +43,7 @@ TEST_F(PublishTest, DefaultsAreThoseOfTheDocument) {
     EXPECT_EQ(options.status_rate_hz, 10.0);
     EXPECT_EQ(options.markers_rate_hz, 30.0);
     EXPECT_FALSE(options.tf);
+    EXPECT_FALSE(options.crtk);
   }
 }
 
