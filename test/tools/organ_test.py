@@ -94,7 +94,7 @@ class OrganTest(unittest.TestCase):
             with self.subTest(name):
                 made = self.make(self.write(name, content(*ball())), "--scale", 0.001, "--cell-size", 0.008, "--depth", depth)
                 self.assertEqual(made.returncode, 0, made.stdout)
-                self.assertIn("rosrun tissue_contact run_launch.py play_bag.launch", made.stdout)
+                self.assertIn("rosrun tissue_contact run_launch.py scene.launch", made.stdout)
                 forces, said = self.replay()
                 self.assertIn("tetrahedra", said)
                 self.assertEqual(forces[0], 0.0)

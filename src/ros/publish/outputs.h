@@ -80,6 +80,7 @@ class Outputs {
   std::unique_ptr<tf2_ros::TransformBroadcaster> broadcaster_;  ///< null: not asked for
 
   std::vector<geometry_msgs::WrenchStamped> wrenches_;
+  CrtkMessages crtk_;
   tf2_msgs::TFMessage transforms_;
 };
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "ros/publish/instrument_messages.h"
 #include "ros/publish/publish_options.h"
 #include "ros/publish/snapshot_messages.h"
 #include "ros/publish/snapshot_taker.h"
