@@ -99,6 +99,7 @@ void refuseUnknown(const ros::NodeHandle& node) {
   std::vector<std::string> set;
   node.getParamNames(set);
   std::vector<std::string> known;
+  known.reserve(kNames.size());
   for (const std::string& name : kNames) known.push_back(node.resolveName(name));
   const std::vector<std::string> unknown = unknownNames(set, node.getNamespace(), known);
   if (unknown.empty()) return;

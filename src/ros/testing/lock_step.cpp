@@ -100,6 +100,7 @@ int LockStep::indexOf(const std::string& instrument) const {
       std::find_if(all.begin(), all.end(), [&](const Instrument& one) { return one.name() == instrument; });
   if (found != all.end()) return static_cast<int>(found - all.begin());
   std::vector<std::string> names;
+  names.reserve(all.size());
   for (const Instrument& one : all) names.push_back(one.name());
   throw std::invalid_argument("the scene has no instrument " + inQuotes(instrument) + "; it has " + joined(names));
 }
