@@ -22,7 +22,7 @@ struct Approach {
   int link = -1;                                                ///< index into Instrument::contactLinks()
   int shape = -1;                                               ///< index into ContactLink::shapes
   double distance_m = std::numeric_limits<double>::infinity();  ///< < 0: the surface is inside the shape
-  Vector3 p_W = Vector3::Zero();       ///< the surface's point, m
+  Vector3 p_W = Vector3::Zero();                                ///< the surface's point, m
   Vector3 normal_W = Vector3::Zero();  ///< unit, out of the shape there: moved along it by the distance it just touches
 };
 
