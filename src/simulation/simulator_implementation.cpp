@@ -161,7 +161,8 @@ void Simulator::Implementation::carryMeshes(StateArchive& archive) {
     archive.require(hashBytes(rest.data(), bytes(rest)), "the mesh, or its place in the world, is another one");
     const std::vector<Tetrahedron>& elements = tissues[t].tetrahedra();
     archive.require(hashBytes(elements.data(), bytes(elements)), "the elements are others");
-    archive.require(materialHash(tissues[t]), "the material is another one, or was changed while it ran: change it likewise first");
+    archive.require(materialHash(tissues[t]),
+                    "the material is another one, or was changed while it ran: change it likewise first");
   }
 }
 

@@ -54,11 +54,11 @@ void ControlServices::offer(ros::NodeHandle& node, const std::string& name, Answ
 
 void ControlServices::offer(ros::NodeHandle& node, const std::string& name,
                             Answer (Stepper::*action)(const std::string& file)) {
-  const boost::function<bool(StateFile::Request&, StateFile::Response&)> serve =
-      [this, name, action](StateFile::Request& request, StateFile::Response& response) {
-        return take(name, stepper_.requests().ask([&] { return (stepper_.*action)(request.file); }, kPatience_s),
-                    response);
-      };
+  const boost::function<bool(StateFile::Request&, StateFile::Response&)> serve = [this, name, action](
+                                                                                     StateFile::Request& request,
+                                                                                     StateFile::Response& response) {
+    return take(name, stepper_.requests().ask([&] { return (stepper_.*action)(request.file); }, kPatience_s), response);
+  };
   servers_.push_back(node.advertiseService(name, serve));
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <sstream>
 #include <utility>
 
@@ -213,11 +214,14 @@ void Health::noteCells(const CoarseCells& cells) {
   figures_.last_coarse = coarseCellsText(simulator_);
 }
 
-void Health::noteForceErrors() {
-  constexpr std::chrono::milliseconds kPeriod(100);
+void Health::noteForceErrors(std::int64_t stamp_ns) {
+  constexpr std::chrono::nanoseconds kPeriod(100'000'000);
   const Clock::time_point now = Clock::now();
-  if (looked_at_force_errors_ && now - *looked_at_force_errors_ < kPeriod) return;
+  const bool is_soon_after = looked_at_force_errors_ && now - *looked_at_force_errors_ < kPeriod &&
+                             std::abs(stamp_ns - looked_at_stamp_ns_) < kPeriod.count();
+  if (is_soon_after) return;
   looked_at_force_errors_ = now;
+  looked_at_stamp_ns_ = stamp_ns;
   if (!isFinite(simulator_.residuals())) return;
   const std::vector<ForceErrorEstimate>& errors = simulator_.forceErrors();
   if (errors.empty()) return;

@@ -49,7 +49,8 @@ class Health {
   void noteWrenches(std::size_t count, std::optional<double> lag_s);
 
   /// Looks at the likely errors of the forces, which cost something, ten times a second: once the wrenches are out.
-  void noteForceErrors();
+  /// @param stamp_ns of the moment they are of: also ten times a second of that, since a bag may be played faster.
+  void noteForceErrors(std::int64_t stamp_ns);
 
   void notePaused(bool paused);
   void noteReset();  ///< the simulation began anew, or with another state
@@ -111,6 +112,7 @@ class Health {
   Throttle implausible_loads_;
   Throttle not_converged_{5};
   std::optional<Clock::time_point> looked_at_force_errors_;
+  std::int64_t looked_at_stamp_ns_ = 0;
   LawAlarm law_alarm_;
   bool told_of_cells_ = false;
 

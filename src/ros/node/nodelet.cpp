@@ -1,10 +1,10 @@
 /// @file
 /// Room `ros`, private: the node as a nodelet: drivers in the same manager hand joint states over without a connection.
 #include <nodelet/nodelet.h>
-#include <pluginlib/class_list_macros.hpp>
 
 #include <exception>
 #include <memory>
+#include <pluginlib/class_list_macros.hpp>
 #include <vector>
 
 #include "ros/node/node.h"

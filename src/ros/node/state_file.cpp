@@ -61,8 +61,8 @@ std::string loadStateFile(JointStatePlayer& player, const std::string& file) {
   try {
     player.restoreState(state);
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("'" + printable(absolute(file), kMostLetters) + "' is not loaded, and nothing has changed: " +
-                                error.what());
+    throw std::invalid_argument("'" + printable(absolute(file), kMostLetters) +
+                                "' is not loaded, and nothing has changed: " + error.what());
   }
   return told(file, state.size());
 }

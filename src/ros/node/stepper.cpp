@@ -147,12 +147,13 @@ void Stepper::publish(const PlayedSample& played, const std::optional<Receipt>& 
                          receipt ? std::optional(steadySeconds() - receipt->received_s) : std::nullopt);
   }
   outputs_.publishState(played, steps, step_time_s);
-  health_.noteForceErrors();
+  health_.noteForceErrors(played.stamp_ns);
   health_.noteSnapshotsDropped(outputs_.snapshotsDropped());
 }
 
 Answer Stepper::reset() {
   player_.reset();
+  played_stamp_ns_ = 0;
   chooser_.startAgain();
   health_.noteReset();
   outputs_.showReset();
@@ -190,6 +191,7 @@ Answer Stepper::saveState(const std::string& file) {
 
 Answer Stepper::loadState(const std::string& file) {
   const std::string loaded = loadStateFile(player_, file);
+  played_stamp_ns_ = player_.time().value_or(0);
   chooser_.startAgain();
   health_.noteReset();
   outputs_.showReset();

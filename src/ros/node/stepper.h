@@ -41,10 +41,10 @@ class Stepper {
   RequestQueue& requests() { return requests_; }
 
   // In requests alone. The answer tells the time of the simulation.
-  Answer reset();     ///< everything back to the start; what waits is forgotten
-  Answer pause();     ///< takes no more joint states; they wait in the inbox
-  Answer resume();    ///< goes on with those that wait
-  Answer stepOnce();  ///< while paused: to the next moment
+  Answer reset();                             ///< everything back to the start; what waits is forgotten
+  Answer pause();                             ///< takes no more joint states; they wait in the inbox
+  Answer resume();                            ///< goes on with those that wait
+  Answer stepOnce();                          ///< while paused: to the next moment
   Answer saveState(const std::string& file);  ///< see saveStateFile()
   Answer loadState(const std::string& file);  ///< see loadStateFile()
 

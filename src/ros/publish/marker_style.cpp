@@ -25,7 +25,8 @@ SurfaceColor toSurfaceColor(const std::string& what, const std::string& name) {
   for (std::size_t i = 0; i < kQuantities.size(); ++i) {
     if (name == kQuantities[i].name) return static_cast<SurfaceColor>(i);
   }
-  throw std::invalid_argument(what + " is " + inQuotes(name) + "; it must be displacement, pressure or strain; default displacement");
+  throw std::invalid_argument(what + " is " + inQuotes(name) +
+                              "; it must be displacement, pressure or strain; default displacement");
 }
 
 std_msgs::ColorRGBA rgba(float r, float g, float b, float a) {

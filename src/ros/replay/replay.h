@@ -17,9 +17,9 @@ struct ReplayOptions {
   double from_s = 0.0;                                          ///< of the recording are played: from this on,
   double duration_s = std::numeric_limits<double>::infinity();  ///< and so long
   std::string urdf_file;                                        ///< empty: no scene parameter holds a URDF
-  std::string changes_topic;                                    ///< of Changes in the bag; empty: the only one there; "none"
-  std::string timing_file;                                      ///< empty: wall times are not written
-  long dump_step = 0;  ///< implicit step whose contact problem is written to `dump_file`, from 1; 0: none
+  std::string changes_topic;  ///< of Changes in the bag; empty: the only one there; "none"
+  std::string timing_file;    ///< empty: wall times are not written
+  long dump_step = 0;         ///< implicit step whose contact problem is written to `dump_file`, from 1; 0: none
   std::string dump_file;
   bool help = false;  ///< show the usage and do nothing
 };

@@ -51,8 +51,8 @@ std::string replayUsage() {
 }
 
 ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
-  const CommandLine line(arguments, {{"--scene", "--bag", "--csv", "--out", "--plot", "--from", "--duration", "--urdf", "--changes",
-                                      "--timing", "--dump-step", "--dump-file"},
+  const CommandLine line(arguments, {{"--scene", "--bag", "--csv", "--out", "--plot", "--from", "--duration", "--urdf",
+                                      "--changes", "--timing", "--dump-step", "--dump-file"},
                                      {},
                                      {}});
   ReplayOptions options;

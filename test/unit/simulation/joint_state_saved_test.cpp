@@ -9,8 +9,8 @@ namespace tissue_contact {
 namespace {
 
 /// The samples from `from` on; afterwards what was published for them.
-Trace goOn(Simulator& simulator, JointStatePlayer& player, const std::vector<JointStateSample>& samples, std::size_t from,
-           std::size_t to) {
+Trace goOn(Simulator& simulator, JointStatePlayer& player, const std::vector<JointStateSample>& samples,
+           std::size_t from, std::size_t to) {
   Order order;
   for (std::size_t i = from; i < to; ++i) order.emplace_back(0, samples[i]);
   return run(simulator, player, order);

@@ -27,12 +27,13 @@ void PrintTo(const Variant& variant, std::ostream* out) { *out << variant.name; 
 
 /// A 5 mm ball, 0.1 mm above the middle of a block whose base is fixed.
 Simulator make(const Variant& variant) {
-  const std::string tissue = variant.name == "sheet"
-                                 ? "tissues:\n  - name: block\n    sheet: {size_m: [0.06, 0.06], cells: [8, 8], thickness_m: 0.001}\n"
-                                   "    pose: {position_m: [0, 0, 0.0195]}\n"
-                                   "    material: {youngs_modulus_pa: 5000, density_kg_per_m3: 1000, " +
-                                       variant.material + "}\n    fixed: [{box: {min_m: [-1, -1, -1], max_m: [-0.029, 1, 1]}}]\n"
-                                 : blockScene("[0.06, 0.06, 0.02]", "[6, 6, 3]", variant.material);
+  const std::string tissue =
+      variant.name == "sheet"
+          ? "tissues:\n  - name: block\n    sheet: {size_m: [0.06, 0.06], cells: [8, 8], thickness_m: 0.001}\n"
+            "    pose: {position_m: [0, 0, 0.0195]}\n"
+            "    material: {youngs_modulus_pa: 5000, density_kg_per_m3: 1000, " +
+                variant.material + "}\n    fixed: [{box: {min_m: [-1, -1, -1], max_m: [-0.029, 1, 1]}}]\n"
+          : blockScene("[0.06, 0.06, 0.02]", "[6, 6, 3]", variant.material);
   return makeSimulator(tissue + variant.tissue + onlyBall("[0.001, 0.002, 0.0251]") +
                            "friction: [{instrument: probe, tissue: block, " + variant.friction + "}]\n" + variant.scene,
                        {{"probe", probeUrdf(0.005)}});
@@ -72,7 +73,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "model: corotational, poissons_ratio: 0.4, prony_series: [{modulus_ratio: 0.5, time_s: 0.1}]"},
         Variant{"sheet", "model: membrane, poissons_ratio: 0.3"},
         Variant{"attached", "model: corotational, poissons_ratio: 0.4",
-                "    attachments: [{where: [{box: {min_m: [-1, -1, -1], max_m: [1, 1, 0.011]}}], stiffness_n_per_m: 20}]\n"},
+                "    attachments: [{where: [{box: {min_m: [-1, -1, -1], max_m: [1, 1, 0.011]}}], stiffness_n_per_m: "
+                "20}]\n"},
         Variant{"adapting", "model: corotational, poissons_ratio: 0.4", "", "advisor: {rotations: auto}\n"},
         Variant{"by_pressure", "model: corotational, poissons_ratio: 0.4", "", "", 230,
                 "static: 0.5, kinetic: 0.4, pressures_pa: [0, 1000], pressure_factors: [1, 0.5]"},
@@ -144,10 +146,12 @@ class RefusedState : public ::testing::Test {
 
 TEST_F(RefusedState, OfAnotherSceneWithTheReason) {
   const std::string state = saved();
-  EXPECT_NE(refusalOf(state, {"softer", "model: corotational, poissons_ratio: 0.44"}).find("material"), std::string::npos);
+  EXPECT_NE(refusalOf(state, {"softer", "model: corotational, poissons_ratio: 0.44"}).find("material"),
+            std::string::npos);
   EXPECT_NE(refusalOf(state, {"moved", kPlain.material, "    pose: {position_m: [0, 0, 0.001]}\n"}).find("mesh"),
             std::string::npos);
-  EXPECT_NE(refusalOf(state, {"refined", kPlain.material, "    refinement: auto\n"}).find("refined"), std::string::npos);
+  EXPECT_NE(refusalOf(state, {"refined", kPlain.material, "    refinement: auto\n"}).find("refined"),
+            std::string::npos);
   Simulator without_tool = makeSimulator(blockScene() + "instruments: []\n");
   EXPECT_NE(refusal([&] { without_tool.restoreState(state); }).find("number of instruments"), std::string::npos);
 }
@@ -175,7 +179,8 @@ TEST_F(RefusedState, WhateverStandsInItNothingBreaks) {
   for (int k = 0; k < kPlaces; ++k) {
     std::string deceiving = state.substr(0, end);
     // The end holds the contacts.
-    const std::size_t at = k < kPlaces / 2 ? end - 1 - 61 * static_cast<std::size_t>(k) : end / kPlaces * static_cast<std::size_t>(k) + 40;
+    const std::size_t at =
+        k < kPlaces / 2 ? end - 1 - 61 * static_cast<std::size_t>(k) : end / kPlaces * static_cast<std::size_t>(k) + 40;
     for (std::size_t i = at; i < std::min(at + 8, end); ++i) deceiving[i] = static_cast<char>(k % 2 == 0 ? 0xff : 0x7f);
     const std::uint64_t hash = hashBytes(deceiving.data(), deceiving.size());
     deceiving.append(reinterpret_cast<const char*>(&hash), sizeof hash);
