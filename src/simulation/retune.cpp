@@ -72,13 +72,14 @@ void Simulator::retune(const Scene& changed) {
 }
 
 /// Within a step and not when asked to: till then residuals, contacts and force errors are those of the step before, and are computed
-/// from its materials and laws. Refined meshes are made from the scene's description, so that the next ones have the numbers as well.
+/// from its materials and laws. Refined meshes are made from a description of their own, which takes the numbers as well.
 void Simulator::Implementation::retune() {
   const Scene changed = std::move(*retuned);
   retuned.reset();
   bool is_other_body = false;
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     if (!takeTissue(changed.tissues[t], scene.tissues[t])) continue;
+    if (refinements[t]) takeTissue(changed.tissues[t], refinements[t]->description());
     tissues[t].changeMaterials(scene.tissues[t]);
     load_watch.setMaterials(static_cast<int>(t), scene.tissues[t]);
     moving[t].changeMaterials();

@@ -46,6 +46,8 @@ class TissueRefinement {
   TissueRefinement(const TissueDescription& description, const Pose& X_WT, const MeshSizeCheck& on_size,
                    const MeshPreparation& preparation = {});
 
+  /// What tissue() is made from; numbers of its materials and damping may change.
+  TissueDescription& description() { return description_; }
   Tissue tissue() const { return {description_, X_WT_, mesh_}; }  ///< with the present mesh
   int revision() const { return revision_; }                      ///< how often the mesh has changed
   int nodesAtMost() const { return nodes_at_most_; }

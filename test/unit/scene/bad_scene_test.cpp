@@ -14,7 +14,7 @@ TEST_P(BadSceneTest, IsRefusedWithItsPlace) { expectRefused(kFullScene, GetParam
 const BadScene kKeys[] = {
     {"world_frame: lab", "word_frame: lab", "1: word_frame", "unknown key; did you mean \"world_frame\"?"},
     {"youngs_modulus_pa: 5e3", "youngs_modulus: 5e3", "17: tissues[0].material.youngs_modulus",
-     "did you mean \"youngs_modulus_pa\"? allowed here: model, dilatation, youngs_modulus_pa, poissons_ratio, "
+     "did you mean \"youngs_modulus_pa\"? allowed here: preset, model, dilatation, youngs_modulus_pa, poissons_ratio, "
      "density_kg_per_m3"},
     {"  tf: true", "  tff: true", "73: publish.tff", "unknown key; did you mean \"tf\"?"},
     {"  contact_passes: 3", "  zzz: 3", "66: solver.zzz", "unknown key; allowed here: method, relaxation, iterations"},
@@ -32,7 +32,7 @@ const BadScene kKeys[] = {
      "15: tissues[0].pose.quaternion_xyzw", "cannot be given together"},
     {"{growth: 1.5}", "{fine_at: center}", "10: tissues[0].block.grading.y", "required key \"growth\" is missing"},
     {"      - sphere: {center_m: [0.1, 0.2, 0.3], radius_m: 0.05}", "      - {}", "26: tissues[0].fixed[2]",
-     "none of box, plane, sphere is given"},
+     "none of box, plane, sphere, group, cell_data is given"},
     {"pose: {position_m: [0, 0, 0.005], rpy_rad: [0, 0, 1.5]}", "pose: {tf_frame: x}",
      "52: instruments[0].contact_links[1].shapes[1].pose.tf_frame", "unknown key"},
     {"    damping:", "    \"damp\\ning\":", "20: tissues[0].damp?ing", "did you mean \"damping\"?"},
@@ -157,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(Names, BadSceneTest, testing::ValuesIn(kNames));
 
 const BadScene kFiles[] = {
     {"file: organ.vtk", "file: other.vtk", "29: tissues[1].mesh.file", "other.vtk' does not exist"},
-    {"file: organ.vtk", "file: organ.stl", "29: tissues[1].mesh.file", "allowed endings: .msh, .vtk"},
+    {"file: organ.vtk", "file: organ.step", "29: tissues[1].mesh.file", "allowed endings: .msh, .vtk"},
     {"urdf: package://tissue_contact/arm.urdf", "urdf: package://tissue_contact/leg.urdf", "36: instruments[0].urdf",
      "leg.urdf' does not exist"},
     {"urdf: package://tissue_contact/arm.urdf", "urdf: arm.urdf.xacro", "36: instruments[0].urdf",
