@@ -7,9 +7,11 @@ Writes a folder with
 and prints the command that turns both into forces. Edit the scene, or record your own robot over it.
 """
 import argparse
+import json
 import math
 import os
 import re
+import shlex
 import sys
 
 import numpy
@@ -34,7 +36,7 @@ world_frame: world
 tissues:
   - name: {name}
     mesh:
-      file: {file}
+      file: {quoted}
       scale_m_per_unit: {scale:g}  # it then is {size[0]:.3g} x {size[1]:.3g} x {size[2]:.3g} m
       cell_size_m: {cell:.3g}  # edge of the tetrahedra: half of it has eight times as many
     refinement: {{cell_m: {fine:.3g}}}  # and fine ones where the probe is, a third of its ball's radius at most
@@ -158,9 +160,11 @@ def main():
     name = re.sub("[^a-z0-9_]", "_", os.path.splitext(os.path.basename(arguments.surface))[0].lower())
     folder = os.path.abspath(arguments.out)
     scene, bag = os.path.join(folder, "scene.yaml"), os.path.join(folder, "probe.bag")
-    text = SCENE.format(name=name if name[0].isalpha() else "organ_" + name, file=os.path.abspath(arguments.surface),
-                        scale=arguments.scale, size=size, cell=cell, fine=min(0.3 * BALL_M, 0.5 * cell), material=arguments.material, held=low[2] + HELD * size[2], part=100 * HELD, start=path[0],
-                        clearance=1e3 * CLEARANCE_M, topic=TOPIC)
+    text = SCENE.format(
+        name=name if name[0].isalpha() else "organ_" + name, file=json.dumps(os.path.basename(arguments.surface)),
+        quoted=json.dumps(os.path.abspath(arguments.surface)), scale=arguments.scale, size=size, cell=cell,
+        fine=min(0.3 * BALL_M, 0.5 * cell), material=arguments.material, held=low[2] + HELD * size[2], part=100 * HELD,
+        start=path[0], clearance=1e3 * CLEARANCE_M, topic=TOPIC)
     try:
         os.makedirs(folder, exist_ok=True)
         with whole_file(scene, [arguments.surface]) as part, open(part, "w", encoding="utf-8") as stream:
@@ -170,7 +174,7 @@ def main():
     print("%s: the %s, pressed %.1f mm" % (scene, name, 1e3 * depth))
     write(bag, {TOPIC: list(enumerate("xyz"))}, lambda time: position_at(rows, time), rows[-1][0], [arguments.surface])
     print("forces, with plots:\n  rosrun tissue_contact run_launch.py scene.launch scene:=%s bag:=%s output:=%s rate:=0.25" %
-          (scene, bag, os.path.join(folder, "plots")))
+          tuple(map(shlex.quote, (scene, bag, os.path.join(folder, "plots")))))
 
 
 if __name__ == "__main__":

@@ -25,6 +25,7 @@ from whole_file import whole_file
 # Of the angle RViz opens to both sides of the view, 22.5 degrees: a ball of that radius fills the height of the window at
 # 2.6 radii. What is looked at is a box, and mostly lower than long.
 RADII_AWAY = 2.3
+PATIENCE_S = 10.0  # before it says what it waits for
 
 
 def fail(message):
@@ -105,7 +106,14 @@ def configuration(markers, node):
 def markers_of(node):
     """The first markers of the node. It shows them to whoever comes, before its first joint state too."""
     rospy.init_node("open_rviz", argv=[], anonymous=True, disable_signals=True)  # not by the name that RViz is to have
-    markers = rospy.wait_for_message(node + "/markers", MarkerArray).markers
+    markers = None
+    while markers is None:
+        try:
+            markers = rospy.wait_for_message(node + "/markers", MarkerArray, timeout=PATIENCE_S).markers
+        except rospy.ROSInterruptException:
+            raise
+        except rospy.ROSException:
+            print("waiting for %s/markers: the node must run, and publish.markers_rate_hz of its scene be above 0" % node, flush=True)
     rospy.signal_shutdown("has the view")
     return markers
 

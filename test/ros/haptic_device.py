@@ -65,6 +65,12 @@ class Haptics(harness.TestCase):
         self.feeder = Feeder()
         self.addCleanup(self.feeder.stop)
 
+    @staticmethod
+    def haptics_is_connected():
+        """Whether wrenches come in: a publisher does not keep what it sent before."""
+        node = ServerProxy(rosgraph.Master("/test").lookupNode("/haptics"))
+        return any(link[2] == "i" and link[4].endswith("/wrench") for link in node.getBusInfo("/test")[2])
+
     def wait_for_force(self, expected, after=0):
         """Until a command after so many has that force; returns how many had come by then."""
         got = self.commands.wait(lambda all: any(math.dist(force_of(m), expected) < 1e-12 for m in all[after:]), "the force %s" % (expected,))
@@ -122,6 +128,7 @@ class Haptics(harness.TestCase):
                  "max_force_n:=0.1", "stale_after_s:=0.2"]):
             self.commands = harness.Listener(COMMAND, WrenchStamped)
             wrenches = harness.wrenches()
+            harness.wait_until(self.haptics_is_connected, "its connection")
             harness.JointSource().send_all(harness.press(50))
             wrenches.wait(lambda all: len(all) >= 50, "all wrenches")
             self.assertGreater(max(math.hypot(*force_of(m)) for m in wrenches.messages), 0.1)

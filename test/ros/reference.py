@@ -108,7 +108,7 @@ class Reference(harness.TestCase):
         return harness.diagnostics().wait(lambda all: all and all[-1].status[0].values, "diagnostics with figures")[-1]
 
     def test_topics_and_services(self):
-        with harness.node(harness.SCENE):
+        with harness.node(self.changed_scene({RATES: RATES[:-1] + ", crtk: true}"})):
             source = harness.JointSource()
             diagnostics = self.wait_for_all()
             documented = of_table("Published topics", "type")
