@@ -39,6 +39,12 @@ void StateArchive::section(const std::string& name) {
   if (stored != name) refuse("'" + stored + "' stands there");
 }
 
+void StateArchive::carry(bool& value) {
+  unsigned char byte = value ? 1 : 0;
+  bytes(&byte, sizeof byte);
+  value = byte != 0;
+}
+
 void StateArchive::carry(std::vector<bool>& values) {
   requireSize(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -90,6 +96,7 @@ void StateArchive::requireSize(std::uint64_t size) {
 std::size_t StateArchive::carrySize(std::size_t size, std::size_t most) {
   std::uint64_t stored = size;
   bytes(&stored, sizeof stored);
+  if (reading_ && stored > end_ - at_) refuse("more entries than there are bytes");
   if (stored > most) refuse(std::to_string(stored) + " entries, where at most " + std::to_string(most) + " may be");
   return stored;
 }

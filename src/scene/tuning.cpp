@@ -88,9 +88,15 @@ class Places {
                 region.damping_stiffness_s);
     constexpr const char* kGiven[] = {".material.youngs_modulus_pa", ".material.poissons_ratio",
                                       ".damping.stiffness_s"};
+    // `material: NAME` is an entry without any below it.
+    const auto below = scene_.entry_lines.lower_bound(entry + ".material.");
+    const bool has_keys = below != scene_.entry_lines.end() && below->first.rfind(entry + ".material.", 0) == 0;
+    const bool is_by_name = scene_.entry_lines.count(entry + ".material.preset") > 0 ||
+                            (scene_.entry_lines.count(entry + ".material") > 0 && !has_keys);
+    constexpr std::size_t kOfPreset = 2;  // the first two
     std::size_t place = begin;
     for (std::size_t i = 0; i < std::size(kGiven); ++i) {
-      if (scene_.entry_lines.count(entry + kGiven[i]) > 0) {
+      if ((is_by_name && i < kOfPreset) || scene_.entry_lines.count(entry + kGiven[i]) > 0) {
         ++place;
         continue;
       }

@@ -285,7 +285,6 @@ void JointStatePlayer::forgetSamples() {
     topic.queue.clear();
     topic.held.clear();
     topic.last.reset();
-    topic.taken.reset();
   }
   newest_.reset();
   released_.reset();
@@ -303,8 +302,11 @@ std::string JointStatePlayer::saveState() {
 
 void JointStatePlayer::restoreState(const std::string& state) {
   restoreOrPutBack(
-      stateTitle(), state, saveState(), [this](StateArchive& archive) { carry(archive); }, [this] { reset(); });
+      stateTitle(), state, [this] { return saveState(); }, [this](StateArchive& archive) { carry(archive); }, [this] { reset(); });
   forgetSamples();
+  for (Topic& topic : topic_states_) {
+    if (topic.taken) topic.taken->epoch = epoch_;
+  }
   owes_.assign(owes_.size(), false);
   restored_ = time_ns_.has_value();
 }
@@ -314,7 +316,17 @@ void JointStatePlayer::carry(StateArchive& archive) {
   archive.section("joint states");
   archive.carry(time_ns_);
   archive.carry(behind_ns_);
+  constexpr std::int64_t kCentury_ns = 4'000'000'000'000'000'000;  // and so that no difference of two overflows
+  archive.check(!time_ns_ || (*time_ns_ >= 0 && *time_ns_ <= kCentury_ns), "a time that no stamp has");
   archive.check(behind_ns_ >= 0 && behind_ns_ < std::max<std::int64_t>(shortest_ns_, 1), "a time that is none");
+  archive.require(topic_states_.size(), "it has another number of topics");
+  for (Topic& topic : topic_states_) {
+    std::optional<std::int64_t> taken_ns;
+    if (topic.taken && topic.taken->epoch == epoch_) taken_ns = topic.taken->stamp_ns;
+    archive.carry(taken_ns);
+    archive.check(!taken_ns || (*taken_ns >= 0 && *taken_ns <= kCentury_ns), "a time that no stamp has");
+    if (archive.isReading()) topic.taken = taken_ns ? std::optional(Moment{epoch_, *taken_ns}) : std::nullopt;
+  }
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     archive.carry(targets_[i]);
     archive.carry(heard_[i]);

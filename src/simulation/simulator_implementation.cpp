@@ -30,15 +30,35 @@ std::vector<NodalVectors> restPositionsOf(const std::vector<Tissue>& tissues) {
   return positions;
 }
 
+/// Of where its links are at the start, and of its shapes as far as these are numbers of their own.
+std::uint64_t instrumentHash(const Instrument& instrument) {
+  std::vector<Pose> X_WL;
+  instrument.linkPoses(instrument.initialPositions(), X_WL);
+  std::uint64_t hash = X_WL.size();
+  for (const Pose& pose : X_WL) hash = hashBytes(pose.data(), 16 * sizeof(double), hash);
+  for (const ContactLink& link : instrument.contactLinks()) {
+    hash = hashBytes(&link.link, sizeof link.link, hash);
+    for (const CollisionShape& shape : link.shapes) {
+      const double half_extent = smallestHalfExtent(shape);
+      hash = hashBytes(shape.X_LS.data(), 16 * sizeof(double), hash);
+      hash = hashBytes(&half_extent, sizeof half_extent, hash);
+    }
+  }
+  return hash;
+}
+
 /// Of what the material makes of the undeformed mesh.
-std::uint64_t materialHash(const Tissue& tissue) {
+std::uint64_t materialHash(const Tissue& tissue, const TissueDescription& description) {
   const auto undeformed = tissue.elasticity().makeState();
   std::uint64_t hash = hashBytes(tissue.nodeMasses().data(), sizeof(double) * tissue.nodeMasses().size());
   for (const BlockMatrix* matrix : {&undeformed->stiffness, &undeformed->damping}) {
     for (const Matrix3& block : matrix->diagonal) hash = hashBytes(block.data(), sizeof block, hash);
   }
-  const double damping[] = {tissue.damping().stiffness_s, tissue.damping().mass_per_s};
-  return hashBytes(damping, sizeof damping, hash);
+  const double more[] = {tissue.damping().stiffness_s, tissue.damping().mass_per_s, description.pressure_pa};
+  for (const PronyTerm& term : description.material.prony_series) {
+    hash = hashBytes(&term.modulus_ratio, sizeof(double), hashBytes(&term.time_s, sizeof(double), hash));
+  }
+  return hashBytes(more, sizeof more, hash);
 }
 
 }  // namespace
@@ -103,9 +123,11 @@ void Simulator::Implementation::reset() {
 }
 
 void Simulator::Implementation::carry(StateArchive& archive) {
+  if (retuned) retune();  // numbers that the next step has
   carryMeshes(archive);
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     archive.section("instrument '" + instruments[i].name() + "'");
+    archive.require(instrumentHash(instruments[i]), "it has another model, or stands elsewhere");
     VectorX positions = motion.positions(static_cast<int>(i));
     archive.carry(positions);
     archive.check(positions.allFinite(), "a joint position that is not finite");
@@ -161,7 +183,7 @@ void Simulator::Implementation::carryMeshes(StateArchive& archive) {
     archive.require(hashBytes(rest.data(), bytes(rest)), "the mesh, or its place in the world, is another one");
     const std::vector<Tetrahedron>& elements = tissues[t].tetrahedra();
     archive.require(hashBytes(elements.data(), bytes(elements)), "the elements are others");
-    archive.require(materialHash(tissues[t]),
+    archive.require(materialHash(tissues[t], scene.tissues[t]),
                     "the material is another one, or was changed while it ran: change it likewise first");
   }
 }

@@ -83,7 +83,9 @@ std::unique_ptr<Elasticity::State> AttachedElasticity::makeStateAt(const NodalVe
 
 std::unique_ptr<Elasticity::State> AttachedElasticity::makeStateAfter(const State& before,
                                                                       const NodalVectors& x) const {
-  return attach(body_->makeStateAfter(*static_cast<const AttachedState&>(before).body, x));
+  auto state = attach(body_->makeStateAfter(*static_cast<const AttachedState&>(before).body, x));
+  state->elapsed_s = before.elapsed_s;
+  return state;
 }
 
 std::unique_ptr<Elasticity::State> AttachedElasticity::attach(std::unique_ptr<State> body) const {

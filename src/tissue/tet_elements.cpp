@@ -85,6 +85,7 @@ void TetElements::Held::carry(StateArchive& archive, std::size_t batches, int no
   carryRanges(archive, batches, still);
   bool any = forces.cols() > 0;
   archive.carry(any);
+  archive.check(any || still.empty(), "elements at rest without forces");
   forces.resize(3, any ? nodes : 0);
   archive.carry(forces);
 }

@@ -91,6 +91,28 @@ class Services(harness.TestCase):
             source.send_all(samples[30:])
             self.assertEqual(self.bits(wrenches, 30), expected)
 
+    def test_what_waits_is_not_taken_into_another_state(self):
+        samples = harness.press(60)
+        state = self.path("press.state")
+        with harness.node(harness.SCENE):
+            wrenches = harness.wrenches()
+            diagnostics = harness.diagnostics()
+            source = harness.JointSource()
+            source.send_all(samples[:30])
+            self.bits(wrenches, 30)
+            self.call("save_state", state)
+            source.send_all(samples[30:40])
+            expected = self.bits(wrenches, 40)[30:]
+            self.call("pause")
+            source.send_all(samples[40:])
+            diagnostics.wait(lambda all: all and faults.figures(all[-1]).get("joint states: waiting") == "20", "20 states that wait")
+            self.call("load_state", state)
+            self.call("resume")
+            source.send_all(samples[30:40])
+            self.assertEqual(self.bits(wrenches, 50)[40:], expected)
+            told = faults.all_told(diagnostics, 70)
+            self.assertEqual(told["joint states: merged"], "20")
+
     def test_what_is_no_state_of_this_scene_is_refused(self):
         samples = harness.press(40)
         other = self.changed_scene({"youngs_modulus_pa: 5000": "youngs_modulus_pa: 6000"})

@@ -8,9 +8,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <stdexcept>
+#include <exception>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace tissue_contact {
@@ -31,7 +32,8 @@ class StateArchive {
   /// Names what follows, for messages, and is checked on reading.
   void section(const std::string& name);
 
-  /// A number, flag or enumerator.
+  void carry(bool& value);
+  /// A number or enumerator.
   template <typename Value, std::enable_if_t<std::is_arithmetic_v<Value> || std::is_enum_v<Value>, int> = 0>
   void carry(Value& value) {
     bytes(&value, sizeof value);
@@ -105,22 +107,24 @@ class StateArchive {
   std::string section_;
 };
 
-/// Reads `state` by `carry(StateArchive&)`. If that refuses it, reads `before`, and if that cannot be read either, because what was
-/// saved there had run away, calls reset(); and throws what the first refused.
-template <typename Carry, typename Reset>
-void restoreOrPutBack(const std::string& title, const std::string& state, const std::string& before, const Carry& carry,
+/// Reads `state` by `carry(StateArchive&)`. If that fails, reads what `save()` gave before, and if that cannot be read either, because
+/// what was saved there had run away, calls reset(); and throws what the first threw. Of what is no saved state, or damaged, nothing
+/// of all this is done.
+template <typename Carry, typename Save, typename Reset>
+void restoreOrPutBack(const std::string& title, const std::string& state, const Save& save, const Carry& carry,
                       const Reset& reset) {
-  const auto read = [&](const std::string& bytes) {
-    StateArchive archive(title, bytes);
+  const auto read = [&](StateArchive archive) {
     carry(archive);
     archive.requireEnd();
   };
+  StateArchive archive(title, state);
+  const std::string before = save();
   try {
-    read(state);
-  } catch (const std::invalid_argument&) {
+    read(std::move(archive));
+  } catch (const std::exception&) {
     try {
-      read(before);
-    } catch (const std::invalid_argument&) {
+      read(StateArchive(title, before));
+    } catch (const std::exception&) {
       reset();
     }
     throw;

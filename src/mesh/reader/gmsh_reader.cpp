@@ -409,6 +409,7 @@ void GmshReader::readEntity(int dimension) {
     in_.fail("an entity belongs to " + std::to_string(count) + " physical groups; at most " +
              std::to_string(kMostGroups) + " are read: use fewer");
   }
+  if (numbers_of_.count({dimension, tag}) > 0) in_.fail("an entity is given twice");
   for (std::size_t i = 0; i < count; ++i) {
     // Gmsh writes the number of a group that is oriented the other way with a minus.
     numbers_of_[{dimension, tag}].push_back(std::abs(in_.integer(kInt, "a physical group")));

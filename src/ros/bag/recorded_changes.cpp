@@ -61,7 +61,8 @@ void selectTopic(const std::string& topic, BagReader& bag) {
 
 }  // namespace
 
-RecordedChanges::RecordedChanges(const std::string& file, const std::string& topic, const Scene& scene)
+RecordedChanges::RecordedChanges(const std::string& file, const std::string& topic, const Scene& scene,
+                                 ros::Time recording_begins)
     : scene_(scene) {
   BagReader bag(file);
   const auto& all = bag.connections();
@@ -76,6 +77,7 @@ RecordedChanges::RecordedChanges(const std::string& file, const std::string& top
       left -= recorded.keys.size();
       Change& change = changes_.emplace_back();
       change.loop = recorded.loop;
+      change.is_latched = message.recorded <= recording_begins;
       change.stamp_ns = kNanosecondsPerSecond * recorded.header.stamp.sec + recorded.header.stamp.nsec;
       for (std::size_t i = 0; i < recorded.keys.size(); ++i) {
         change.numbers.push_back({recorded.keys[i], recorded.values[i]});
@@ -97,9 +99,12 @@ std::optional<Scene> RecordedChanges::takeDue(std::int64_t loop, const std::opti
   if (taken_ == changes_.size()) return std::nullopt;
   const Change& change = changes_[taken_];
   // What came before the first moment of the recording is there from its start.
-  const bool is_due = played_ns ? std::pair(loop, *played_ns) >= std::pair(change.loop, change.stamp_ns)
-                                : change.loop == 0 && change.stamp_ns < next_ns;
+  // What came before the first moment of the recording is there from its start.
+  const bool is_due = played_ns ? std::pair(first_loop_ + loop, *played_ns) >= std::pair(change.loop, change.stamp_ns)
+                                : next_ns > 0 && (change.is_latched ||
+                                                  (change.loop == first_loop_ && change.stamp_ns < next_ns));
   if (!is_due) return std::nullopt;
+  if (!played_ns) first_loop_ = change.loop;
   ++taken_;
   return tuned(scene_, change.numbers);
 }

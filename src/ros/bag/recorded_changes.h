@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstddef>
+#include <ros/time.h>
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,7 +24,9 @@ class RecordedChanges {
   /// @param scene without them; must outlive this.
   /// @throws std::runtime_error when the bag cannot be read, several topics have changes and none is named, the named one has none, or
   ///   a change is not one of this scene.
-  RecordedChanges(const std::string& file, const std::string& topic, const Scene& scene);
+  /// @param recording_begins of the first joint state. A change recorded before it is a latched one: it holds from the start, whatever
+  ///   its loop, which the recording begins in.
+  RecordedChanges(const std::string& file, const std::string& topic, const Scene& scene, ros::Time recording_begins);
 
   std::size_t count() const { return changes_.size(); }
   std::size_t taken() const { return taken_; }
@@ -37,12 +41,14 @@ class RecordedChanges {
   struct Change {
     std::int64_t loop = 0;
     std::int64_t stamp_ns = 0;
+    bool is_latched = false;
     std::vector<TunedNumber> numbers;
   };
 
   const Scene& scene_;
   std::vector<Change> changes_;
   std::size_t taken_ = 0;
+  std::int64_t first_loop_ = 0;  ///< that the recording begins in
 };
 
 }  // namespace tissue_contact

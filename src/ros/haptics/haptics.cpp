@@ -16,6 +16,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "ros/conversions.h"
@@ -143,12 +144,14 @@ class Haptics {
   void take(const geometry_msgs::WrenchStamped& message) {
     const geometry_msgs::Vector3& force = message.wrench.force;
     const geometry_msgs::Vector3& torque = message.wrench.torque;
-    const std::lock_guard<std::mutex> lock(mutex_);
+    std::unique_lock<std::mutex> lock(mutex_);
     output_.take({{force.x, force.y, force.z}, {torque.x, torque.y, torque.z}}, nowNs());
     if (frame_.empty()) command_.header.frame_id = message.header.frame_id;
-    if (output_.notFinite() > told_not_finite_) {
-      ROS_WARN_STREAM_THROTTLE(10.0, "wrenches that are not finite command zero: " << output_.notFinite() << " so far");
-      told_not_finite_ = output_.notFinite();
+    const auto not_finite = output_.notFinite();
+    const bool is_new = not_finite > std::exchange(told_not_finite_, not_finite);
+    lock.unlock();  // a log that blocks must not hold the last force
+    if (is_new) {
+      ROS_WARN_STREAM_THROTTLE(10.0, "wrenches that are not finite command zero: " << not_finite << " so far");
     }
   }
 

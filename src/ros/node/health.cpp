@@ -260,7 +260,14 @@ void Health::notePaused(bool paused) {
   figures_.paused = paused;
 }
 
+void Health::noteFailure() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  figures_.failed = true;
+}
+
 void Health::noteReset() {
+  law_alarm_ = LawAlarm();
+  told_of_cells_ = false;
   const std::lock_guard<std::mutex> lock(mutex_);
   figures_.broken = false;
   figures_.resets = player_.resets();
@@ -330,7 +337,9 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   const LagVerdict lag = judgeLag(worst_lag_s, bound_s);
   const auto two_clocks = static_cast<std::size_t>(Verdict::kTwoClocks);
   const bool is_strained = now.newest_state && now.lengthened > told_.lengthened;
-  if (now.broken) {
+  if (now.failed) {
+    status.summary(Level::ERROR, "has stopped: see the log");
+  } else if (now.broken) {
     status.summary(Level::ERROR, "a step had no finite answer");
   } else if (now.by_verdict[two_clocks] > told_.by_verdict[two_clocks] + 1) {  // one may be an outlier
     status.summary(Level::ERROR, "two clocks on one topic: joint states of one of them are refused");

@@ -53,6 +53,7 @@ class Health {
   void noteForceErrors(std::int64_t stamp_ns);
 
   void notePaused(bool paused);
+  void noteFailure();  ///< the stepping thread ends
   void noteReset();  ///< the simulation began anew, or with another state
   void noteSnapshotsDropped(std::int64_t dropped);
   void notePolicy(bool newest_state);

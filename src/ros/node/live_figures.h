@@ -47,6 +47,7 @@ struct LiveFigures {
   std::int64_t pinched = 0;           ///< intervals whose last step left out contacts without room
   bool broken = false;                ///< not finite since the last reset
 
+  bool failed = false;         ///< the stepping thread has ended by itself
   bool paused = false;         ///< by ~pause
   bool newest_state = false;   ///< policy: else every state
   double lag_s = 0.0;          ///< of the last wrench behind the receipt of its state; of a step that runs, so far

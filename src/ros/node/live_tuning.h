@@ -57,6 +57,9 @@ class LiveTuning {
   /// What has changed since the last call; nothing: nothing has. For the stepping thread, before each moment: else one look at an atomic.
   std::optional<LiveNumbers> take();
 
+  /// No request is judged from now on.
+  void stop() { service_.shutdown(); }
+
   /// Echoes what was taken, if it changes what is simulated.
   /// @param stamp_ns of the moment played last, 0: none yet. @param loop see Changes.msg.
   void echo(const LiveNumbers& taken, std::int64_t stamp_ns, std::int64_t loop);

@@ -147,6 +147,7 @@ void Node::start() {
 }
 
 void Node::stop() {
+  tuning_.stop();
   stepper_.stop();
   services_.stop();
   receiver_.stop();

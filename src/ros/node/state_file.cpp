@@ -28,13 +28,17 @@ std::string absolute(const std::string& file) {
   return error ? file : path.lexically_normal().string();
 }
 
-void requireReplaceable(const std::string& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error) || std::filesystem::file_size(file, error) == 0) return;
+bool beginsAsState(const std::string& file) {
   const std::string title = JointStatePlayer::stateTitle();
   std::string begins(title.size(), '\0');
   std::ifstream(file, std::ios::binary).read(begins.data(), static_cast<std::streamsize>(begins.size()));
-  if (begins == title) return;
+  return begins == title;
+}
+
+void requireReplaceable(const std::string& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error) || std::filesystem::file_size(file, error) == 0) return;
+  if (beginsAsState(file)) return;
   throw std::invalid_argument("'" + printable(absolute(file), kMostLetters) +
                               "' is there already and is no saved state, so it is not replaced; name another file");
 }
@@ -55,14 +59,20 @@ std::string saveStateFile(JointStatePlayer& player, const std::string& file) {
   return told(file, state.size());
 }
 
-std::string loadStateFile(JointStatePlayer& player, const std::string& file) {
+std::string loadStateFile(JointStatePlayer& player, const std::string& file, const std::function<void()>& before) {
   requireName(file);
+  const std::string name = printable(absolute(file), kMostLetters);
+  requireRegularFile(file, "saved state", kMostBytes);
+  if (!beginsAsState(file)) {
+    throw std::invalid_argument("'" + name + "' does not begin with '" + JointStatePlayer::stateTitle() +
+                                "': it is no saved state, or one of another version");
+  }
   const std::string state = readFile(file, "saved state", kMostBytes);
   try {
+    before();
     player.restoreState(state);
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("'" + printable(absolute(file), kMostLetters) +
-                                "' is not loaded, and nothing has changed: " + error.what());
+    throw std::invalid_argument("'" + name + "' is not loaded, and nothing has changed: " + error.what());
   }
   return told(file, state.size());
 }

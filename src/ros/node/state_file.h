@@ -2,6 +2,7 @@
 /// Room `ros`, private: saved states in files. No ROS inside.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "tissue_contact/simulation/joint_state_player.h"
@@ -14,7 +15,8 @@ namespace tissue_contact {
 ///   of the ROS graph may name one.
 std::string saveStateFile(JointStatePlayer& player, const std::string& file);
 
+/// @param before called once the file is known to begin as a saved state, before it is taken.
 /// @return the same. @throws std::exception naming the file and what does not fit; nothing has changed then.
-std::string loadStateFile(JointStatePlayer& player, const std::string& file);
+std::string loadStateFile(JointStatePlayer& player, const std::string& file, const std::function<void()>& before);
 
 }  // namespace tissue_contact

@@ -66,6 +66,7 @@ void Stepper::run() {
     }
   } catch (const std::exception& error) {
     ROS_FATAL_STREAM(error.what());
+    health_.noteFailure();
     failed_ = true;
   }
   requests_.close();
@@ -151,12 +152,23 @@ void Stepper::publish(const PlayedSample& played, const std::optional<Receipt>& 
   health_.noteSnapshotsDropped(outputs_.snapshotsDropped());
 }
 
-Answer Stepper::reset() {
-  player_.reset();
-  played_stamp_ns_ = 0;
+/// Of another simulation: counted as merged once the player forgets it.
+void Stepper::handOverWaiting() {
+  while (std::optional<ReceivedState> state = inbox_.take()) player_.push(state->topic, std::move(state->sample));
+}
+
+void Stepper::beginAnew() {
+  receipts_ = ReceiptTimes(player_.topics().size());
+  played_stamp_ns_ = player_.time().value_or(0);
   chooser_.startAgain();
   health_.noteReset();
   outputs_.showReset();
+}
+
+Answer Stepper::reset() {
+  handOverWaiting();
+  player_.reset();
+  beginAnew();
   return {true, "tissues are undeformed and at rest; instruments go to the next joint state without a way"};
 }
 
@@ -176,10 +188,14 @@ Answer Stepper::stepOnce() {
   if (!paused_) return {false, "not paused, so it steps by itself; call ~pause first"};
   const std::int64_t before = published_;
   for (;;) {
-    while (published_ == before && playNext()) {
+    while (!stop_ && published_ == before && playNext()) {
     }
     if (published_ != before) return {true, "stepped to " + now()};
-    if (inbox_.counts().waiting == 0) return {false, "no joint state waits to be stepped to"};
+    if (stop_) return {false, "the node is ending"};
+    if (inbox_.counts().waiting == 0) {
+      return {false, player_.waiting() > 0 ? "what waits is to be stepped to once the other topics have come as far"
+                                           : "no joint state waits to be stepped to"};
+    }
     takeReceived();
   }
 }
@@ -190,11 +206,9 @@ Answer Stepper::saveState(const std::string& file) {
 }
 
 Answer Stepper::loadState(const std::string& file) {
-  const std::string loaded = loadStateFile(player_, file);
-  played_stamp_ns_ = player_.time().value_or(0);
-  chooser_.startAgain();
-  health_.noteReset();
-  outputs_.showReset();
+  retune();  // numbers that were changed for it
+  const std::string loaded = loadStateFile(player_, file, [this] { handOverWaiting(); });
+  beginAnew();
   return {true, "goes on from the state at " + now() + " of " + loaded};
 }
 

@@ -41,7 +41,7 @@ class Stepper {
   RequestQueue& requests() { return requests_; }
 
   // In requests alone. The answer tells the time of the simulation.
-  Answer reset();                             ///< everything back to the start; what waits is forgotten
+  Answer reset();                             ///< everything back to the start; what waits counts as merged
   Answer pause();                             ///< takes no more joint states; they wait in the inbox
   Answer resume();                            ///< goes on with those that wait
   Answer stepOnce();                          ///< while paused: to the next moment
@@ -62,6 +62,8 @@ class Stepper {
   void awaitStates();
   double pace();
   void noteStep();
+  void handOverWaiting();
+  void beginAnew();
   std::string now() const;
 
   Simulator& simulator_;

@@ -55,7 +55,6 @@ class Replay {
         joint_names_(simulator_, player_),
         force_errors_(simulator_.instruments().size()) {
     requireModelsKept(options, simulator_);
-    if (options.changes_topic != "none") changes_.emplace(options.bag_file, options.changes_topic, scene_);
     for (const std::string& line : simulator_.advice()) std::cerr << kPrefix << "advisor: " << line << "\n";
     simulator_.setStepObserver([this] { stepTaken(); });
   }
@@ -65,6 +64,9 @@ class Replay {
     if (!bag.missingTopics().empty()) {
       std::cerr << kPrefix << "warning: the bag has no message on " << joinedNames(bag.missingTopics())
                 << "; its joints stay where the scene puts them\n";
+    }
+    if (options_.changes_topic != "none") {
+      changes_.emplace(options_.bag_file, options_.changes_topic, scene_, bag.begin());
     }
     const BagWindow window = windowOf(bag);
     openResults();
@@ -232,7 +234,7 @@ class Replay {
     if (!changes_ || changes_->count() == 0) return;
     std::cerr << kPrefix << changes_->taken() << " of " << changes_->count()
               << " changes of the scene's numbers played back"
-              << (changes_->taken() < changes_->count() ? "; the others were made after the last joint state\n" : "\n");
+              << (changes_->taken() < changes_->count() ? "; the others belong to moments that it does not have\n" : "\n");
   }
 
   void noteApproach(std::int64_t stamp_ns) {

@@ -15,6 +15,8 @@ namespace {
 const std::string kYoung = "tissues/block/youngs_modulus_pa";
 constexpr std::int64_t kSecond = 1'000'000'000;
 
+const ros::Time kBegins(1, 0);  // before write() records anything
+
 Changes changesOf(unsigned stamp_s, unsigned loop, const std::vector<std::string>& keys,
                   const std::vector<double>& values) {
   Changes message;
@@ -40,7 +42,7 @@ class RecordedChangesTest : public testing::Test {
   std::string refusalOf(const std::vector<std::pair<std::string, Changes>>& messages,
                         const std::string& topic = "") const {
     const std::string file = write(messages);
-    return refusal<std::runtime_error>([&] { RecordedChanges(file, topic, scene_); });
+    return refusal<std::runtime_error>([&] { RecordedChanges(file, topic, scene_, kBegins); });
   }
 
   TemporaryDirectory directory_;
@@ -55,7 +57,7 @@ TEST_F(RecordedChangesTest, EachIsDueOnceItsMomentWasPlayed) {
   const std::string file = write({{"/node/changes", changesOf(0, 0, {kYoung}, {6000.0})},
                                   {"/node/changes", changesOf(10, 0, {kYoung}, {7000.0})},
                                   {"/node/changes", changesOf(5, 1, {}, {})}});
-  RecordedChanges changes(file, "", scene_);
+  RecordedChanges changes(file, "", scene_, kBegins);
   EXPECT_EQ(changes.count(), 3U);
   EXPECT_FALSE(changes.takeDue(0, std::nullopt, 0));  // no moment is ready
   EXPECT_EQ(modulusOf(changes.takeDue(0, std::nullopt, 8 * kSecond)), 6000.0);
@@ -72,15 +74,28 @@ TEST_F(RecordedChangesTest, EachIsDueOnceItsMomentWasPlayed) {
 // A recording that begins in the middle has the latched message of what was changed before.
 TEST_F(RecordedChangesTest, WhatWasChangedBeforeTheRecordingHoldsFromItsStart) {
   const std::string file = write({{"/node/changes", changesOf(90, 0, {kYoung}, {7000.0})}});
-  RecordedChanges changes(file, "", scene_);
+  RecordedChanges changes(file, "", scene_, kBegins);
   EXPECT_FALSE(changes.takeDue(0, std::nullopt, 90 * kSecond));
   EXPECT_EQ(modulusOf(changes.takeDue(0, std::nullopt, 91 * kSecond)), 7000.0);
 }
 
+// The node was reset, or its bag had looped, before the recording.
+TEST_F(RecordedChangesTest, ALatchedChangeHoldsWhateverItsLoop) {
+  const std::string file = write({{"/node/changes", changesOf(90, 2, {kYoung}, {7000.0})},
+                                  {"/node/changes", changesOf(95, 2, {kYoung}, {8000.0})},
+                                  {"/node/changes", changesOf(3, 3, {kYoung}, {9000.0})}});
+  RecordedChanges changes(file, "", scene_, ros::Time(5000, 500));
+  EXPECT_EQ(modulusOf(changes.takeDue(0, std::nullopt, 91 * kSecond)), 7000.0);
+  EXPECT_FALSE(changes.takeDue(0, std::nullopt, 91 * kSecond));
+  EXPECT_EQ(modulusOf(changes.takeDue(0, 95 * kSecond, 96 * kSecond)), 8000.0);
+  EXPECT_FALSE(changes.takeDue(0, 97 * kSecond, 98 * kSecond));
+  EXPECT_EQ(modulusOf(changes.takeDue(1, 3 * kSecond, 4 * kSecond)), 9000.0);
+}
+
 TEST_F(RecordedChangesTest, MostBagsHaveNone) {
   writeJointStates(directory_.path("plain.bag"), 3);
-  EXPECT_EQ(RecordedChanges(directory_.path("plain.bag"), "", scene_).count(), 0U);
-  expectRefusal<std::runtime_error>([&] { RecordedChanges(directory_.path("plain.bag"), "/node/changes", scene_); },
+  EXPECT_EQ(RecordedChanges(directory_.path("plain.bag"), "", scene_, kBegins).count(), 0U);
+  expectRefusal<std::runtime_error>([&] { RecordedChanges(directory_.path("plain.bag"), "/node/changes", scene_, kBegins); },
                                     {"plain.bag", "/node/changes", "--changes"});
 }
 
@@ -88,7 +103,7 @@ TEST_F(RecordedChangesTest, OfSeveralNodesOneIsToBeNamed) {
   const std::vector<std::pair<std::string, Changes>> messages = {{"/a/changes", changesOf(1, 0, {kYoung}, {6000.0})},
                                                                  {"/b/changes", changesOf(1, 0, {kYoung}, {7000.0})}};
   expectContains(refusalOf(messages), {"/a/changes, /b/changes", "--changes TOPIC"});
-  RecordedChanges changes(write(messages), "b/changes", scene_);
+  RecordedChanges changes(write(messages), "b/changes", scene_, kBegins);
   EXPECT_EQ(modulusOf(changes.takeDue(0, kSecond, 0)), 7000.0);
 }
 
@@ -110,7 +125,7 @@ TEST_F(RecordedChangesTest, NoByteThatIsSpoiltCrashesOrTakesMemory) {
   for (std::size_t i = 0; i < message.size; ++i) {
     writeBytes(file, patched(sound, message.data + i, "\xff"));
     try {
-      RecordedChanges(file, "", scene_);
+      RecordedChanges(file, "", scene_, kBegins);
     } catch (const std::runtime_error&) {
       ++refused;
     }

@@ -65,6 +65,41 @@ TEST_F(JointStateSaved, AnotherTimeIsAGapAndNoReset) {
   }
 }
 
+/// Without an end, so that what is to wait for another topic waits.
+Trace feed(Simulator& simulator, JointStatePlayer& player, const Order& order) {
+  Trace trace;
+  for (const auto& [topic, s] : order) {
+    player.push(topic, s);
+    for (const PlayedSample& played : drain(player)) trace.add(played, simulator);
+  }
+  return trace;
+}
+
+// Two arms whose stamps lie between each other's: each moves on the way to its next sample at the other's moments.
+TEST(JointStateSavedOfTwo, GoesOnToTheSameBits) {
+  const auto first = twoProbes();
+  const auto second = twoProbes();
+  JointStatePlayer player(*first);
+  JointStatePlayer restored(*second);
+  const std::vector<JointStateSample> a = press(kSecond, 0.006);
+  const std::vector<JointStateSample> b = press(kSecond + 4 * kMillisecond, 0.005);
+  const auto order = [&](std::size_t from, std::size_t to) {
+    Order all;
+    for (std::size_t i = from; i < to; ++i) {
+      all.emplace_back(0, a[i]);
+      all.emplace_back(1, b[i]);
+    }
+    return all;
+  };
+  feed(*first, player, order(0, 15));
+  ASSERT_EQ(player.waiting(), 1);  // the last of b, for the next of a
+  restored.restoreState(player.saveState());
+  const Trace expected = feed(*first, player, order(15, 25));
+  EXPECT_TRUE(expected.pressed());
+  feed(*second, restored, {{1, b[14]}});
+  EXPECT_TRUE(feed(*second, restored, order(15, 25)) == expected);
+}
+
 TEST_F(JointStateSaved, WhatWaitsIsMergedAndCountsAddUp) {
   goOn(*simulator, player, samples, 0, 10);
   const std::string state = player.saveState();

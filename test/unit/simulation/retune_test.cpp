@@ -187,6 +187,20 @@ TEST(Retune, AMeshThatFollowsHasTheNumbersToo) {
   EXPECT_NEAR(force(simulator), 2.0 * force(other), 0.05 * force(other));
 }
 
+// In a process that has been told the numbers and has not stepped yet, too.
+TEST(Retune, AStateGoesOnWhereTheNumbersAreTheSame) {
+  Simulator first = simulatorOf();
+  change(first, {{kYoung, 10000.0}});
+  press(first);
+  Simulator second = simulatorOf();
+  expectRefusal([&] { second.restoreState(first.saveState()); }, {"material", "change it likewise"});
+  change(second, {{kYoung, 10000.0}});
+  second.restoreState(first.saveState());
+  for (Simulator* one : {&first, &second}) hold(*one, 5);
+  EXPECT_EQ(force(first), force(second));
+  EXPECT_GT(force(first), 0.0);
+}
+
 TEST(Retune, RefusesAnotherSceneAndChangesNothing) {
   Simulator simulator = simulatorOf();
   Scene other = simulator.scene();
