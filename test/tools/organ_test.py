@@ -90,7 +90,7 @@ class OrganTest(unittest.TestCase):
         # Hertz: 4/3 E/(1 - nu^2) sqrt(R) d^1.5, the ball of 5 mm on one of 30 mm, which yields as a whole too.
         depth, radius = 0.003, 1.0 / (1.0 / 0.005 + 1.0 / 0.030)
         hertz = 4.0 / 3.0 * 5400.0 / (1.0 - 0.45 ** 2) * math.sqrt(radius) * depth ** 1.5
-        for name, content in (("my organ #1: left.stl", stl), ("b.obj", obj), ("c.ply", ply))  # names as people give them:
+        for name, content in (("my organ #1: left.stl", stl), ("b.obj", obj), ("c.ply", ply)):  # names as people give them
             with self.subTest(name):
                 made = self.make(self.write(name, content(*ball())), "--scale", 0.001, "--cell-size", 0.008, "--depth", depth)
                 self.assertEqual(made.returncode, 0, made.stdout)
