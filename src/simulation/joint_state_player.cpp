@@ -302,7 +302,8 @@ std::string JointStatePlayer::saveState() {
 
 void JointStatePlayer::restoreState(const std::string& state) {
   restoreOrPutBack(
-      stateTitle(), state, [this] { return saveState(); }, [this](StateArchive& archive) { carry(archive); }, [this] { reset(); });
+      stateTitle(), state, [this] { return saveState(); }, [this](StateArchive& archive) { carry(archive); },
+      [this] { reset(); });
   forgetSamples();
   for (Topic& topic : topic_states_) {
     if (topic.taken) topic.taken->epoch = epoch_;

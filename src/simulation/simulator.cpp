@@ -66,7 +66,8 @@ std::string Simulator::saveState() {
 
 void Simulator::restoreState(const std::string& state) {
   restoreOrPutBack(
-      kStateTitle, state, [this] { return saveState(); }, [this](StateArchive& archive) { carry(archive); }, [this] { reset(); });
+      kStateTitle, state, [this] { return saveState(); }, [this](StateArchive& archive) { carry(archive); },
+      [this] { reset(); });
 }
 
 void Simulator::placeInstrument(int instrument, const VectorX& joint_positions) {

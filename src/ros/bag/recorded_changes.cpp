@@ -100,9 +100,9 @@ std::optional<Scene> RecordedChanges::takeDue(std::int64_t loop, const std::opti
   const Change& change = changes_[taken_];
   // What came before the first moment of the recording is there from its start.
   // What came before the first moment of the recording is there from its start.
-  const bool is_due = played_ns ? std::pair(first_loop_ + loop, *played_ns) >= std::pair(change.loop, change.stamp_ns)
-                                : next_ns > 0 && (change.is_latched ||
-                                                  (change.loop == first_loop_ && change.stamp_ns < next_ns));
+  const bool is_due =
+      played_ns ? std::pair(first_loop_ + loop, *played_ns) >= std::pair(change.loop, change.stamp_ns)
+                : next_ns > 0 && (change.is_latched || (change.loop == first_loop_ && change.stamp_ns < next_ns));
   if (!is_due) return std::nullopt;
   if (!played_ns) first_loop_ = change.loop;
   ++taken_;

@@ -3,9 +3,9 @@
 /// changed scene out when its moment has come.
 #pragma once
 
-#include <cstddef>
 #include <ros/time.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>

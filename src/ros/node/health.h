@@ -54,7 +54,7 @@ class Health {
 
   void notePaused(bool paused);
   void noteFailure();  ///< the stepping thread ends
-  void noteReset();  ///< the simulation began anew, or with another state
+  void noteReset();    ///< the simulation began anew, or with another state
   void noteSnapshotsDropped(std::int64_t dropped);
   void notePolicy(bool newest_state);
   void setMaxLag(double max_lag_s) { max_lag_s_ = max_lag_s; }  ///< in place of the scene's

@@ -234,7 +234,8 @@ class Replay {
     if (!changes_ || changes_->count() == 0) return;
     std::cerr << kPrefix << changes_->taken() << " of " << changes_->count()
               << " changes of the scene's numbers played back"
-              << (changes_->taken() < changes_->count() ? "; the others belong to moments that it does not have\n" : "\n");
+              << (changes_->taken() < changes_->count() ? "; the others belong to moments that it does not have\n"
+                                                        : "\n");
   }
 
   void noteApproach(std::int64_t stamp_ns) {

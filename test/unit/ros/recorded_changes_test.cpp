@@ -95,8 +95,9 @@ TEST_F(RecordedChangesTest, ALatchedChangeHoldsWhateverItsLoop) {
 TEST_F(RecordedChangesTest, MostBagsHaveNone) {
   writeJointStates(directory_.path("plain.bag"), 3);
   EXPECT_EQ(RecordedChanges(directory_.path("plain.bag"), "", scene_, kBegins).count(), 0U);
-  expectRefusal<std::runtime_error>([&] { RecordedChanges(directory_.path("plain.bag"), "/node/changes", scene_, kBegins); },
-                                    {"plain.bag", "/node/changes", "--changes"});
+  expectRefusal<std::runtime_error>(
+      [&] { RecordedChanges(directory_.path("plain.bag"), "/node/changes", scene_, kBegins); },
+      {"plain.bag", "/node/changes", "--changes"});
 }
 
 TEST_F(RecordedChangesTest, OfSeveralNodesOneIsToBeNamed) {

@@ -54,9 +54,10 @@ TEST(Tuning, NamesWhatMayChange) {
 // A material by name is the region's own, as if its numbers stood there.
 TEST(Tuning, ARegionOfANamedMaterialKeepsItsNumbers) {
   const std::string where = "where: [{sphere: {center_m: [0, 0, 0.01], radius_m: 0.02}}], material: ";
-  const Scene named = parseScene(blockScene() + "    regions:\n      - {name: cyst, " + where + "gelatine}\n      - {name: stone, " +
-                                     where + "{preset: gelatine, density_kg_per_m3: 1100}}\n" + onlyBall("[0, 0, 0.03]"),
-                                 "text scene", nullptr);
+  const Scene named =
+      parseScene(blockScene() + "    regions:\n      - {name: cyst, " + where + "gelatine}\n      - {name: stone, " +
+                     where + "{preset: gelatine, density_kg_per_m3: 1100}}\n" + onlyBall("[0, 0, 0.03]"),
+                 "text scene", nullptr);
   const std::vector<std::string> keys = keysOf(named);
   EXPECT_EQ(std::count(keys.begin(), keys.end(), "tissues/block/regions/cyst/youngs_modulus_pa"), 1);
   const Scene changed = tuned(named, {{"tissues/block/youngs_modulus_pa", 7000.0}});
