@@ -8,7 +8,7 @@
 
 #include "fuzz/fuzz_support.h"
 #include "support/text_scene.h"
-#include "tissue_contact/core/state_archive.h"
+#include "tissue_contact/core/content_hash.h"
 
 using namespace tissue_contact;
 
@@ -53,7 +53,9 @@ std::string changed(std::string state, fuzz::Bytes& bytes) {
     const auto value = bytes.take<std::uint64_t>();
     std::memcpy(&state[at], &value, count);
   }
-  const std::uint64_t hash = hashBytes(state.data(), state.size());
+  ContentHash content;
+  content.add(state.data(), state.size());
+  const std::uint64_t hash = content.value();
   state.append(reinterpret_cast<const char*>(&hash), sizeof hash);
   return state;
 }

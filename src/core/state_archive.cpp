@@ -4,14 +4,19 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tissue_contact/core/content_hash.h"
+
 namespace tissue_contact {
 
-std::uint64_t hashBytes(const void* data, std::size_t size, std::uint64_t seed) {
-  const auto* const bytes = static_cast<const unsigned char*>(data);
-  std::uint64_t hash = seed;
-  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
-  return hash;
+namespace {
+
+std::uint64_t checksumOf(const char* bytes, std::size_t size) {
+  ContentHash hash;
+  hash.add(bytes, size);
+  return hash.value();
 }
+
+}  // namespace
 
 StateArchive::StateArchive(const std::string& title) : reading_(false), bytes_(title + '\n') {}
 
@@ -24,7 +29,7 @@ StateArchive::StateArchive(const std::string& title, std::string bytes) : readin
   if (bytes_.size() < at_ + sizeof stored) throw std::invalid_argument("ends before its checksum: it is cut off");
   end_ = bytes_.size() - sizeof stored;
   std::memcpy(&stored, bytes_.data() + end_, sizeof stored);
-  if (stored != hashBytes(bytes_.data(), end_)) {
+  if (stored != checksumOf(bytes_.data(), end_)) {
     throw std::invalid_argument("does not have the checksum that it ends with: it is damaged or cut off");
   }
 }
@@ -68,7 +73,7 @@ void StateArchive::requireIndex(int index, int least, std::size_t count, const c
 }
 
 std::string StateArchive::finish() {
-  const std::uint64_t hash = hashBytes(bytes_.data(), bytes_.size());
+  const std::uint64_t hash = checksumOf(bytes_.data(), bytes_.size());
   bytes_.append(reinterpret_cast<const char*>(&hash), sizeof hash);
   return std::move(bytes_);
 }

@@ -6,6 +6,7 @@
 #include "simulation/build_scene.h"
 #include "tissue_contact/baselines/make_contact_solver.h"
 #include "tissue_contact/core/check.h"
+#include "tissue_contact/core/content_hash.h"
 #include "tissue_contact/core/entry_error.h"
 
 namespace tissue_contact {
@@ -30,35 +31,48 @@ std::vector<NodalVectors> restPositionsOf(const std::vector<Tissue>& tissues) {
   return positions;
 }
 
+void add(const Pose& pose, ContentHash& hash) { hash.add(pose.data(), sizeof(double) * 16); }
+
 /// Of where its links are at the start, and of its shapes as far as these are numbers of their own.
 std::uint64_t instrumentHash(const Instrument& instrument) {
   std::vector<Pose> X_WL;
   instrument.linkPoses(instrument.initialPositions(), X_WL);
-  std::uint64_t hash = X_WL.size();
-  for (const Pose& pose : X_WL) hash = hashBytes(pose.data(), 16 * sizeof(double), hash);
+  ContentHash hash;
+  for (const Pose& pose : X_WL) add(pose, hash);
   for (const ContactLink& link : instrument.contactLinks()) {
-    hash = hashBytes(&link.link, sizeof link.link, hash);
+    hash.add(&link.link, sizeof link.link);
     for (const CollisionShape& shape : link.shapes) {
       const double half_extent = smallestHalfExtent(shape);
-      hash = hashBytes(shape.X_LS.data(), 16 * sizeof(double), hash);
-      hash = hashBytes(&half_extent, sizeof half_extent, hash);
+      add(shape.X_LS, hash);
+      hash.add(&half_extent, sizeof half_extent);
     }
   }
-  return hash;
+  return hash.value();
 }
 
 /// Of what the material makes of the undeformed mesh.
 std::uint64_t materialHash(const Tissue& tissue, const TissueDescription& description) {
   const auto undeformed = tissue.elasticity().makeState();
-  std::uint64_t hash = hashBytes(tissue.nodeMasses().data(), sizeof(double) * tissue.nodeMasses().size());
+  ContentHash hash;
+  hash.add(tissue.nodeMasses().data(), sizeof(double) * static_cast<std::size_t>(tissue.nodeMasses().size()));
   for (const BlockMatrix* matrix : {&undeformed->stiffness, &undeformed->damping}) {
-    for (const Matrix3& block : matrix->diagonal) hash = hashBytes(block.data(), sizeof block, hash);
+    hash.add(matrix->diagonal.data(), sizeof(Matrix3) * matrix->diagonal.size());
   }
-  const double more[] = {tissue.damping().stiffness_s, tissue.damping().mass_per_s, description.pressure_pa};
   for (const PronyTerm& term : description.material.prony_series) {
-    hash = hashBytes(&term.modulus_ratio, sizeof(double), hashBytes(&term.time_s, sizeof(double), hash));
+    hash.add(&term.modulus_ratio, sizeof term.modulus_ratio);
+    hash.add(&term.time_s, sizeof term.time_s);
   }
-  return hashBytes(more, sizeof more, hash);
+  for (const double number : {tissue.damping().stiffness_s, tissue.damping().mass_per_s, description.pressure_pa}) {
+    hash.add(&number, sizeof number);
+  }
+  return hash.value();
+}
+
+template <typename Values>
+std::uint64_t hashOf(const Values& values) {
+  ContentHash hash;
+  hash.add(values.data(), sizeof(*values.data()) * static_cast<std::size_t>(values.size()));
+  return hash.value();
 }
 
 }  // namespace
@@ -176,13 +190,8 @@ void Simulator::Implementation::carryMeshes(StateArchive& archive) {
         moving[t].changeMesh();
       }
     }
-    const NodalVectors& rest = tissues[t].restPositions();
-    const auto bytes = [](const auto& values) {
-      return sizeof(*values.data()) * static_cast<std::size_t>(values.size());
-    };
-    archive.require(hashBytes(rest.data(), bytes(rest)), "the mesh, or its place in the world, is another one");
-    const std::vector<Tetrahedron>& elements = tissues[t].tetrahedra();
-    archive.require(hashBytes(elements.data(), bytes(elements)), "the elements are others");
+    archive.require(hashOf(tissues[t].restPositions()), "the mesh, or its place in the world, is another one");
+    archive.require(hashOf(tissues[t].tetrahedra()), "the elements are others");
     archive.require(materialHash(tissues[t], scene.tissues[t]),
                     "the material is another one, or was changed while it ran: change it likewise first");
   }

@@ -4,6 +4,8 @@ import math
 import os
 import subprocess
 
+import matplotlib.image
+import numpy
 import rospy
 import yaml
 from geometry_msgs.msg import PoseStamped, TransformStamped
@@ -112,13 +114,17 @@ class Place(harness.TestCase):
         picture = self.path("scene.png")
         bag = os.path.join(harness.PACKAGE, "config", "press_drag.bag")
         scene = os.path.join(harness.PACKAGE, "config", "press_drag.yaml")
-        sizes = []
+        shares = []
         for more in [[], ["--bag", bag]]:
             self.placed("picture", "--scene", scene, "--out", picture, *more)
             with open(picture, "rb") as stream:
                 self.assertEqual(stream.read(8), b"\x89PNG\r\n\x1a\n")
-            sizes.append(os.path.getsize(picture))
-        self.assertNotEqual(sizes[0], sizes[1])
+            pixels = matplotlib.image.imread(picture)[..., :3]
+            is_coloured = numpy.ptp(pixels, axis=2) > 0.1  # neither paper nor ink
+            for part in numpy.array_split(is_coloured, 3, axis=1):  # one of the three sides each
+                self.assertGreater(part.mean(), 0.02)
+            shares.append(is_coloured.mean())
+        self.assertNotEqual(shares[0], shares[1])  # the way of the tip
         self.assertEqual(os.listdir(self.directory), ["scene.png"])
         self.assertIn("is the same file as --scene", self.refused("picture", "--scene", self.changed_scene({}), "--out", self.path("scene.yaml")))
 

@@ -2,36 +2,12 @@
 /// Room `core`: a folder of files that can be made again, named by a hash of what they were made from.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "tissue_contact/core/content_hash.h"
+
 namespace tissue_contact {
-
-/// Fowler, Noll and Vo's hash over 64-bit words. Finds damage, not forgery.
-class ContentHash {
- public:
-  explicit ContentHash(std::uint64_t seed) : value_(0xcbf29ce484222325u ^ seed) {}
-  void add(const void* data, std::size_t bytes);
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_;
-};
-
-/// 128 bits of hash over pieces of content, as hexadecimal digits.
-class ContentKey {
- public:
-  static constexpr std::size_t kDigits = 32;
-
-  void add(const void* data, std::size_t bytes);
-  std::string digits() const;
-
- private:
-  ContentHash first_{0x51ed2701u};
-  ContentHash second_{0x9e3779b9u};
-};
 
 /// Files of one kind, "<key><extension>", in a directory. Nothing here throws: what goes wrong costs time, not the result.
 class CacheFolder {

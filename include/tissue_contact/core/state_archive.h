@@ -131,7 +131,4 @@ void restoreOrPutBack(const std::string& title, const std::string& state, const 
   }
 }
 
-/// Fowler, Noll and Vo's hash (FNV-1a, 64 bits): finds files that were damaged, not those made to deceive.
-std::uint64_t hashBytes(const void* data, std::size_t size, std::uint64_t seed = 0xcbf29ce484222325u);
-
 }  // namespace tissue_contact

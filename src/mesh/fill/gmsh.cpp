@@ -70,6 +70,7 @@ GmshResult attempt(const TriangleMesh& surface, const FillOptions& options, doub
   if (!end.found) refuseMissing();
   GmshResult result;
   result.complaint = errorsIn(end.output);
+  result.timed_out = end.timed_out;
   if (end.timed_out) result.complaint = "it takes longer than " + std::to_string(kLimits.seconds) + " s";
   if (end.timed_out || !result.complaint.empty()) return result;
   try {
@@ -122,6 +123,7 @@ std::string gmshScript(const FillOptions& options, double edge_angle) {
 GmshResult fillWithGmsh(const TriangleMesh& surface, const FillOptions& options) {
   GmshResult sharp = attempt(surface, options, kEdgeAngle);
   if (!sharp.file.empty() && sharp.quality.smallest_angle >= kSoundAngle) return sharp;
+  if (sharp.timed_out) return sharp;  // the other way takes as long
   GmshResult smooth = attempt(surface, options, kNoEdges);
   const bool is_smooth_better =
       sharp.file.empty() || (!smooth.file.empty() && smooth.quality.smallest_angle > sharp.quality.smallest_angle);

@@ -27,6 +27,7 @@ std::string gmshScript(const FillOptions& options, double edge_angle);
 struct GmshResult {
   std::string file;       ///< content of the .msh, m; empty: it failed
   std::string complaint;  ///< what gmsh said then
+  bool timed_out = false;
   TetMesh mesh;
   MeshQuality quality;
 };

@@ -101,6 +101,8 @@ void BagReader::fail(const BagMessage& message, const BagError& error) const {
        std::to_string(message.recorded.toSec()) + " s: " + error.what() + remedyText(error.remedy()));
 }
 
+std::string globalName(const std::string& topic) { return !topic.empty() && topic[0] == '/' ? topic : "/" + topic; }
+
 BagReader::BagReader(const std::string& file, const BagLimits& limits) : file_(file), limits_(limits), input_(file) {
   guarded([this] {
     requireVersion(input_);

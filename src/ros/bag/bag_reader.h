@@ -48,6 +48,9 @@ struct BagLimits {
   std::uint64_t expansion = 1 << 11;      ///< so many times the size of the file
 };
 
+/// Of a topic, from / on: bags and people leave it out.
+std::string globalName(const std::string& topic);
+
 class BagReader {
  public:
   /// Reads the list of connections.

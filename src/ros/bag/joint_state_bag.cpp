@@ -15,7 +15,6 @@ namespace {
 
 using sensor_msgs::JointState;
 
-std::string globalName(const std::string& topic) { return !topic.empty() && topic[0] == '/' ? topic : "/" + topic; }
 
 /// Velocities and efforts, which no sample has, are only passed over.
 JointState readJointState(std::string_view data) {

@@ -21,8 +21,6 @@ constexpr std::size_t kMostNumbers = 10'000'000;
 
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
-std::string globalName(const std::string& topic) { return !topic.empty() && topic[0] == '/' ? topic : "/" + topic; }
-
 Changes readChanges(std::string_view data) {
   MessageReader reader(data);
   Changes message;

@@ -13,6 +13,7 @@
 #include "ros/bag/joint_state_bag.h"
 #include "ros/bag/message_reader.h"
 #include "ros/conversions.h"
+#include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 namespace {
@@ -37,6 +38,11 @@ void addPose(const BagMessage& message, MeasuredPoses& measured) {
   geometry_msgs::Quaternion& q = transform.rotation;
   for (double* value : {&p.x, &p.y, &p.z, &q.x, &q.y, &q.z, &q.w}) *value = reader.number<double>();
   if (measured.poses.empty()) measured.frame = header.frame_id;
+  if (header.frame_id != measured.frame) {
+    throw BagError("a pose in the frame " + inQuotes(header.frame_id) + " after those in " + inQuotes(measured.frame) +
+                       ": record poses of one frame",
+                   BagError::Remedy::kAsSaid);
+  }
   try {
     measured.poses.push_back({static_cast<std::int64_t>(header.stamp.toNSec()), toPose(transform)});
   } catch (const std::invalid_argument&) {  // a pose that is none
@@ -48,7 +54,7 @@ void addPose(const BagMessage& message, MeasuredPoses& measured) {
 
 MeasuredPoses readPoses(const std::string& bag_file, const std::string& topic) {
   BagReader bag(bag_file);
-  const auto isTopic = [&](const BagConnection& one) { return one.topic == topic || "/" + one.topic == topic; };
+  const auto isTopic = [&](const BagConnection& one) { return globalName(one.topic) == globalName(topic); };
   std::set<std::string> known;
   for (const auto& [number, connection] : bag.connections()) {
     if (isPose(connection)) known.insert(connection.topic);

@@ -7,7 +7,11 @@ namespace {
 
 volatile std::sig_atomic_t g_signal = 0;  // a signal handler reaches nothing but what is global
 
-extern "C" void noteSignal(int signal) { g_signal = signal; }
+/// The first one; the second, of either kind, ends the process.
+extern "C" void noteSignal(int signal) {
+  g_signal = signal;
+  for (const int one : {SIGINT, SIGTERM}) std::signal(one, SIG_DFL);
+}
 
 void setHandler(void (*handler)(int), int flags) {
   struct sigaction action {};
@@ -20,7 +24,7 @@ void setHandler(void (*handler)(int), int flags) {
 
 SignalWatch::SignalWatch() {
   g_signal = 0;
-  setHandler(noteSignal, static_cast<int>(SA_RESETHAND | SA_RESTART));
+  setHandler(noteSignal, SA_RESTART);
 }
 
 SignalWatch::~SignalWatch() { setHandler(SIG_DFL, 0); }

@@ -9,7 +9,7 @@
 
 #include "support/refusal.h"
 #include "support/text_scene.h"
-#include "tissue_contact/core/state_archive.h"
+#include "tissue_contact/core/content_hash.h"
 
 namespace tissue_contact {
 namespace {
@@ -182,7 +182,9 @@ TEST_F(RefusedState, WhateverStandsInItNothingBreaks) {
     const std::size_t at =
         k < kPlaces / 2 ? end - 1 - 61 * static_cast<std::size_t>(k) : end / kPlaces * static_cast<std::size_t>(k) + 40;
     for (std::size_t i = at; i < std::min(at + 8, end); ++i) deceiving[i] = static_cast<char>(k % 2 == 0 ? 0xff : 0x7f);
-    const std::uint64_t hash = hashBytes(deceiving.data(), deceiving.size());
+    ContentHash content;
+    content.add(deceiving.data(), deceiving.size());
+    const std::uint64_t hash = content.value();
     deceiving.append(reinterpret_cast<const char*>(&hash), sizeof hash);
     Simulator simulator = make(kPlain);
     try {

@@ -1,0 +1,80 @@
+/// @file
+/// Room `simulation`: JointStatePlayer begun anew, saved and restored.
+#include <algorithm>
+#include <optional>
+
+#include "tissue_contact/simulation/joint_state_player.h"
+
+namespace tissue_contact {
+
+void JointStatePlayer::reset() {
+  forgetSamples();
+  simulator_.reset();
+  forgetJoints();
+  time_ns_.reset();
+  behind_ns_ = 0;
+  restored_ = false;
+  ++resets_;
+}
+
+/// As if no topic had ever been heard.
+void JointStatePlayer::forgetSamples() {
+  merged_ += static_cast<std::int64_t>(waiting_);
+  waiting_ = 0;
+  for (Topic& topic : topic_states_) {
+    topic.clock = TopicClock(max_gap_ns_);
+    topic.queue.clear();
+    topic.held.clear();
+    topic.last.reset();
+  }
+  newest_.reset();
+  released_.reset();
+  resumptions_.clear();
+  epoch_ = 0;
+}
+
+const char* JointStatePlayer::stateTitle() { return "tissue_contact state 1"; }
+
+std::string JointStatePlayer::saveState() {
+  StateArchive archive(stateTitle());
+  carry(archive);
+  return archive.finish();
+}
+
+void JointStatePlayer::restoreState(const std::string& state) {
+  restoreOrPutBack(
+      stateTitle(), state, [this] { return saveState(); }, [this](StateArchive& archive) { carry(archive); },
+      [this] { reset(); });
+  forgetSamples();
+  for (Topic& topic : topic_states_) {
+    if (topic.taken) topic.taken->epoch = epoch_;
+  }
+  owes_.assign(owes_.size(), false);
+  restored_ = time_ns_.has_value();
+}
+
+void JointStatePlayer::carry(StateArchive& archive) {
+  simulator_.carry(archive);
+  archive.section("joint states");
+  archive.carry(time_ns_);
+  archive.carry(behind_ns_);
+  constexpr std::int64_t kCentury_ns = 4'000'000'000'000'000'000;  // and so that no difference of two overflows
+  archive.check(!time_ns_ || (*time_ns_ >= 0 && *time_ns_ <= kCentury_ns), "a time that no stamp has");
+  archive.check(behind_ns_ >= 0 && behind_ns_ < std::max<std::int64_t>(shortest_ns_, 1), "a time that is none");
+  archive.require(topic_states_.size(), "it has another number of topics");
+  for (Topic& topic : topic_states_) {
+    std::optional<std::int64_t> taken_ns;
+    if (topic.taken && topic.taken->epoch == epoch_) taken_ns = topic.taken->stamp_ns;
+    archive.carry(taken_ns);
+    archive.check(!taken_ns || (*taken_ns >= 0 && *taken_ns <= kCentury_ns), "a time that no stamp has");
+    if (archive.isReading()) topic.taken = taken_ns ? std::optional(Moment{epoch_, *taken_ns}) : std::nullopt;
+  }
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    archive.carry(targets_[i]);
+    archive.carry(heard_[i]);
+    archive.check(targets_[i].allFinite(), "a joint position that is not finite");
+    for (const Heard heard : heard_[i]) archive.requireIndex(static_cast<int>(heard), 0, 3, "the mark of a joint");
+  }
+}
+
+}  // namespace tissue_contact
