@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 #include <utility>
@@ -90,16 +91,33 @@ FullScale colorScale(const Simulator& simulator, const PictureFrame& frame, cons
   return {given, 0.1 * modulus_pa, 10.0 * modulus_pa};
 }
 
-/// The force of one contact that the longest arrow starts with, N: the tissue's extents L >= d, E L d / 300, is that of a touch.
+/// Of the thinnest shape that moves, m; infinity: there is none.
+double thinnestTool(const Simulator& simulator) {
+  double thinnest_m = std::numeric_limits<double>::infinity();
+  for (const Instrument& instrument : simulator.instruments()) {
+    if (instrument.isObstacle()) continue;
+    for (const ContactLink& link : instrument.contactLinks()) {
+      for (const CollisionShape& shape : link.shapes) {
+        const double half_extent_m = smallestHalfExtent(shape);
+        if (half_extent_m > 0.0) thinnest_m = std::min(thinnest_m, half_extent_m);
+      }
+    }
+  }
+  return thinnest_m;
+}
+
+/// The force of one contact that the longest arrow starts with, N: that of a touch. It is E r^2 / 10 with the tool's half extent r, and
+/// no more than E L d / 300 with the tissue's extents L >= d.
 double firstForceScale(const Simulator& simulator) {
+  const double tool_m = thinnestTool(simulator);
   double force_n = 1e12;
   for (std::size_t t = 0; t < simulator.tissues().size(); ++t) {
     const Tissue& tissue = simulator.tissues()[t];
     const NodalVectors& rest = tissue.restPositions();
     const Vector3 extent = rest.rowwise().maxCoeff() - rest.rowwise().minCoeff();
     const double thickness_m = std::max(extent.minCoeff(), tissue.thickness());
-    const double modulus_pa = simulator.scene().tissues[t].material.youngs_modulus_pa;
-    force_n = std::min(force_n, 0.003 * modulus_pa * extent.norm() * thickness_m);
+    const double area_m2 = std::min(0.003 * extent.norm() * thickness_m, 0.1 * tool_m * tool_m);
+    force_n = std::min(force_n, simulator.scene().tissues[t].material.youngs_modulus_pa * area_m2);
   }
   return force_n;
 }

@@ -196,6 +196,22 @@ TEST(SceneMarkers, ScalesFitWhatIsDrawnAndNeverShrink) {
   EXPECT_LT(last_mm, 20.0);
 }
 
+// A small tool on a large organ: what presses there is small for the organ and is to be seen all the same.
+TEST(SceneMarkers, ArrowsAreSeenOnLargeTissue) {
+  Simulator simulator = makeSimulator(blockScene("[0.3, 0.3, 0.1]", "[6, 6, 2]") + "instruments:\n" +
+                                      probeEntry("probe", "/probe", "[0, 0, 0.1055]"));
+  SceneMarkers markers(simulator, MarkerStyle());
+  simulator.advance(0.1, {Vector3(0, 0, -0.002)});
+  double longest_m = 0.0;
+  for (const Marker& marker : markers.update(snapshotOf(simulator, kSecond)).markers) {
+    if (marker.ns != "contact_forces" || marker.action != Marker::ADD) continue;
+    longest_m =
+        std::max(longest_m, std::hypot(marker.points[1].x - marker.points[0].x, marker.points[1].y - marker.points[0].y,
+                                       marker.points[1].z - marker.points[0].z));
+  }
+  EXPECT_GT(longest_m, 0.2 * pictureFrame(simulator).longestArrow());
+}
+
 TEST(SceneMarkers, GivenScalesStay) {
   Simulator simulator = makeScene();
   MarkerStyle style;
