@@ -1,0 +1,128 @@
+#!/usr/bin/python3
+"""Fits numbers of a scene to measured forces: stiffness, damping, friction, thickness, the height of first touch.
+
+  fit.py --scene S.yaml --measured press.csv --measured drag.bag --fit youngs_modulus_pa:1e3..1e5 --fit static:0.1..1 --fit offset_m:-5e-4..5e-4
+
+Each recording moves the tool of the scene as it was moved, from rest, and the forces on it are compared. Prints estimates with 95 % intervals,
+their correlation, the error of what was held out, and which parameters these data cannot tell: then nothing is written, and the exit code
+is 1. With --out, a folder with the fitted scene.yaml, fit.yaml, residuals.csv and residuals.png. How to measure, and how exact it is:
+doc/calibration.md.
+"""
+import argparse
+import math
+import os
+import shlex
+import sys
+
+import numpy
+
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
+from whole_file import whole_file
+
+
+def parse_arguments():
+    def number(low, high):
+        def read(text):
+            value = float(text)
+            if not low <= value <= high:
+                raise argparse.ArgumentTypeError("%s is not from %g to %g" % (text, low, high))
+            return value
+        return read
+
+    def whole(low, high):
+        return lambda text: int(number(low, high)(str(int(text))))
+
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scene", required=True, help="scene file; what is not fitted is as it says")
+    parser.add_argument("--measured", required=True, action="append", metavar="FILE", help="table (CSV) or bag; give it again for more")
+    parser.add_argument("--fit", required=True, action="append", metavar="KEY:LOW..HIGH[:START]",
+                        help="a number of the scene, by the end of its path or all of it; thickness_m of a block; offset_m: how much deeper "
+                             "along --approach the tool is than recorded")
+    parser.add_argument("--held-out", action="append", default=[], metavar="FILE", help="recording that is foretold, not fitted; "
+                        "without one a fifth of every recording is")
+    parser.add_argument("--out", metavar="FOLDER", help="for the fitted scene, figures and plot")
+    parser.add_argument("--instrument", help="whose motion and force were measured; needed where the scene has several")
+    parser.add_argument("--force-topic", default="/force_sensor", help="of bags, WrenchStamped; default: %(default)s")
+    parser.add_argument("--force-on", choices=["tool", "tissue"], default="tool", help="on what the measured force acts; default: %(default)s")
+    parser.add_argument("--axes", choices=["world", "tip"], default="world", help="in which axes forces were measured; default: %(default)s")
+    parser.add_argument("--approach", type=number(-1e6, 1e6), nargs=3, default=[0.0, 0.0, -1.0], metavar=("X", "Y", "Z"),
+                        help="direction of the tool towards the tissue, in the world; default: 0 0 -1")
+    parser.add_argument("--tare", type=number(0.0, 1e4), default=0.0, metavar="S", help="take off the mean force of the first S seconds")
+    parser.add_argument("--smooth", type=number(0.0, 1e3), default=0.0, metavar="S", help="smooth the motion over S seconds")
+    parser.add_argument("--rate", type=number(0.0, 1e4), default=0.0, metavar="HZ", help="thin recordings to this rate by means; default: as recorded")
+    parser.add_argument("--starts", type=whole(0, 1000), default=8, help="points of a Latin hypercube tried besides the scene's; default: %(default)s")
+    parser.add_argument("--seed", type=whole(0, 2 ** 31), default=1, help="of the hypercube; default: %(default)s")
+    parser.add_argument("--workers", type=whole(1, 1024), default=os.cpu_count() or 1, help="runs at once; the answer does not depend on it")
+    return parser.parse_args()
+
+
+def instrument_of(keys, name):
+    from fitting import FitError
+    known = {one.get("name"): one for one in keys.instruments()}
+    if name is None and len(known) == 1:
+        return next(iter(known.values()))
+    if name not in known:
+        raise FitError("--instrument %s: %s has %s; give one of them" % (name or "is missing", keys.path, ", ".join(map(str, known)) or "no instrument"))
+    return known[name]
+
+
+def joint_topics(instrument):
+    return [topic["topic"] if isinstance(topic, dict) else topic for topic in instrument.get("joint_state_topics", [])]
+
+
+def prepared(arguments, path, tool, topics):
+    from fitting import measured
+    recording = measured.read(path, tool.recorded_names(), topics, arguments.force_topic)
+    recording = measured.thin(measured.smooth(measured.tare(recording, arguments.tare), arguments.smooth), arguments.rate)
+    if arguments.force_on == "tissue":
+        recording.force_n = -recording.force_n
+    if arguments.axes == "tip":
+        recording.force_n = tool.to_world(recording, tool.motion(recording))
+    return recording
+
+
+def fit(arguments):
+    from fitting import FitError, forward, parameters, results, run
+    length = math.sqrt(sum(x * x for x in arguments.approach))
+    if not length > 1e-6:
+        raise FitError("--approach %g %g %g has no direction" % tuple(arguments.approach))
+    keys = parameters.SceneKeys(arguments.scene)
+    instrument = instrument_of(keys, arguments.instrument)
+    fitted = parameters.parse_fits(arguments.fit, keys)
+    tool = forward.Tool(arguments.scene, instrument["name"], instrument.get("joint_names") or {})
+    setup = run.Setup(arguments.scene, keys, tool, fitted, numpy.array(arguments.approach) / length, forward.Workers(arguments.workers),
+                      arguments.starts, arguments.seed, lambda line: print(line, flush=True))
+    recordings, held_out = [[prepared(arguments, path, tool, joint_topics(instrument)) for path in paths]
+                            for paths in (arguments.measured, arguments.held_out)]
+    answer, quality, problem, costs = run.fit(setup, recordings, held_out)
+    print("\n" + results.report(answer, problem, quality, costs))
+    if answer.untold:
+        print("\nnothing was written" if arguments.out else "")
+        return 1
+    if arguments.out:
+        names = results.write(arguments.out, setup, answer, problem, quality, "fit.py " + shlex.join(sys.argv[1:]),
+                              [arguments.scene] + arguments.measured + arguments.held_out, whole_file, forward.tissue_contact.load_scene)
+        print("\nwritten: " + ", ".join(names))
+    return 0
+
+
+def main():
+    arguments = parse_arguments()
+    try:
+        import scipy  # noqa: F401 (looked for, before anything else says so in its own words)
+        import tissue_contact
+        from fitting import FitError
+    except ImportError as error:
+        sys.exit("fit.py: %s; install python3-scipy and source scripts/env.bash" % error)
+    if not hasattr(tissue_contact, "Simulator"):
+        sys.exit("fit.py: tissue_contact was built without its simulator in Python; install pybind11-dev and python3-dev and build again")
+    try:
+        sys.exit(fit(arguments))
+    except (FitError, ValueError) as error:
+        sys.exit("fit.py: %s" % error)
+    except OSError as error:
+        sys.exit("fit.py: cannot write %s: %s" % (error.filename or arguments.out, error.strerror))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,258 @@
+"""Measured motion of a tool with measured forces, from a table (CSV) or a bag."""
+import csv
+import dataclasses
+import difflib
+import math
+import os
+
+import numpy
+from scipy.signal import savgol_filter
+
+from fitting import FitError
+
+POSITION = ("x_m", "y_m", "z_m")
+QUATERNION = ("qx", "qy", "qz", "qw")
+FORCE = ("fx_n", "fy_n", "fz_n")
+MOST_ROWS = 1000000
+FEWEST_ROWS = 10
+FARTHEST_M, LARGEST_N, LARGEST_JOINT, LONGEST_S = 10.0, 1000.0, 1000.0, 1.0e10
+NORM_WITHIN = 0.01
+
+
+@dataclasses.dataclass
+class Recording:
+    """One run of the tool, which starts with it off the tissue. Arrays have a row for each sample."""
+    name: str
+    times_s: numpy.ndarray
+    force_n: numpy.ndarray  # 3 columns; NaN in one that was not measured
+    positions_m: numpy.ndarray = None  # 3 columns, of the tip in the world; or else joints
+    quaternions: numpy.ndarray = None  # x, y, z, w
+    joints: dict = None  # recorded name -> positions, rad or m
+
+    def measured(self):
+        return [axis for axis in range(3) if not numpy.isnan(self.force_n[:, axis]).any()]
+
+    def peak_n(self):
+        """The largest magnitude of what was measured of the force."""
+        return float(numpy.sqrt((self.force_n[:, self.measured()] ** 2).sum(axis=1)).max())
+
+
+def read(path, joint_names, joint_topics, force_topic):
+    """joint_names: as recorded; topics: of a bag."""
+    try:
+        with open(path, "rb") as stream:
+            is_bag = stream.read(9) == b"#ROSBAG V"
+    except OSError as error:
+        raise FitError("%s cannot be read: %s" % (path, error.strerror)) from error
+    recording = _read_bag(path, joint_names, joint_topics, force_topic) if is_bag else _read_table(path, joint_names)
+    if not recording.peak_n() > 0.0:
+        raise FitError("%s: every force is 0; nothing can be fitted to it" % path)
+    return recording
+
+
+def _require_columns(path, names, joint_names):
+    joints = [name for name in names if name in joint_names]
+    known = ("time_s",) + POSITION + QUATERNION + FORCE + tuple(joint_names)
+    for name in names:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            raise FitError("%s:1: column '%s' is not known%s; allowed are %s" %
+                           (path, name, "; did you mean '%s'?" % near[0] if near else "", ", ".join(known)))
+        if names.count(name) > 1:
+            raise FitError("%s:1: column '%s' is there twice" % (path, name))
+    if "time_s" not in names:
+        raise FitError("%s:1: there is no column time_s (s)" % path)
+    if not any(name in FORCE for name in names):
+        raise FitError("%s:1: there is no force; give one or more of %s (N)" % (path, ", ".join(FORCE)))
+    for group in (POSITION, QUATERNION):
+        if 0 < sum(name in names for name in group) < len(group):
+            raise FitError("%s:1: of %s all are needed, or none" % (path, ", ".join(group)))
+    if bool(joints) == (POSITION[0] in names):
+        raise FitError("%s:1: either the tip's position (%s) or joints (%s) are needed, and not both" %
+                       (path, ", ".join(POSITION), ", ".join(joint_names)))
+    if QUATERNION[0] in names and joints:
+        raise FitError("%s:1: a quaternion goes with a position, not with joints" % path)
+    return joints
+
+
+def _largest(name):
+    """Of a column's magnitude, and its unit with advice."""
+    if name in POSITION:
+        return FARTHEST_M, "m; positions are in metres"
+    if name in FORCE:
+        return LARGEST_N, "N; forces are in newtons"
+    if name in QUATERNION:
+        return 1.0 + NORM_WITHIN, "for a part of a unit quaternion"
+    return (LONGEST_S, "s") if name == "time_s" else (LARGEST_JOINT, "rad or m")
+
+
+def _number(path, line, name, text):
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    largest, unit = _largest(name)
+    if not abs(value) <= largest:
+        raise FitError("%s:%d: column '%s' is '%s'; a number from %g to %g %s" %
+                       (path, line, name, text[:40], -largest, largest, unit))
+    return value
+
+
+def _rows(path):
+    """(line number, fields) of the lines that are not empty."""
+    try:
+        with open(path, newline="", encoding="utf-8") as stream:
+            for row in (reader := csv.reader(stream)):
+                if row:
+                    yield reader.line_num, row
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise FitError("%s cannot be read as a table (CSV, UTF-8): %s" % (path, error)) from error
+
+
+def _read_table(path, joint_names):
+    rows = _rows(path)
+    _, names = next(rows, (0, []))
+    names = [name.strip() for name in names]
+    joints = _require_columns(path, names, joint_names)
+    values, time_at = [], names.index("time_s")
+    for line, row in rows:
+        if len(row) != len(names):
+            raise FitError("%s:%d: %d values under %d columns" % (path, line, len(row), len(names)))
+        if len(values) >= MOST_ROWS:
+            raise FitError("%s:%d: more than %d rows; cut it, or thin it out" % (path, line, MOST_ROWS))
+        values.append([_number(path, line, name, text) for name, text in zip(names, row)])
+        if len(values) > 1 and not values[-1][time_at] > values[-2][time_at]:
+            raise FitError("%s:%d: column 'time_s' is %s, not after %g of the row before" %
+                           (path, line, row[time_at], values[-2][time_at]))
+    if len(values) < FEWEST_ROWS:
+        raise FitError("%s: %d rows; %d or more are needed" % (path, len(values), FEWEST_ROWS))
+    columns = dict(zip(names, numpy.array(values).T))
+    _require_unit_quaternions(path, columns)
+    return Recording(
+        name=os.path.splitext(os.path.basename(path))[0], times_s=columns["time_s"],
+        force_n=numpy.stack([columns.get(name, numpy.full(len(values), numpy.nan)) for name in FORCE], axis=1),
+        positions_m=None if joints else numpy.stack([columns[name] for name in POSITION], axis=1),
+        quaternions=numpy.stack([columns[name] for name in QUATERNION], axis=1) if QUATERNION[0] in columns else None,
+        joints={name: columns[name] for name in joints} or None)
+
+
+def _require_unit_quaternions(path, columns):
+    if QUATERNION[0] not in columns:
+        return
+    norms = numpy.sqrt(sum(columns[name] ** 2 for name in QUATERNION))
+    worst = int(numpy.abs(norms - 1.0).argmax())
+    if abs(norms[worst] - 1.0) > NORM_WITHIN:
+        raise FitError("%s: row %d: the quaternion's norm is %.4g; 1 within %g is allowed" % (path, worst + 1, norms[worst], NORM_WITHIN))
+
+
+def _read_bag(path, joint_names, joint_topics, force_topic):
+    """Joint states and wrenches by their stamps; the samples are the joint states of the first topic, and the force there is linear
+    between wrenches."""
+    states, wrenches, topics = _bag_messages(path, joint_topics, force_topic)
+    for topic in list(joint_topics[:1]) + [force_topic]:
+        if not (wrenches if topic == force_topic else states.get(topic)):
+            raise FitError("%s has no messages on %s; its topics are: %s" % (path, topic, ", ".join(topics)))
+    for topic, messages in list(states.items()) + [(force_topic, wrenches)]:
+        times = numpy.array([message[0] for message in messages])
+        if not (numpy.diff(times) > 0.0).all():
+            at = int(numpy.argmin(numpy.diff(times) > 0.0))
+            raise FitError("%s: on %s the stamp %.6f s is not after %.6f s before it; correct header.stamp" %
+                           (path, topic, times[at + 1], times[at]))
+    force_times, forces = numpy.array([w[0] for w in wrenches]), numpy.array([w[1] for w in wrenches])
+    if not (numpy.abs(forces) <= LARGEST_N).all():
+        raise FitError("%s: a force on %s is not from %g to %g N" % (path, force_topic, -LARGEST_N, LARGEST_N))
+    times = numpy.array([state[0] for state in states[joint_topics[0]]])
+    times = times[(times >= force_times[0]) & (times <= force_times[-1])]
+    if not FEWEST_ROWS <= len(times) <= MOST_ROWS:
+        raise FitError("%s: %d joint states while forces were recorded; %d to %d are needed" % (path, len(times), FEWEST_ROWS, MOST_ROWS))
+    start = times[0]
+    return Recording(
+        name=os.path.splitext(os.path.basename(path))[0], times_s=times - start,
+        force_n=numpy.stack([numpy.interp(times, force_times, forces[:, axis]) for axis in range(3)], axis=1),
+        joints=_joints_at(path, times, states, joint_names))
+
+
+def _bag_messages(path, joint_topics, force_topic):
+    """({joint topic: [(stamp (s), {joint: position})]}, [(stamp (s), force)], all topics)."""
+    import rosbag  # here, since tables need no ROS
+    states, wrenches = {}, []
+    try:
+        with rosbag.Bag(path) as bag:
+            topics = {topic: info.msg_type for topic, info in bag.get_type_and_topic_info().topics.items()}
+            for topic, kind in [(topic, "sensor_msgs/JointState") for topic in joint_topics] + [(force_topic, "geometry_msgs/WrenchStamped")]:
+                if topics.get(topic, kind) != kind:
+                    raise FitError("%s: %s has %s; %s is needed" % (path, topic, topics[topic], kind))
+            for topic, message, _ in bag.read_messages(list(joint_topics) + [force_topic]):
+                stamp = message.header.stamp.to_sec()
+                if topic == force_topic:
+                    force = message.wrench.force
+                    wrenches.append((stamp, (force.x, force.y, force.z)))
+                else:
+                    states.setdefault(topic, []).append((stamp, dict(zip(message.name, message.position))))
+    except FitError:
+        raise
+    except Exception as error:  # rosbag raises what its parts raise
+        raise FitError("%s cannot be read as a bag: %s" % (path, error)) from error
+    return states, wrenches, sorted(topics)
+
+
+def _joints_at(path, times, states, joint_names):
+    joints = {}
+    for topic, messages in states.items():
+        for name in joint_names:
+            samples = [(stamp, state[name]) for stamp, state in messages if name in state]
+            if samples:
+                at, positions = numpy.array(samples).T
+                joints[name] = numpy.interp(times, at, positions)
+                if not (numpy.abs(joints[name]) <= LARGEST_JOINT).all():
+                    raise FitError("%s: joint '%s' on %s is not from %g to %g rad or m" % (path, name, topic, -LARGEST_JOINT, LARGEST_JOINT))
+    if not joints:
+        raise FitError("%s: no joint state names a joint of the scene; those are: %s" % (path, ", ".join(joint_names)))
+    return joints
+
+
+def tare(recording, time_s):
+    """Takes the mean force of the first `time_s` off, in which nothing touches."""
+    first = recording.times_s < recording.times_s[0] + time_s
+    if time_s > 0.0:
+        recording.force_n = recording.force_n - recording.force_n[first].mean(axis=0)
+    return recording
+
+
+def _per_sample(recording, change):
+    """The recording with `change` applied to every array of motion."""
+    def changed(array):
+        return None if array is None else change(array)
+    return dataclasses.replace(
+        recording, positions_m=changed(recording.positions_m), quaternions=changed(recording.quaternions),
+        joints=recording.joints and {name: changed(array) for name, array in recording.joints.items()})
+
+
+def smooth(recording, time_s):
+    """Motion by the parabola through `time_s` around each sample (Savitzky-Golay): what a heavy tool's cannot be is noise of its
+    measurement. Forces stay as they are."""
+    interval = float(numpy.median(numpy.diff(recording.times_s)))
+    samples = 2 * int(round(0.5 * time_s / interval)) + 1
+    if time_s <= 0.0 or samples < 5:
+        return recording
+    if samples > len(recording.times_s):
+        raise FitError("--smooth %g s is longer than %s" % (time_s, recording.name))
+    return _per_sample(recording, lambda array: savgol_filter(array, samples, 2, axis=0))
+
+
+def thin(recording, rate_hz):
+    """Means over intervals of 1 / rate_hz, of all samples in each; 0: as it is."""
+    if rate_hz <= 0.0:
+        return recording
+    slot = numpy.floor((recording.times_s - recording.times_s[0]) * rate_hz + 1e-6).astype(int)
+    starts = numpy.flatnonzero(numpy.diff(slot, prepend=-1))
+    counts = numpy.diff(numpy.append(starts, len(slot)))
+
+    def mean(array):
+        return numpy.add.reduceat(array, starts, axis=0) / (counts if array.ndim == 1 else counts[:, None])
+
+    thinned = _per_sample(recording, mean)
+    thinned.times_s, thinned.force_n = mean(recording.times_s), mean(recording.force_n)
+    if len(starts) < FEWEST_ROWS:
+        raise FitError("--rate %g leaves %d samples of %s; %d or more are needed" % (rate_hz, len(starts), recording.name, FEWEST_ROWS))
+    return thinned

@@ -1,0 +1,91 @@
+"""A whole fit: from a scene, recordings and parameters to an Answer and to how well it foretells what it was not fitted to."""
+import dataclasses
+
+import numpy
+
+from fitting import FitError, forward, solve, uncertainty
+
+BLOCKS, HELD_OUT_OF = 20, 5  # in time; every fifth of them is held out of the first fit
+
+
+@dataclasses.dataclass
+class Setup:
+    scene: str
+    keys: object  # SceneKeys
+    tool: object  # forward.Tool
+    parameters: list
+    approach: numpy.ndarray  # unit vector in the world, of the tool towards the tissue
+    workers: object
+    starts: int = 8
+    seed: int = 1
+    say: object = print
+
+    def settings(self, values):
+        return self.keys.settings(self.parameters, values, self.tool.name, self.approach)
+
+    def forces(self, values, run):
+        return forward.forces(self.scene, self.settings(values), self.tool.name, run.recording.times_s, run.motion)
+
+    def problem(self, runs):
+        return solve.Problem(runs, self.parameters, self.forces, self.workers, self.say, self.settings)
+
+
+@dataclasses.dataclass
+class HeldOut:
+    """Of one recording that had no part in the fit, or of the parts of one."""
+    name: str
+    rms_n: float
+    share: float    # of the RMS of what was measured there
+    median: float   # median of |error| over |measured|, of samples with a tenth of the peak force or more
+    samples: int
+
+
+def _force_errors(run, force, rows):
+    axes = run.recording.measured()
+    return (force - run.recording.force_n)[numpy.ix_(rows, axes)], run.recording.force_n[numpy.ix_(rows, axes)]
+
+
+def foretold(run, force, rows):
+    wrong, measured = _force_errors(run, force, rows)
+    size, error = numpy.linalg.norm(measured, axis=1), numpy.linalg.norm(wrong, axis=1)
+    loud = size >= 0.1 * run.recording.peak_n()
+    rms = float(numpy.sqrt((error ** 2).mean()))
+    return HeldOut(run.recording.name, rms, rms / max(float(numpy.sqrt((size ** 2).mean())), 1e-300),
+                   float(numpy.median(error[loud] / size[loud])) if loud.any() else float("nan"), len(error))
+
+
+def runs_of(setup, recordings):
+    return [solve.Run(recording, setup.tool.motion(recording), numpy.ones(len(recording.times_s), bool)) for recording in recordings]
+
+
+def hold_out_blocks(runs):
+    for run in runs:
+        block = numpy.arange(len(run.fitted)) * BLOCKS // len(run.fitted)
+        run.fitted = block % HELD_OUT_OF != HELD_OUT_OF // 2
+
+
+def fit(setup, recordings, held_out=(), cross_check=True):
+    """(Answer, [HeldOut], problem, costs of the descents). Without recordings that are held out, blocks of all are, and the answer
+    is then refined on everything."""
+    runs = runs_of(setup, recordings)
+    count = sum(int(run.fitted.sum()) * len(run.recording.measured()) for run in runs)
+    if count <= 3 * len(setup.parameters):
+        raise FitError("%d forces for %d parameters; record more" % (count, len(setup.parameters)))
+    by_blocks = cross_check and not held_out
+    if by_blocks:
+        hold_out_blocks(runs)
+    problem = setup.problem(runs)
+    point, costs = solve.search(problem, setup.starts, setup.seed)
+    point = solve.refine(problem, point)
+    quality = []
+    if by_blocks:
+        for run, (force, _) in zip(runs, problem.forces([point])[0]):
+            quality.append(foretold(run, force, ~run.fitted))
+            run.fitted = numpy.ones(len(run.fitted), bool)
+        point = solve.refine(problem, point)
+    answer = uncertainty.assess(problem, point)
+    if held_out:
+        strangers = runs_of(setup, held_out)
+        done = setup.workers.map(setup.forces, [(answer.values, run) for run in strangers])
+        quality = [foretold(run, force, numpy.arange(len(force)) > 0) for run, (force, _) in zip(strangers, done)]
+    return answer, quality, problem, costs

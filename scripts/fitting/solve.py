@@ -1,0 +1,137 @@
+"""Least squares over runs of the scene. Unknowns are parts of the way between bounds, 0 to 1; forces are weighed by their own spread."""
+import dataclasses
+import time
+
+import numpy
+from scipy import optimize, stats
+
+from fitting import FitError
+
+FIRST_SPREAD = 0.05  # of the peak force, until residuals tell it
+LEAST_SPREAD = 1e-4  # of the peak force: a replay's own tolerance
+HUBER = 1.5          # spreads from which on a residual counts by its magnitude only; 96 % efficient with normal noise
+STEP = 0.01          # of the way between bounds, for differences: far above the solver's tolerance, far below what bends
+MOST_ITERATIONS = 25
+FIRST_TOLERANCE, TOLERANCE = 1e-2, 1e-4  # of cost and point: of the descent that finds the valley, and of the one to its bottom
+
+
+@dataclasses.dataclass
+class Run:
+    """A recording prepared for the scene."""
+    recording: object
+    motion: numpy.ndarray
+    fitted: numpy.ndarray  # samples that count
+    spread_n: float = 0.0
+
+    def __post_init__(self):
+        self.spread_n = FIRST_SPREAD * self.recording.peak_n()
+
+
+class Problem:
+    """Forces of all runs at a point (an array of parts)."""
+
+    def __init__(self, runs, parameters, forces_of, workers, say, settings_of=lambda values: {}):
+        """forces_of(values, run) -> (forces, errors), each with a row for a sample; settings_of(values) -> {key of the scene: value}."""
+        self.runs, self.parameters, self._settings_of = runs, parameters, settings_of
+        self._forces_of, self._workers, self._say = forces_of, workers, say
+        self._known = {}
+        self._began, self.evaluations = time.monotonic(), 0
+
+    def values(self, point):
+        return [float(parameter.value(part)) for parameter, part in zip(self.parameters, point)]
+
+    def in_order(self, point):
+        """The same forces by the parameters as they are told: of a pair of frictions the larger one is static."""
+        settings = self._settings_of(self.values(point))
+        ordered = [p.part(settings[p.key]) if p.key in settings else part for p, part in zip(self.parameters, point)]
+        return numpy.clip(ordered, 0.0, 1.0)
+
+    def forces(self, points):
+        """[[(forces, errors) of each run] of each point]; points seen before are not run again."""
+        keys = [tuple(float(part) for part in point) for point in points]
+        fresh = [key for i, key in enumerate(keys) if key not in self._known and key not in keys[:i]]
+        done = self._workers.map(self._forces_of, [(self.values(key), run) for key in fresh for run in self.runs])
+        for i, key in enumerate(fresh):
+            self._known[key] = done[i * len(self.runs):(i + 1) * len(self.runs)]
+        self.evaluations += len(fresh)
+        return [self._known[key] for key in keys]
+
+    def residual(self, forces, is_fitted=True):
+        """All weighed residuals of one point; of what is held out for is_fitted False."""
+        return numpy.concatenate([part for run, (force, _) in zip(self.runs, forces) for part in _weighed(run, force, is_fitted)])
+
+    def at(self, point):
+        return self.residual(self.forces([point])[0])
+
+    def jacobian(self, point, both_sides=True):
+        """By differences to both sides, or to the side with more room: half the runs, and good enough to go on by."""
+        inwards = numpy.where(point > 0.5, -STEP, STEP)
+        low, high = numpy.clip(point - STEP, 0.0, 1.0) if both_sides else point, numpy.clip(point + STEP, 0.0, 1.0) if both_sides else point + inwards
+        points = [numpy.where(numpy.arange(len(point)) == i, end, point) for i in range(len(point)) for end in (low, high)]
+        residuals = [self.residual(forces) for forces in self.forces(points)]
+        return numpy.stack([(residuals[2 * i + 1] - residuals[2 * i]) / (high[i] - low[i]) for i in range(len(point))], axis=1)
+
+    def tell(self, what, point):
+        residual = self.at(point)
+        self._say("%s: %d evaluations, %.0f s, cost %.4g; %s" % (
+            what, self.evaluations, time.monotonic() - self._began, 0.5 * float(residual @ residual),
+            ", ".join("%s %.4g" % (p.label, v) for p, v in zip(self.parameters, self.values(point)))))
+
+
+def _weighed(run, force, is_fitted):
+    """Of each measured axis."""
+    rows = run.fitted if is_fitted else ~run.fitted
+    rows = rows & (numpy.arange(len(rows)) > 0)  # the first sample only places the tool
+    return [(force[rows, axis] - run.recording.force_n[rows, axis]) / run.spread_n for axis in run.recording.measured()]
+
+
+def set_spreads(problem, point):
+    """From the residuals at a point, each recording for itself: 1.48 median deviations are a standard deviation."""
+    for run, (force, _) in zip(problem.runs, problem.forces([point])[0]):
+        residual = numpy.concatenate(_weighed(run, force, True)) * run.spread_n
+        run.spread_n = max(1.4826 * float(numpy.median(numpy.abs(residual))), LEAST_SPREAD * run.recording.peak_n())
+
+
+def starts(problem, count, seed):
+    """The scene's own point, then a Latin hypercube."""
+    own = [parameter.part(parameter.start) for parameter in problem.parameters]
+    cube = stats.qmc.LatinHypercube(len(own), seed=seed).random(count) if count else []
+    return [numpy.clip(own, 0.0, 1.0)] + list(cube)
+
+
+def _descend(problem, point, loss, name, tolerance):
+    def jacobian(at):
+        problem.tell(name, at)
+        return problem.jacobian(at, both_sides=tolerance <= TOLERANCE)
+
+    try:
+        return optimize.least_squares(problem.at, numpy.clip(point, 1e-6, 1.0 - 1e-6), jacobian, bounds=(0.0, 1.0), loss=loss, f_scale=HUBER,
+                                       ftol=tolerance, xtol=tolerance, gtol=None, max_nfev=MOST_ITERATIONS)
+    except ValueError as error:  # a residual that is not finite
+        raise FitError("the fit cannot go on: %s" % error) from error
+
+
+def search(problem, count, seed):
+    """(point, [costs of the descents that were tried])."""
+    points = starts(problem, count, seed)
+    costs = [float(numpy.abs(problem.residual(forces)).sum()) for forces in problem.forces(points)]
+    order = numpy.argsort(costs, kind="stable")
+    problem.tell("best of %d starts" % len(points), points[order[0]])
+    tried = [_descend(problem, points[i], "soft_l1", "descent", FIRST_TOLERANCE) for i in _apart(points, order)]
+    return min(tried, key=lambda found: found.cost).x, [found.cost for found in tried]
+
+
+def _apart(points, order):
+    """The best start, and the best of those away from it."""
+    rest = [i for i in order[1:] if numpy.abs(points[i] - points[order[0]]).max() > 0.2]
+    return [order[0]] + rest[:1]
+
+
+def refine(problem, point):
+    """From a point near the answer: spreads from its residuals, then robust least squares."""
+    set_spreads(problem, point)
+    found = _descend(problem, point, "huber", "refinement", TOLERANCE)
+    point = problem.in_order(found.x)
+    set_spreads(problem, point)
+    problem.tell("done", point)
+    return point

@@ -1,0 +1,150 @@
+"""How well the data tell the parameters: covariance, 95 % intervals, correlation, and what cannot be told.
+
+Near the answer residuals are r = r0 + J d, and the answer's covariance is C = H^-1 M H^-1 with H = J^T J (Huber's: of the residuals not
+clipped) and M = sum over recordings of s^2 tau J^T J: s^2 the variance that the residuals themselves have, tau = 1 + 2 sum rho_k their
+autocorrelation time in samples, since neighbours that err alike tell less than as many strangers. What mesh, step and solver make of the forces
+is no noise: the simulator's own estimate of it moves all forces one way, and the answer by H^-1 J^T e.
+"""
+import dataclasses
+
+import numpy
+from scipy import stats
+
+from fitting.solve import HUBER
+
+LEVEL = 0.95
+TOLD_LOG = 0.25    # half an interval, as a share of the value, up to which data tell a parameter known by its order of magnitude
+TOLD_RANGE = 0.25  # ... and as a share of the way between its bounds
+ALIKE = 0.9        # correlation from which on two parameters are named together
+FLAT = 1e-9        # of the largest curvature
+AT_BOUND = 1e-3    # of the way between bounds
+
+
+@dataclasses.dataclass
+class Answer:
+    parameters: list
+    point: numpy.ndarray
+    values: list
+    half: numpy.ndarray         # of the 95 % interval, in parts of the way
+    noise_half: numpy.ndarray   # what of it is noise
+    model_half: numpy.ndarray   # ... and mesh, step, solver
+    alone_half: numpy.ndarray   # if all others were known
+    correlation: numpy.ndarray
+    singular: numpy.ndarray     # of the Jacobian per part of the way, weighed forces
+    shares: numpy.ndarray       # runs x parameters: of what is known about it
+    untold: list                # sentences; empty: all are told
+
+    def interval(self, i):
+        parameter = self.parameters[i]
+        return tuple(parameter.value(self.point[i] + sign * self.half[i]) for sign in (-1.0, 1.0))
+
+
+def autocorrelation_time(residual, fitted=0):
+    """1 + 2 sum of rho; 1 for white noise. Of the sum up to the first rho not above 0, and that of the first-order process with this rho_1, the
+    larger: a short piece of slow noise shows less of it than there is. The mean is not taken off, and rho_1 is freed of the bias that
+    estimating it (Kendall 1954) and `fitted` parameters have."""
+    count = len(residual)
+    power = float(residual @ residual) / max(count, 1)
+    if count < 8 or not power > 0.0:
+        return 1.0
+
+    def rho(lag):
+        return float(residual[:-lag] @ residual[lag:]) / (count - lag) / power
+
+    total, lag = 1.0, 1
+    while lag < count // 2 and rho(lag) > 0.0:
+        total, lag = total + 2.0 * rho(lag), lag + 1
+    first = rho(1)
+    first = min(first + ((1.0 + 3.0 * first) + fitted * (1.0 + first)) / count, 0.99) if first > 2.0 / count ** 0.5 else 0.0
+    return min(max(total, (1.0 + first) / (1.0 - first)), 0.5 * count)
+
+
+def _groups(problem):
+    """Rows of the residual that are of one axis of one run."""
+    start = 0
+    for index, run in enumerate(problem.runs):
+        count = int(run.fitted[1:].sum())
+        for _ in run.recording.measured():
+            yield index, slice(start, start + count)
+            start += count
+
+
+def _model_error(problem, forces):
+    """The likely error of each force along itself, weighed as the residuals are."""
+    parts = []
+    for run, (force, error) in zip(problem.runs, forces):
+        size = numpy.maximum(numpy.linalg.norm(force, axis=1), 1e-300)
+        rows = run.fitted & (numpy.arange(len(size)) > 0)
+        parts += [(error * force[:, axis] / size)[rows] / run.spread_n for axis in run.recording.measured()]
+    return numpy.concatenate(parts)
+
+
+def assess(problem, point):
+    forces = problem.forces([point])[0]
+    residual, jacobian = problem.residual(forces), problem.jacobian(point)
+    inlier = numpy.abs(residual) <= HUBER
+    curvature = jacobian[inlier].T @ jacobian[inlier]
+    spread, information, strangers = numpy.zeros_like(curvature), numpy.zeros((len(problem.runs), len(point))), 0.0
+    for run, rows in _groups(problem):
+        clipped = numpy.clip(residual[rows], -HUBER, HUBER)
+        time = autocorrelation_time(clipped, len(point))
+        square = jacobian[rows].T @ jacobian[rows]
+        spread += float(clipped @ clipped) / max(len(clipped), 1) * time * square
+        information[run] += numpy.diag(square)
+        strangers += len(clipped) / time
+    # Directions in which nothing is known become very long ones, not none.
+    least = FLAT * max(numpy.linalg.norm(curvature, 2), 1e-300) * numpy.eye(len(point))
+    inverse, spread = numpy.linalg.inv(curvature + least), spread + least
+    freedom = max(strangers - len(point), 1.0)
+    spread *= strangers / freedom  # the fit has taken its share of the residuals
+    covariance = inverse @ spread @ inverse
+    quantile = stats.t.ppf(0.5 + 0.5 * LEVEL, freedom)
+    deviation = numpy.sqrt(numpy.maximum(numpy.diag(covariance), 0.0))
+    hardly = numpy.diag(curvature) <= 1e-12 * max(numpy.diag(curvature).max(), 1e-300)
+    noise = numpy.where(hardly, numpy.inf, quantile * deviation)
+    alone = quantile * numpy.sqrt(numpy.diag(spread)) / numpy.maximum(numpy.diag(curvature), 1e-300)
+    model = numpy.abs(inverse @ (jacobian.T @ _model_error(problem, forces)))
+    safe = numpy.where(deviation > 0.0, deviation, 1.0)
+    answer = Answer(
+        parameters=problem.parameters, point=point, values=problem.values(point), half=numpy.sqrt(noise ** 2 + model ** 2), noise_half=noise,
+        model_half=model, alone_half=numpy.where(hardly, numpy.inf, alone), correlation=covariance / numpy.outer(safe, safe),
+        singular=numpy.linalg.svd(jacobian, compute_uv=False), shares=information / numpy.maximum(information.sum(axis=0), 1e-300), untold=[])
+    answer.untold = [sentence for i in range(len(point)) for sentence in _untold(answer, i)]
+    return answer
+
+
+def _limit(parameter):
+    """Half an interval, in parts of the way, up to which a parameter is told."""
+    if parameter.is_log:
+        return min(TOLD_RANGE, numpy.log1p(TOLD_LOG) / numpy.log(parameter.high / parameter.low))
+    return TOLD_RANGE
+
+
+def _percent(answer, i, half):
+    parameter = answer.parameters[i]
+    unit = parameter.slope(answer.point[i]) * half
+    return "%.0f %%" % (100.0 * unit / answer.values[i]) if parameter.is_log else "%.2g %s" % (unit, parameter.unit)
+
+
+def _untold(answer, i):
+    parameter, half, alone = answer.parameters[i], answer.noise_half[i], answer.alone_half[i]
+    limit = _limit(parameter)
+    if half <= limit:
+        return
+    if alone > limit:
+        yield ("these data do not tell %s: they hardly depend on it where it is %.3g %s; leave its --fit out, or measure what depends on it" %
+               (parameter.label, answer.values[i], parameter.unit)).replace("  ", " ")
+        return
+    others = sorted((j for j in range(len(answer.values)) if j != i), key=lambda j: -abs(answer.correlation[i, j]))
+    alike = [j for j in others if abs(answer.correlation[i, j]) >= ALIKE] or others[:1]
+    yield ("these data cannot tell %s from %s: known to ± %s if the other were known, to ± %s without (correlation %s); "
+           "measure one of them otherwise and leave its --fit out, or add recordings that they change differently" % (
+               parameter.label, " and ".join(answer.parameters[j].label for j in alike), _percent(answer, i, alone),
+               _percent(answer, i, half), ", ".join("%+.3f" % answer.correlation[i, j] for j in alike)))
+
+
+def at_bounds(answer):
+    """Sentences on parameters that the search would have taken beyond a bound."""
+    for parameter, part, value in zip(answer.parameters, answer.point, answer.values):
+        if min(part, 1.0 - part) < AT_BOUND:
+            yield "%s is at its bound %.4g %s: widen the bounds, or the scene is not what was measured" % (parameter.label, value, parameter.unit)
