@@ -78,7 +78,7 @@ def point(seed, arguments):
     loud = run.foretold(stranger, force, numpy.arange(len(force)) > 0)
     deepest = numpy.abs(quiet.force_n[:, 2]).argmax()
     low, high = answer.interval(0)
-    return [seed, modulus, layer_m, answer.values[0], low, high, answer.values[1], -offset_m[2], quiet.force_n[deepest, 2],
+    return [seed, modulus, layer_m, answer.values[0], low, high, answer.values[1], offset_m[2], quiet.force_n[deepest, 2],
             force[deepest, 2] / quiet.force_n[deepest, 2] - 1.0, loud.median]
 
 

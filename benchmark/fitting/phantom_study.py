@@ -15,12 +15,18 @@ SCENE = os.path.join(SOURCE, "config", "calibration", "phantom.yaml")
 TOOL = "indenter"
 RATE_HZ = 500
 ROUNDING_S = 0.1  # of corners of the motion: an arm has mass
-BALL_M = 0.004
+BALL_M = 0.008
 
-# The truth has another mesh, of two and a half times as many nodes, and steps half as long: what the fit's own mesh does to the estimates is
-# part of their error here. Fitting with the model that made the data would hide it.
-FINER = {"tissues.phantom.block.cells": [14, 12, 8], "tissues.phantom.block.grading.x.growth": 1.2,
-         "tissues.phantom.block.grading.y.growth": 1.25, "tissues.phantom.block.grading.z.growth": 1.25, "step.max_step_s": 0.01}
+def _mesh(cells, growth, step_s):
+    block = "tissues.phantom.block."
+    settings = {block + "grading.%s.growth" % axis: value for axis, value in zip("xyz", growth)}
+    return dict(settings, **{block + "cells": cells, "step.max_step_s": step_s})
+
+
+# What the fit is corrected by (fit.py --finer), and the truth, which is finer still and in steps half as long: what mesh and step do to the
+# estimates is part of their error here. Fitting with the model that made the data would hide it.
+FINER = _mesh([16, 16, 8], [1.2, 1.2, 1.3], 0.02)
+TRUTH = _mesh([20, 18, 11], [1.15, 1.17, 1.18], 0.01)
 TRUTH_HZ = 100
 
 
@@ -88,7 +94,7 @@ def true_forces(settings, motion, scene=SCENE):
 
 
 def record(name, motion, force, noise, offset_m, generator):
-    """What is written down: the tool is really deeper by -offset_m[2] than that."""
+    """What is written down: the tool is really deeper by offset_m[2] than that."""
     times, positions = motion
     peak = numpy.linalg.norm(force, axis=1).max()
     return measured.Recording(

@@ -42,13 +42,14 @@ def trial(seed, noise, arguments, workers):
     """Rows: trial, parameter, truth, estimate, interval, and its halves by noise and by model."""
     generator = numpy.random.default_rng(seed)
     truth = random_truth(generator)
-    settings = {} if arguments.same_mesh else study.FINER
+    settings = {} if arguments.same_mesh else study.TRUTH
     raw, offset_m = recordings(truth, noise, generator, study.PROTOCOL, workers, settings)
     setup = study.setup(FITS, workers, starts=0, seed=seed, say=print if arguments.verbose else lambda line: None)
-    answer, quality, problem, _ = run.fit(setup, [study.as_fit_sees(one) for one in raw], cross_check=False)
+    finer = {} if arguments.same_mesh else study.FINER
+    answer, _, problem, _ = run.fit(setup, [study.as_fit_sees(one) for one in raw], cross_check=False, finer=finer)
     for sentence in answer.untold:
         print("trial %d: %s" % (seed, sentence))
-    for i, (name, true) in enumerate(zip(NAMES, list(truth.values()) + [-offset_m[2]])):
+    for i, (name, true) in enumerate(zip(NAMES, list(truth.values()) + [offset_m[2]])):
         slope = answer.parameters[i].slope(answer.point[i])
         yield [seed, name, true, answer.values[i], *answer.interval(i), slope * answer.noise_half[i], slope * answer.model_half[i],
                problem.evaluations]
@@ -71,10 +72,10 @@ def summary(rows):
 
 def write_example(folder, workers):
     generator = numpy.random.default_rng(1)
-    made, offset_m = recordings(EXAMPLE, study.Noise(), generator, ["press", "swing", "drag", "deeper"], workers, study.FINER)
+    made, offset_m = recordings(EXAMPLE, study.Noise(), generator, ["press", "swing", "drag", "deeper"], workers, study.TRUTH)
     for recording in made:
         study.write_table(os.path.join(folder, recording.name + ".csv"), study.measured.thin(recording, 250.0))
-    print("%s: %s, tool deeper than recorded by %.4g mm" % (folder, EXAMPLE, -1e3 * offset_m[2]))
+    print("%s: %s, tool deeper than recorded by %.4g mm" % (folder, EXAMPLE, 1e3 * offset_m[2]))
 
 
 def main():

@@ -182,4 +182,9 @@ def parse_fits(texts, keys):
     for i, parameter in enumerate(parameters):
         if parameter.key in [other.key for other in parameters[:i]]:
             raise FitError("--fit names %s twice" % parameter.key)
+    by_key = {parameter.key: parameter for parameter in parameters}
+    for key, static in by_key.items():
+        kinetic = by_key.get(key[:-len("static")] + "kinetic") if key.endswith(".static") else None
+        if kinetic and static.start <= kinetic.start:  # from where they are one, nothing would tell which of them to move
+            static.start, kinetic.start = static.value(0.6), kinetic.value(0.4)
     return parameters

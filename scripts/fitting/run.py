@@ -23,11 +23,12 @@ class Setup:
     def settings(self, values):
         return self.keys.settings(self.parameters, values, self.tool.name, self.approach)
 
-    def forces(self, values, run):
-        return forward.forces(self.scene, self.settings(values), self.tool.name, run.recording.times_s, run.motion)
+    def forces(self, values, run, more=None):
+        """more: {key: value} besides those that are fitted."""
+        return forward.forces(self.scene, dict(self.settings(values), **(more or {})), self.tool.name, run.recording.times_s, run.motion)
 
-    def problem(self, runs):
-        return solve.Problem(runs, self.parameters, self.forces, self.workers, self.say, self.settings)
+    def problem(self, runs, more=None):
+        return solve.Problem(runs, self.parameters, lambda values, run: self.forces(values, run, more), self.workers, self.say, self.settings)
 
 
 @dataclasses.dataclass
@@ -64,9 +65,9 @@ def hold_out_blocks(runs):
         run.fitted = block % HELD_OUT_OF != HELD_OUT_OF // 2
 
 
-def fit(setup, recordings, held_out=(), cross_check=True):
+def fit(setup, recordings, held_out=(), cross_check=True, finer=None):
     """(Answer, [HeldOut], problem, costs of the descents). Without recordings that are held out, blocks of all are, and the answer
-    is then refined on everything."""
+    is then refined on everything. finer: settings of a finer mesh or step; the answer is then that of the scene with them."""
     runs = runs_of(setup, recordings)
     count = sum(int(run.fitted.sum()) * len(run.recording.measured()) for run in runs)
     if count <= 3 * len(setup.parameters):
@@ -83,9 +84,12 @@ def fit(setup, recordings, held_out=(), cross_check=True):
             quality.append(foretold(run, force, ~run.fitted))
             run.fitted = numpy.ones(len(run.fitted), bool)
         point = solve.refine(problem, point)
+    if finer:
+        coarse, problem = problem, setup.problem(runs, finer)
+        point = solve.corrected(coarse, point, problem)
     answer = uncertainty.assess(problem, point)
     if held_out:
         strangers = runs_of(setup, held_out)
-        done = setup.workers.map(setup.forces, [(answer.values, run) for run in strangers])
+        done = setup.workers.map(setup.forces, [(answer.values, run, finer) for run in strangers])
         quality = [foretold(run, force, numpy.arange(len(force)) > 0) for run, (force, _) in zip(strangers, done)]
     return answer, quality, problem, costs

@@ -11,7 +11,8 @@ FIRST_SPREAD = 0.05  # of the peak force, until residuals tell it
 LEAST_SPREAD = 1e-4  # of the peak force: a replay's own tolerance
 HUBER = 1.5          # spreads from which on a residual counts by its magnitude only; 96 % efficient with normal noise
 STEP = 0.01          # of the way between bounds, for differences: far above the solver's tolerance, far below what bends
-MOST_ITERATIONS = 25
+MOST_ITERATIONS, MOST_CORRECTIONS = 25, 6
+CORRECTED, LONGEST_CORRECTION = 2e-3, 0.2  # of the way between bounds: the last correction is as small as that
 FIRST_TOLERANCE, TOLERANCE = 1e-2, 1e-4  # of cost and point: of the descent that finds the valley, and of the one to its bottom
 
 
@@ -134,4 +135,24 @@ def refine(problem, point):
     point = problem.in_order(found.x)
     set_spreads(problem, point)
     problem.tell("done", point)
+    return point
+
+
+def corrected(coarse, point, fine):
+    """The point of a scene with a finer mesh: by residuals of that and derivatives of the coarse one, which differ little (chord method), a
+    few runs of the finer scene do in place of a whole fit of it. `fine` then has the coarse one's derivatives as its own."""
+    start = numpy.array(point)
+    fine.jacobian = lambda at, both_sides=True: coarse.jacobian(start)  # run once; weighed by the spreads of the moment
+    for _ in range(MOST_CORRECTIONS):
+        set_spreads(fine, point)
+        fine.tell("correction", point)
+        residual = fine.at(point)
+        weight = numpy.sqrt(numpy.minimum(1.0, HUBER / numpy.maximum(numpy.abs(residual), 1e-300)))
+        step = numpy.linalg.lstsq(weight[:, None] * fine.jacobian(point), -weight * residual, rcond=1e-10)[0]
+        moved = fine.in_order(numpy.clip(point + numpy.clip(step, -LONGEST_CORRECTION, LONGEST_CORRECTION), 0.0, 1.0))
+        change, point = numpy.abs(moved - point).max(), moved
+        if change < CORRECTED:
+            break
+    set_spreads(fine, point)
+    fine.tell("corrected", point)
     return point

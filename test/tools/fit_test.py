@@ -277,7 +277,7 @@ class CommandTest(Folder):
         generator = numpy.random.default_rng(1)
         for name, motion in (("press", study.press()), ("swing", study.swing(cycles=3)), ("drag", study.drag())):
             force = study.true_forces(self.truth, motion, self.scene)
-            recording = study.record(name, motion, force, study.Noise(), numpy.array([0.0, 0.0, -1e-4]), generator)
+            recording = study.record(name, motion, force, study.Noise(), numpy.array([0.0, 0.0, 1e-4]), generator)
             study.write_table(os.path.join(self.folder, name + ".csv"), measured.thin(recording, 250.0))
 
     def fit(self, *arguments, recordings=("press", "swing", "drag")):
