@@ -239,7 +239,7 @@ def run(folder, study, options, keyed):
     lost = [key for key, _ in missing if key not in after]
     if not lost:
         spent = sum(after[key]["cpu_time_s"] for key, _ in missing)
-        print("sweep: %d jobs; CPU time %.1f s, of which %.1f s in replays" % (len(jobs), cpu_seconds(), spent))
+        print("sweep: %d jobs; CPU time of replays %.1f s%s" % (len(jobs), spent, "" if options.profile else ", of all %.1f s" % cpu_seconds()))
         return
     crashes = folder.crashes()
     first = next((crashes[key]["crashed"] for key in lost if key in crashes), None)
