@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <system_error>
@@ -34,6 +35,18 @@ std::string distrust(const std::string& directory) {
 }
 
 }  // namespace
+
+std::string userCacheDirectory() {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::string(value == nullptr ? "" : value);
+  };
+  // The specification of these directories: a relative path is to be ignored.
+  const std::string cache = variable("XDG_CACHE_HOME");
+  if (!cache.empty() && cache.front() == '/') return cache + "/tissue_contact";
+  const std::string home = variable("HOME");
+  return home.empty() || home.front() != '/' ? "" : home + "/.cache/tissue_contact";
+}
 
 CacheFolder::CacheFolder(std::string directory, std::string extension)
     : directory_(std::move(directory)), extension_(std::move(extension)) {}

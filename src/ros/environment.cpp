@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -19,6 +18,7 @@
 #include "ros/bag/bag_frames.h"
 #include "ros/conversions.h"
 #include "ros/parameter.h"
+#include "tissue_contact/core/cache_folder.h"
 #include "tissue_contact/core/range.h"
 #include "tissue_contact/core/read_file.h"
 #include "tissue_contact/instrument/parse_urdf.h"
@@ -27,19 +27,6 @@ namespace tissue_contact {
 namespace {
 
 constexpr Range kTimeoutRange{0.0, 1e6, "s"};
-
-/// $XDG_CACHE_HOME/tissue_contact, else ~/.cache/tissue_contact; empty (no cache) when neither is set.
-std::string cacheDirectory() {
-  const auto variable = [](const char* name) {
-    const char* value = std::getenv(name);
-    return std::string(value == nullptr ? "" : value);
-  };
-  // The specification of these directories: a relative path is to be ignored.
-  const std::string cache = variable("XDG_CACHE_HOME");
-  if (!cache.empty() && cache.front() == '/') return cache + "/tissue_contact";
-  const std::string home = variable("HOME");
-  return home.empty() || home.front() != '/' ? "" : home + "/.cache/tissue_contact";
-}
 
 std::string urdfParameter(const ros::NodeHandle& private_node, const std::string& parameter) {
   const std::string tried_first = private_node.resolveName(parameter);
@@ -106,7 +93,7 @@ SceneEnvironment nodeEnvironment(const ros::NodeHandle& private_node, const std:
   SceneEnvironment environment;
   environment.package_path = packagePath;
   environment.clock = steadySeconds;
-  environment.meshes = {cacheDirectory(), [](const std::string& line) { ROS_INFO_STREAM(line); }, steadySeconds};
+  environment.meshes = {userCacheDirectory(), [](const std::string& line) { ROS_INFO_STREAM(line); }, steadySeconds};
   environment.urdf_text = [private_node](const std::string& parameter) {
     return urdfParameter(private_node, parameter);
   };
@@ -121,7 +108,7 @@ SceneEnvironment bagEnvironment(const Scene& scene, const std::string& bag_file,
   SceneEnvironment environment;
   environment.package_path = packagePath;
   environment.clock = steadySeconds;
-  environment.meshes = {cacheDirectory(),
+  environment.meshes = {userCacheDirectory(),
                         [](const std::string& line) { std::cerr << "tissue_contact_replay: " << line << "\n"; },
                         steadySeconds};
   environment.urdf_text = [urdf_file](const std::string& parameter) {

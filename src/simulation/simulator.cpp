@@ -17,6 +17,12 @@ namespace {
 /// With the version of what follows it.
 constexpr const char* kStateTitle = "tissue_contact simulation 1";
 
+NodalVectors handOver(NodalVectors& values) {
+  NodalVectors copy = values;
+  copy.swap(values);
+  return copy;
+}
+
 }  // namespace
 
 std::unique_ptr<Simulator::Implementation> Simulator::build(const Scene& scene, const SceneEnvironment& environment) {
@@ -137,6 +143,8 @@ const TriangleMesh* Simulator::actingSurface(int instrument, int contact_link, i
 }
 const NodalVectors& Simulator::positions(int tissue) const { return implementation_->x.at(tissue); }
 const NodalVectors& Simulator::velocities(int tissue) const { return implementation_->solution.v.at(tissue); }
+NodalVectors Simulator::handOverPositions(int tissue) { return handOver(implementation_->x.at(tissue)); }
+NodalVectors Simulator::handOverVelocities(int tissue) { return handOver(implementation_->solution.v.at(tissue)); }
 const std::vector<SolvedContact>& Simulator::contacts() const { return implementation_->contacts.solved(); }
 const StepReport& Simulator::report() const { return implementation_->report; }
 const Residuals& Simulator::residuals() const {

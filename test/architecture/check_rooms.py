@@ -4,7 +4,7 @@
 1. A room of the product includes itself and rooms before it in ROOMS, never after.
 2. Only ROS_ROOMS may include ROS (and any other library); the other rooms include the standard library, Eigen and, in
    sources and private headers only (src/), PRIVATE_LIBRARIES and OPERATING_SYSTEM.
-3. What measures the product (MEASURING) may include all of it and test/support; the product knows nothing of that.
+3. What uses and measures the product (MEASURING) may include all of it and test/support; the product knows nothing of that.
 4. A public header (include/) is one that another room of the product or a public header includes, or one of API, which other
    packages include. What measures the product takes private ones as they lie in src/.
 5. The core library links nothing but LINKED: ROS headers and libraries lie in the system's own directories, so the
@@ -18,8 +18,8 @@ import subprocess
 import sys
 
 ROOMS = ["core", "mesh", "instrument", "tissue", "contact", "friction", "solver", "baselines", "simulation", "scene", "ros"]
-MEASURING = ["validation", "benchmark"]
-ROS_ROOMS = {"ros", "benchmark"}
+MEASURING = ["python", "validation", "benchmark"]
+ROS_ROOMS = {"ros", "python", "benchmark"}
 API = {"ros/environment.h", "ros/lock_step.h", "scene/load_scene.h", "simulation/joint_state_player.h", "simulation/simulator.h"}
 PRIVATE_LIBRARIES = {"fcl", "urdf_model", "urdf_parser", "urdf_world", "console_bridge", "assimp", "yaml-cpp"}
 OPERATING_SYSTEM = {"fcntl.h", "sys", "unistd.h"}

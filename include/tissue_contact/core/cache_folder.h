@@ -9,6 +9,9 @@
 
 namespace tissue_contact {
 
+/// $XDG_CACHE_HOME/tissue_contact, else ~/.cache/tissue_contact; empty (no cache) when neither is set.
+std::string userCacheDirectory();
+
 /// Files of one kind, "<key><extension>", in a directory. Nothing here throws: what goes wrong costs time, not the result.
 class CacheFolder {
  public:

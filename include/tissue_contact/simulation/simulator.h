@@ -156,8 +156,12 @@ class Simulator {
   const std::vector<Pose>& linkPoses(int instrument) const;  ///< X_WL of every link
   /// See ContactDetector::actingSurface.
   const TriangleMesh* actingSurface(int instrument, int contact_link, int shape) const;
-  const NodalVectors& positions(int tissue) const;     ///< m, world frame
-  const NodalVectors& velocities(int tissue) const;    ///< m/s, world frame
+  const NodalVectors& positions(int tissue) const;   ///< m, world frame
+  const NodalVectors& velocities(int tissue) const;  ///< m/s, world frame
+  /// Hands over the memory that positions() or velocities() of a tissue lie in and goes on in a copy, so that whoever looks at that memory
+  /// can keep what it saw. References that these have returned now tell of the copy.
+  NodalVectors handOverPositions(int tissue);
+  NodalVectors handOverVelocities(int tissue);
   const std::vector<SolvedContact>& contacts() const;  ///< of the last step, sorted by key; those of lastProblem()
   const StepReport& report() const;
   /// Of the last step: how far its answer is from its contact problem. Computed when first asked for, at the price of about half a

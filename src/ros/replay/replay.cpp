@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -45,27 +46,31 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+using MomentObserver = std::function<void(const Simulator&, const PlayedSample&, long steps)>;
+
 constexpr const char* kPrefix = "tissue_contact_replay: ";
 
 class Replay {
  public:
-  explicit Replay(const ReplayOptions& options)
+  Replay(const ReplayOptions& options, std::ostream& log, MomentObserver observe)
       : options_(options),
+        log_(log),
+        observe_(std::move(observe)),
         scene_(loadReplayedScene(options, publish_)),
         simulator_(scene_, bagEnvironment(scene_, options.bag_file, options.urdf_file)),
         player_(simulator_),
         joint_names_(simulator_, player_),
         force_errors_(simulator_.instruments().size()) {
     requireModelsKept(options, simulator_);
-    for (const std::string& line : simulator_.advice()) std::cerr << kPrefix << "advisor: " << line << "\n";
+    for (const std::string& line : simulator_.advice()) log_ << kPrefix << "advisor: " << line << "\n";
     simulator_.setStepObserver([this] { stepTaken(); });
   }
 
   void run() {
     const JointStateBag bag(options_.bag_file, player_.topics());
     if (!bag.missingTopics().empty()) {
-      std::cerr << kPrefix << "warning: the bag has no message on " << joinedNames(bag.missingTopics())
-                << "; its joints stay where the scene puts them\n";
+      log_ << kPrefix << "warning: the bag has no message on " << joinedNames(bag.missingTopics())
+           << "; its joints stay where the scene puts them\n";
     }
     if (options_.changes_topic != "none") {
       changes_.emplace(options_.bag_file, options_.changes_topic, scene_, bag.begin());
@@ -103,8 +108,8 @@ class Replay {
     const std::int64_t from_ns = begin_ns + std::llround(options_.from_s * kNanoseconds);
     length_s_ = std::min(length_s - options_.from_s, options_.duration_s);
     if (options_.from_s > 0.0) {
-      std::cerr << kPrefix << "begins " << options_.from_s
-                << " s into the recording with undeformed tissue, as if there were nothing before\n";
+      log_ << kPrefix << "begins " << options_.from_s
+           << " s into the recording with undeformed tissue, as if there were nothing before\n";
     }
     const bool to_the_end = !(options_.duration_s < length_s - options_.from_s);  // exactly, however long it is
     return {toTime(from_ns), toTime(to_the_end ? end_ns : from_ns + std::llround(options_.duration_s * kNanoseconds))};
@@ -125,7 +130,7 @@ class Replay {
 
   void play(const JointStateBag& bag, const BagWindow& window) {
     start_ = Clock::now();
-    progress_.emplace(std::cerr, isatty(STDERR_FILENO) == 1, kPrefix, length_s_);
+    progress_.emplace(log_, &log_ == &std::cerr && isatty(STDERR_FILENO) == 1, kPrefix, length_s_);
     const auto take = [&](int topic, JointStateSample sample, ros::Time recorded) {
       played_s_ = recorded.toSec() - window.from.toSec();  // a ros::Duration ends after 68 years
       recorded_ = recorded;
@@ -184,10 +189,10 @@ class Replay {
     if (!recorder_) return;
     try {
       if (!recorder_->commitPartial()) return;
-      std::cerr << kPrefix << "ended after " << played_s_ << " s of " << length_s_ << " s; what was recorded is in '"
-                << options_.out_file << WholeFile::kPartialEnding << "'\n";
+      log_ << kPrefix << "ended after " << played_s_ << " s of " << length_s_ << " s; what was recorded is in '"
+           << options_.out_file << WholeFile::kPartialEnding << "'\n";
     } catch (const std::exception& error) {
-      std::cerr << kPrefix << error.what() << "\n";
+      log_ << kPrefix << error.what() << "\n";
     }
   }
 
@@ -207,9 +212,8 @@ class Replay {
         touched_ |= contact.contact.key.instrument >= 0 && contact.state != ContactState::kOpen;
       }
       if (touched_ && options_.from_s > 0.0 && simulator_.stepCount() == 1) {
-        std::cerr << kPrefix
-                  << "warning: an instrument touches tissue where --from begins, and what it did to it before is "
-                  << "missing; begin before it touches\n";
+        log_ << kPrefix << "warning: an instrument touches tissue where --from begins, and what it did to it before is "
+             << "missing; begin before it touches\n";
       }
     }
     if (progress_) progress_->at(played_s_, wallTime());
@@ -249,6 +253,7 @@ class Replay {
       }
       if (!touched_) noteApproach(played->stamp_ns);
       if (table_) table_->add(simulator_, *played, steps);
+      if (observe_) observe_(simulator_, *played, steps);
       if (recorder_) recorder_->record(*played, static_cast<int>(steps), recorded_);
       noteForceErrors(*played);
       if (timing_ && steps > 0) timing_->add(played->stamp_ns, elapsed.count(), steps);
@@ -266,10 +271,8 @@ class Replay {
 
   void summarizeChanges() const {
     if (!changes_ || changes_->count() == 0) return;
-    std::cerr << kPrefix << changes_->taken() << " of " << changes_->count()
-              << " changes of the scene's numbers played back"
-              << (changes_->taken() < changes_->count() ? "; the others belong to moments that it does not have\n"
-                                                        : "\n");
+    log_ << kPrefix << changes_->taken() << " of " << changes_->count() << " changes of the scene's numbers played back"
+         << (changes_->taken() < changes_->count() ? "; the others belong to moments that it does not have\n" : "\n");
   }
 
   void noteApproach(std::int64_t stamp_ns) {
@@ -292,14 +295,13 @@ class Replay {
     noteCells(played);
     if (!report.implausible_load.found) return;
     if (++implausible_ > 1) return;
-    std::cerr << kPrefix << "warning: " << stampText(played.stamp_ns) << " s: " << implausibleLoadText(simulator_)
-              << "\n";
+    log_ << kPrefix << "warning: " << stampText(played.stamp_ns) << " s: " << implausibleLoadText(simulator_) << "\n";
   }
 
   void noteLaw(const PlayedSample& played) {
     const LawError& error = simulator_.report().law_error;
     if (law_alarm_.leaves(error.relative) && ++law_alarms_ == 1) {
-      std::cerr << kPrefix << "warning: " << stampText(played.stamp_ns) << " s: " << lawErrorText(simulator_) << "\n";
+      log_ << kPrefix << "warning: " << stampText(played.stamp_ns) << " s: " << lawErrorText(simulator_) << "\n";
     }
     if (std::abs(error.relative) > std::abs(law_error_.relative)) law_error_ = error;
   }
@@ -308,9 +310,9 @@ class Replay {
   void summarizeLaw() const {
     if (law_alarms_ == 0) return;
     const TissueDescription& tissue = scene_.tissues[static_cast<std::size_t>(law_error_.tissue)];
-    std::cerr << kPrefix << "beyond the range of the " << elasticModelName(tissue.material.model) << " law of tissue '"
-              << tissue.name << "' " << law_alarms_ << " times: forces likely wrong by up to "
-              << 100.0 * law_error_.relative << " %, at a strain of " << law_error_.strain << "\n";
+    log_ << kPrefix << "beyond the range of the " << elasticModelName(tissue.material.model) << " law of tissue '"
+         << tissue.name << "' " << law_alarms_ << " times: forces likely wrong by up to " << 100.0 * law_error_.relative
+         << " %, at a strain of " << law_error_.strain << "\n";
   }
 
   void noteForceErrors(const PlayedSample& played) {
@@ -323,8 +325,7 @@ class Replay {
   void summarizeForceErrors() const {
     for (std::size_t i = 0; i < force_errors_.size(); ++i) {
       const std::string text = force_errors_[i].text();
-      if (!text.empty())
-        std::cerr << kPrefix << "force on '" << simulator_.instruments()[i].name() << "' " << text << "\n";
+      if (!text.empty()) log_ << kPrefix << "force on '" << simulator_.instruments()[i].name() << "' " << text << "\n";
     }
   }
 
@@ -332,8 +333,7 @@ class Replay {
     const CoarseCells& cells = simulator_.report().coarse_cells;
     if (cells.tissue < 0) return;
     if (++coarse_ == 1) {
-      std::cerr << kPrefix << "warning: " << stampText(played.stamp_ns) << " s: " << coarseCellsText(simulator_)
-                << "\n";
+      log_ << kPrefix << "warning: " << stampText(played.stamp_ns) << " s: " << coarseCellsText(simulator_) << "\n";
     }
     if (cells.factor > coarsest_cells_.factor) coarsest_cells_ = cells;
   }
@@ -341,26 +341,26 @@ class Replay {
   /// Of cells that are not as small as the scene asks for.
   void summarizeCells() const {
     if (coarse_ == 0) return;
-    std::cerr << kPrefix << "cells of tissue '" << scene_.tissues[static_cast<std::size_t>(coarsest_cells_.tissue)].name
-              << "' up to " << coarsest_cells_.factor
-              << " times as long as its refinement asks for, to keep to nodes_at_most; such "
-              << "cells in " << coarse_ << " intervals\n";
+    log_ << kPrefix << "cells of tissue '" << scene_.tissues[static_cast<std::size_t>(coarsest_cells_.tissue)].name
+         << "' up to " << coarsest_cells_.factor
+         << " times as long as its refinement asks for, to keep to nodes_at_most; such "
+         << "cells in " << coarse_ << " intervals\n";
   }
 
   void summarize() const {
-    for (const std::string& line : joint_names_.findings()) std::cerr << kPrefix << "warning: " << line << "\n";
-    std::cerr << kPrefix << player_.count(Verdict::kAccepted) << " joint states accepted";
+    for (const std::string& line : joint_names_.findings()) log_ << kPrefix << "warning: " << line << "\n";
+    log_ << kPrefix << player_.count(Verdict::kAccepted) << " joint states accepted";
     for (int v = 1; v < kVerdictCount; ++v) {
       const auto verdict = static_cast<Verdict>(v);
-      if (player_.count(verdict) > 0) std::cerr << ", " << player_.count(verdict) << " " << verdictText(verdict);
+      if (player_.count(verdict) > 0) log_ << ", " << player_.count(verdict) << " " << verdictText(verdict);
     }
-    std::cerr << "; " << player_.resets() << " resets, " << player_.gaps() << " gaps, " << jumps_ << " jumps, "
-              << not_converged_ << " intervals not converged, " << discarded_ << " without a finite answer, "
-              << implausible_ << " with forces that no tissue bears, " << pinched_ << " with pinched contacts -> "
-              << options_.csv_file << (table_ && recorder_ ? ", " : "") << options_.out_file << "\n"
-              << kPrefix << length_s_ << " s of recording in " << wallTime() << " s\n";
+    log_ << "; " << player_.resets() << " resets, " << player_.gaps() << " gaps, " << jumps_ << " jumps, "
+         << not_converged_ << " intervals not converged, " << discarded_ << " without a finite answer, " << implausible_
+         << " with forces that no tissue bears, " << pinched_ << " with pinched contacts -> " << options_.csv_file
+         << (table_ && recorder_ ? ", " : "") << options_.out_file << "\n"
+         << kPrefix << length_s_ << " s of recording in " << wallTime() << " s\n";
     if (!first_refusal_.empty())
-      std::cerr << kPrefix << "first refusal in bag '" << options_.bag_file << "': " << first_refusal_ << "\n";
+      log_ << kPrefix << "first refusal in bag '" << options_.bag_file << "': " << first_refusal_ << "\n";
     summarizeChanges();
     summarizeForceErrors();
     summarizeLaw();
@@ -370,15 +370,16 @@ class Replay {
 
   /// Most often a pose in the scene is wrong, so say how far and between what.
   void summarizeApproach() const {
-    std::cerr << kPrefix << "no instrument touched tissue";
+    log_ << kPrefix << "no instrument touched tissue";
     if (approach_.instrument >= 0) {
-      std::cerr << "; " << approachText(simulator_, approach_, approach_ns_)
-                << "; check base_pose and the tissue's pose";
+      log_ << "; " << approachText(simulator_, approach_, approach_ns_) << "; check base_pose and the tissue's pose";
     }
-    std::cerr << "\n";
+    log_ << "\n";
   }
 
   ReplayOptions options_;
+  std::ostream& log_;
+  MomentObserver observe_;  ///< null: nobody
   PublishOptions publish_;
   Scene scene_;
   Simulator simulator_;
@@ -416,7 +417,11 @@ class Replay {
 
 }  // namespace
 
-void replay(const ReplayOptions& options) { Replay(options).run(); }
+void replay(const ReplayOptions& options) { Replay(options, std::cerr, nullptr).run(); }
+
+void replay(const ReplayOptions& options, std::ostream& log, const MomentObserver& observe) {
+  Replay(options, log, observe).run();
+}
 
 int runReplay(int argc, char** argv) {
   try {

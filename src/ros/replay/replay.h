@@ -2,9 +2,14 @@
 /// Room `ros`, private: offline replay: a bag and a scene in, a CSV file, a bag and plots out. No roscore.
 #pragma once
 
+#include <functional>
+#include <iosfwd>
 #include <limits>
 #include <string>
 #include <vector>
+
+#include "tissue_contact/simulation/joint_state_player.h"
+#include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
 
@@ -40,6 +45,12 @@ ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments);
 /// @throws std::exception saying what is wrong: a scene, bag or URDF that cannot be read, a bag without the scene's
 ///   topics or without one acceptable joint state, a wrench that is not finite, a file that cannot be written; Interrupted.
 void replay(const ReplayOptions& options);
+
+/// The same for whoever takes the results as they come; no file need be asked for.
+/// @param log for progress and summary.
+/// @param observe called for each accepted moment, as ReplayTable::add(). What it throws ends the replay.
+void replay(const ReplayOptions& options, std::ostream& log,
+            const std::function<void(const Simulator&, const PlayedSample&, long steps)>& observe);
 
 /// main() of tissue_contact_replay.
 /// @return exit code: 0, or 1 after one message on stderr.
