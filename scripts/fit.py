@@ -40,6 +40,9 @@ def parse_arguments():
                              "along --approach the tool is than recorded")
     parser.add_argument("--held-out", action="append", default=[], metavar="FILE", help="recording that is foretold, not fitted; "
                         "without one a fifth of every recording is")
+    parser.add_argument("--finer", action="append", default=[], metavar="KEY=VALUE", help="a key of the scene with a finer mesh or a shorter "
+                        "step, as --set of tissue_contact_replay has it: what was found is then corrected to that scene, for the price of a "
+                        "few runs of it")
     parser.add_argument("--out", metavar="FOLDER", help="for the fitted scene, figures and plot")
     parser.add_argument("--instrument", help="whose motion and force were measured; needed where the scene has several")
     parser.add_argument("--force-topic", default="/force_sensor", help="of bags, WrenchStamped; default: %(default)s")
@@ -81,6 +84,21 @@ def prepared(arguments, path, tool, topics):
     return recording
 
 
+def finer_settings(texts):
+    import yaml
+    from fitting import FitError
+    settings = {}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        try:
+            settings[key.replace("[", ".").replace("]", "")] = yaml.safe_load(value)
+        except yaml.YAMLError as error:
+            raise FitError("--finer '%s': %s" % (text, error)) from error
+        if not (key and equals and value):
+            raise FitError("--finer '%s' is not KEY=VALUE, such as step.max_step_s=0.001" % text)
+    return settings
+
+
 def fit(arguments):
     from fitting import FitError, forward, parameters, results, run
     length = math.sqrt(sum(x * x for x in arguments.approach))
@@ -94,13 +112,14 @@ def fit(arguments):
                       arguments.starts, arguments.seed, lambda line: print(line, flush=True))
     recordings, held_out = [[prepared(arguments, path, tool, joint_topics(instrument)) for path in paths]
                             for paths in (arguments.measured, arguments.held_out)]
-    answer, quality, problem, costs = run.fit(setup, recordings, held_out)
+    finer = finer_settings(arguments.finer)
+    answer, quality, problem, costs = run.fit(setup, recordings, held_out, finer=finer)
     print("\n" + results.report(answer, problem, quality, costs))
     if answer.untold:
         print("\nnothing was written" if arguments.out else "")
         return 1
     if arguments.out:
-        names = results.write(arguments.out, setup, answer, problem, quality, "fit.py " + shlex.join(sys.argv[1:]),
+        names = results.write(arguments.out, setup, finer, answer, problem, quality, "fit.py " + shlex.join(sys.argv[1:]),
                               [arguments.scene] + arguments.measured + arguments.held_out, whole_file, forward.tissue_contact.load_scene)
         print("\nwritten: " + ", ".join(names))
     return 0

@@ -14,7 +14,7 @@ from fitting import forward, measured, parameters, run  # noqa: E402 (the path c
 SCENE = os.path.join(SOURCE, "config", "calibration", "phantom.yaml")
 TOOL = "indenter"
 RATE_HZ = 500
-ROUNDING_S = 0.1  # of corners of the motion: an arm has mass
+ROUNDING_S = 0.06  # of corners of the motion: an arm has mass
 BALL_M = 0.008
 
 def _mesh(cells, growth, step_s):
@@ -23,11 +23,11 @@ def _mesh(cells, growth, step_s):
     return dict(settings, **{block + "cells": cells, "step.max_step_s": step_s})
 
 
-# What the fit is corrected by (fit.py --finer), and the truth, which is finer still and in steps half as long: what mesh and step do to the
+# What the fit is corrected by (fit.py --finer), and the truth, which is finer still and in steps less than half as long: what mesh and step do to the
 # estimates is part of their error here. Fitting with the model that made the data would hide it.
-FINER = _mesh([16, 16, 8], [1.2, 1.2, 1.3], 0.02)
-TRUTH = _mesh([20, 18, 11], [1.15, 1.17, 1.18], 0.01)
-TRUTH_HZ = 100
+FINER = _mesh([16, 16, 8], [1.2, 1.2, 1.3], 0.01)
+TRUTH = _mesh([20, 18, 11], [1.15, 1.17, 1.18], 0.004)
+TRUTH_HZ = 250
 
 
 @dataclasses.dataclass
@@ -62,7 +62,7 @@ def press(depth_mm=2.0, speed_mm_per_s=4.0, hold_s=0.3):
                  (down + hold_s + (depth_mm + 0.5) / 10.0, 0, -0.5)])
 
 
-def swing(middle_mm=1.2, amplitude_mm=0.8, rate_hz=3.0, cycles=3):
+def swing(middle_mm=1.2, amplitude_mm=0.8, rate_hz=5.0, cycles=5):
     times, positions = path([(0, 0, -0.5), (0.4, 0, middle_mm), (0.5 + cycles / rate_hz, 0, middle_mm)])
     swinging = numpy.clip(times - 0.45, 0.0, cycles / rate_hz)
     positions[:, 2] -= 1e-3 * amplitude_mm * numpy.sin(2.0 * numpy.pi * rate_hz * swinging)
@@ -84,10 +84,10 @@ def truth_keys(youngs_modulus_pa, stiffness_s, static, kinetic):
             "friction.0.static": static, "friction.0.kinetic": kinetic}
 
 
-def true_forces(settings, motion, scene=SCENE):
-    """At the motion's samples, from steps at TRUTH_HZ: forces bend little in between."""
+def true_forces(settings, motion, scene=SCENE, rate_hz=TRUTH_HZ):
+    """At the motion's samples, from simulated ones at `rate_hz`: forces bend little in between."""
     times, positions = motion
-    every = slice(None, None, RATE_HZ // TRUTH_HZ)
+    every = slice(None, None, RATE_HZ // rate_hz)
     joints = numpy.hstack([positions, numpy.zeros((len(times), 3))])[every]
     force = forward.forces(scene, settings, TOOL, times[every], joints)[0]
     return numpy.stack([numpy.interp(times, times[every], force[:, axis]) for axis in range(3)], axis=1)
@@ -102,8 +102,8 @@ def record(name, motion, force, noise, offset_m, generator):
         positions_m=positions + offset_m + noise.pose_m * generator.standard_normal(positions.shape))
 
 
-def as_fit_sees(recording, smooth_s=0.1, rate_hz=50.0):
-    """As fit.py --smooth 0.1 --rate 50."""
+def as_fit_sees(recording, smooth_s=0.06, rate_hz=100.0):
+    """As fit.py --smooth 0.06 --rate 100."""
     return measured.thin(measured.smooth(recording, smooth_s), rate_hz)
 
 

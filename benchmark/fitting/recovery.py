@@ -18,8 +18,8 @@ sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 import phantom_study as study  # noqa: E402 (the path comes first)
 from fitting import forward, run  # noqa: E402
 
-FITS = ["youngs_modulus_pa:1e3..1e5", "stiffness_s:1e-3..1e-1", "static:0.05..1.2", "kinetic:0.05..1.2", "offset_m:-5e-4..5e-4"]
-NAMES = ["E", "damping", "static", "kinetic", "offset"]
+FITS = ["youngs_modulus_pa:1e3..1e5", "stiffness_s:1e-3..1e-1", "kinetic:0.05..1.2", "offset_m:-5e-4..5e-4"]
+NAMES = ["E", "damping", "kinetic", "offset"]  # static friction is what a drag does not tell: the fit has the scene's, the truth another
 EXAMPLE = {"youngs_modulus_pa": 7000.0, "stiffness_s": 0.014, "static": 0.45, "kinetic": 0.3}
 
 
@@ -49,7 +49,8 @@ def trial(seed, noise, arguments, workers):
     answer, _, problem, _ = run.fit(setup, [study.as_fit_sees(one) for one in raw], cross_check=False, finer=finer)
     for sentence in answer.untold:
         print("trial %d: %s" % (seed, sentence))
-    for i, (name, true) in enumerate(zip(NAMES, list(truth.values()) + [offset_m[2]])):
+    true_values = [truth["youngs_modulus_pa"], truth["stiffness_s"], truth["kinetic"], offset_m[2]]
+    for i, (name, true) in enumerate(zip(NAMES, true_values)):
         slope = answer.parameters[i].slope(answer.point[i])
         yield [seed, name, true, answer.values[i], *answer.interval(i), slope * answer.noise_half[i], slope * answer.model_half[i],
                problem.evaluations]

@@ -112,11 +112,11 @@ def _write_residuals(path, answer, problem):
                                ["%.6g" % one for one in fitted])
 
 
-def write(folder, setup, answer, problem, held_out, made_by, inputs, whole_file, check_scene):
+def write(folder, setup, finer, answer, problem, held_out, made_by, inputs, whole_file, check_scene):
     """All of them or none: they take their names when each is written."""
     os.makedirs(folder, exist_ok=True)
-    settings = {key: value for key, value in setup.settings(answer.values).items()
-                if not (key.endswith(".base_pose.position_m") and key.startswith("instruments."))}
+    settings = dict(setup.settings(answer.values), **finer)
+    settings.pop("instruments.%s.base_pose.position_m" % setup.tool.name, None)  # the offset is of the recordings
     heading = ["Fitted by %s" % made_by] + [
         "  %s %.5g %s, 95 %%: %.5g .. %.5g%s" % ((parameter.key, answer.values[i], parameter.unit) + answer.interval(i) + (
             " (of the recordings, not of this scene)" if parameter.key == OFFSET else "",)) for i, parameter in enumerate(answer.parameters)]
