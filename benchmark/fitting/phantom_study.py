@@ -15,7 +15,7 @@ SCENE = os.path.join(SOURCE, "config", "calibration", "phantom.yaml")
 TOOL = "indenter"
 RATE_HZ = 500
 ROUNDING_S = 0.06  # of corners of the motion: an arm has mass
-BALL_M = 0.008
+BALL_M = 0.012
 
 def _mesh(cells, growth, step_s):
     block = "tissues.phantom.block."
@@ -25,9 +25,9 @@ def _mesh(cells, growth, step_s):
 
 # What the fit is corrected by (fit.py --finer), and the truth, which is finer still and in steps less than half as long: what mesh and step do to the
 # estimates is part of their error here. Fitting with the model that made the data would hide it.
-FINER = _mesh([16, 16, 8], [1.2, 1.2, 1.3], 0.01)
-TRUTH = _mesh([20, 18, 11], [1.15, 1.17, 1.18], 0.004)
-TRUTH_HZ = 250
+FINER = _mesh([16, 16, 9], [1.15, 1.15, 1.2], 0.005)
+TRUTH = _mesh([20, 20, 11], [1.12, 1.12, 1.15], 0.002)
+TRUTH_HZ = 500
 
 
 @dataclasses.dataclass
@@ -56,20 +56,20 @@ def _positions(x_mm, depth_mm):
     return 1e-3 * numpy.stack([x_mm, numpy.zeros_like(x_mm), 1e3 * BALL_M - depth_mm], axis=1)
 
 
-def press(depth_mm=2.0, speed_mm_per_s=4.0, hold_s=0.3):
+def press(depth_mm=3.0, speed_mm_per_s=6.0, hold_s=0.3):
     down = 0.1 + (depth_mm + 0.5) / speed_mm_per_s
     return path([(0, 0, -0.5), (0.1, 0, -0.5), (down, 0, depth_mm), (down + hold_s, 0, depth_mm),
                  (down + hold_s + (depth_mm + 0.5) / 10.0, 0, -0.5)])
 
 
-def swing(middle_mm=1.2, amplitude_mm=0.8, rate_hz=5.0, cycles=5):
+def swing(middle_mm=1.8, amplitude_mm=1.2, rate_hz=5.0, cycles=8):
     times, positions = path([(0, 0, -0.5), (0.4, 0, middle_mm), (0.5 + cycles / rate_hz, 0, middle_mm)])
     swinging = numpy.clip(times - 0.45, 0.0, cycles / rate_hz)
     positions[:, 2] -= 1e-3 * amplitude_mm * numpy.sin(2.0 * numpy.pi * rate_hz * swinging)
     return times, positions
 
 
-def drag(depth_mm=1.5, way_mm=2.0, speed_mm_per_s=2.0):
+def drag(depth_mm=2.0, way_mm=5.0, speed_mm_per_s=5.0):
     there = 0.6 + way_mm / speed_mm_per_s
     back = there + 0.1 + way_mm / speed_mm_per_s
     return path([(0, -0.5 * way_mm, -0.5), (0.5, -0.5 * way_mm, depth_mm), (0.6, -0.5 * way_mm, depth_mm), (there, 0.5 * way_mm, depth_mm),

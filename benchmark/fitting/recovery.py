@@ -30,7 +30,7 @@ def random_truth(generator):
 
 
 def recordings(truth, noise, generator, names, workers, settings):
-    motions = {name: study.PROTOCOL.get(name, lambda: study.press(3.0, 6.0))() for name in names}
+    motions = {name: study.PROTOCOL.get(name, lambda: study.press(4.0, 8.0))() for name in names}
     keys = dict(study.truth_keys(**truth), **settings)
     forces = workers.map(study.true_forces, [(keys, motion) for motion in motions.values()])
     offset_m = noise.offset_m * generator.standard_normal(3)

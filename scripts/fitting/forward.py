@@ -2,7 +2,10 @@
 Python's lock while it steps, and the same run gives the same bits whatever runs beside it."""
 import concurrent.futures
 
+import math
+
 import numpy
+from scipy.interpolate import CubicSpline
 
 import tissue_contact
 from fitting import FitError
@@ -92,20 +95,32 @@ class Tool:
                        (recording.name, self.name, ", ".join(self.joint_names)))
 
 
+def _pieces(times_s, motion, step_s):
+    """[(duration, joints) up to each sample after the first]: a spline through the samples, in pieces of a step. Straight from sample to sample, the speed
+    at each would be that of half an interval before, and so would the damping."""
+    spline = CubicSpline(times_s, motion)
+    for start, end in zip(times_s, times_s[1:]):
+        count = max(int(math.ceil((end - start) / step_s - 1e-6)), 1)
+        yield [((end - start) / count, spline(start + (i + 1) * (end - start) / count)) for i in range(count)]
+
+
 def forces(scene_path, settings, tool_name, times_s, motion):
     """What the tissue exerts on the tool (N, axes of the world) after each sample's step, and how wrong it likely is (N); the first
     sample only places the tool."""
     try:
-        simulator = tissue_contact.Simulator(tissue_contact.load_scene(scene_path, set=settings))
+        scene = tissue_contact.load_scene(scene_path, set=settings)
+        simulator = tissue_contact.Simulator(scene)
         simulator.place(tool_name, motion[0])
         index = list(simulator.instruments).index(tool_name)
         force, error = numpy.zeros((len(times_s), 3)), numpy.zeros(len(times_s))
-        for i in range(1, len(times_s)):
-            simulator.advance(times_s[i] - times_s[i - 1], {tool_name: motion[i]})
+        for i, pieces in enumerate(_pieces(times_s, motion, scene.max_step_s), 1):
+            for duration, joints in pieces:
+                simulator.advance(duration, {tool_name: joints})
             force[i] = simulator.wrench(tool_name, "world")[:3]
             error[i] = simulator.force_errors()["total_n"][index]
     except (ValueError, RuntimeError) as problem:
-        raise FitError("%s with %s: %s" % (scene_path, ", ".join("%s=%s" % item for item in settings.items()), problem)) from problem
+        raise FitError("%s with %s: %s" % (scene_path, ", ".join("%s=%s" % (key, "%.6g" % value if isinstance(value, float) else value)
+                                                                  for key, value in settings.items()), problem)) from problem
     return force, error
 
 

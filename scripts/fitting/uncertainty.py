@@ -3,7 +3,8 @@
 Near the answer residuals are r = r0 + J d, and the answer's covariance is C = H^-1 M H^-1 with H = J^T J (Huber's: of the residuals not
 clipped) and M = sum over recordings of s^2 tau J^T J: s^2 the variance that the residuals themselves have, tau = 1 + 2 sum rho_k their
 autocorrelation time in samples, since neighbours that err alike tell less than as many strangers. What mesh, step and solver make of the forces
-is no noise: the simulator's own estimate of it moves all forces one way, and the answer by H^-1 J^T e.
+is no noise: twice the simulator's own estimate of it (a likely size: eight times in ten within a factor of two) moves all forces one way, and the
+answer by H^-1 J^T e.
 """
 import dataclasses
 
@@ -16,6 +17,7 @@ LEVEL = 0.95
 TOLD_LOG = 0.25    # half an interval, as a share of the value, up to which data tell a parameter known by its order of magnitude
 TOLD_RANGE = 0.25  # ... and as a share of the way between its bounds
 ALIKE = 0.9        # correlation from which on two parameters are named together
+LIKELY = 2.0       # times the simulator's estimate of its error
 FLAT = 1e-9        # of the largest curvature
 AT_BOUND = 1e-3    # of the way between bounds
 
@@ -70,12 +72,12 @@ def _groups(problem):
 
 
 def _model_error(problem, forces):
-    """The likely error of each force along itself, weighed as the residuals are."""
+    """Of each force along itself, weighed as the residuals are."""
     parts = []
     for run, (force, error) in zip(problem.runs, forces):
         size = numpy.maximum(numpy.linalg.norm(force, axis=1), 1e-300)
         rows = run.fitted & (numpy.arange(len(size)) > 0)
-        parts += [(error * force[:, axis] / size)[rows] / run.spread_n for axis in run.recording.measured()]
+        parts += [(LIKELY * error * force[:, axis] / size)[rows] / run.spread_n for axis in run.recording.measured()]
     return numpy.concatenate(parts)
 
 
