@@ -331,6 +331,23 @@ class CommandTest(Folder):
         done = self.fit(*arguments, recordings=["flat"])  # told, once the thickness is known
         self.assertEqual(done.returncode, 0, done.stdout)
 
+    def test_poses_become_joints(self):
+        generator = numpy.random.default_rng(1)
+        axes = generator.standard_normal((20, 4)) + [0, 0, 0, 4]  # turned by some 45 degrees
+        recording = measured.Recording("turned", numpy.arange(20.0), numpy.ones((20, 3)), 0.01 * generator.standard_normal((20, 3)),
+                                       axes / numpy.linalg.norm(axes, axis=1, keepdims=True))
+        tool = forward.Tool(self.scene, study.TOOL, {})
+        simulator = tissue_contact.Simulator(tissue_contact.load_scene(self.scene))
+        for joints, position, quaternion in zip(tool.motion(recording), recording.positions_m, recording.quaternions):
+            simulator.place(study.TOOL, joints)
+            numpy.testing.assert_allclose(simulator.tip_pose(study.TOOL)[:3, 3], position, atol=1e-9)
+            numpy.testing.assert_allclose(simulator.tip_pose(study.TOOL)[:3, :3], forward.rotation(quaternion), atol=1e-9)
+        probe = os.path.join(SOURCE, "config", "press_drag.yaml")  # has no joints to turn with
+        self.refused(["turned: it has quaternions", "urdf/indenter.urdf"], forward.Tool(probe, "probe", {}).motion, recording)
+        arm = os.path.join(SOURCE, "config", "psm_palpation.yaml")
+        name = parameters.SceneKeys(arm).instruments()[0]["name"]
+        self.refused(["poses of the tip", "give its joints' columns instead"], forward.Tool(arm, name, {}).motion, recording)
+
     def test_refused(self):
         for arguments, words in [(["--fit", "youngs_modulus_pa:0.1..0.5"], ["youngs_modulus_pa", "0.223607", "it must be a number >= 1"]),
                                  (["--fit", "statc:0.1..1"], ["no such number"]),
