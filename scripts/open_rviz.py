@@ -28,7 +28,7 @@ from whole_file import whole_file
 # Of the angle RViz opens to both sides of the view, 22.5 degrees: a ball of that radius fills the height of the window at
 # 2.6 radii. What is looked at is a box, and mostly lower than long.
 RADII_AWAY = 2.3
-TIP_AWAY = 0.7  # a tip that is farther from the middle takes the view along; in radii
+TIP_AWAY = 0.6  # a tip that is farther from the middle, and than it was at first, takes the view along; in radii
 CLOSE = 3.0  # times nearer than all: the view of one tip
 TIP = "/tip"  # ends the names of markers at tips
 VIEW = "tissue_contact_view"  # tf frames of our own: in the middle of the view, and VIEW/INSTRUMENT at each tip
@@ -78,11 +78,14 @@ class Picture:
         self.focus = self.middle(points)
         self.radius = max(numpy.linalg.norm(numpy.ptp(numpy.concatenate(points), axis=0)) / 2.0, 1e-6)
 
+        nearest = min((numpy.linalg.norm(tip - self.focus) for tip in tips_of(markers).values()), default=0.0)
+        self.reach = max(TIP_AWAY * self.radius, nearest if nearest < self.radius else 0.0)
+
     def follow(self, tips):
         """Where the middle of the view is to be: that of the scene, or so far from there that the nearest tip is in the picture."""
         way = min((tip - self.focus for tip in tips), key=numpy.linalg.norm, default=numpy.zeros(3))
         length = numpy.linalg.norm(way)
-        return self.focus + way * max(0.0, 1.0 - TIP_AWAY * self.radius / max(length, 1e-12))
+        return self.focus + way * max(0.0, 1.0 - self.reach / max(length, 1e-12))
 
     @staticmethod
     def middle(points):

@@ -55,7 +55,7 @@ class DriverNodelet : public nodelet::Nodelet {
     message->header.stamp = stamp;
     message->name = {"x", "y", "z"};
     message->position = positions;
-    publisher_.publish(sensor_msgs::JointStateConstPtr(message));
+    publisher_.publish(message);
   }
 
  private:
@@ -64,9 +64,9 @@ class DriverNodelet : public nodelet::Nodelet {
 
 int run(const std::string& scene) {
   pluginlib::ClassLoader<nodelet::Nodelet> plugins("nodelet", "nodelet::Nodelet");
-  const auto driver = boost::make_shared<DriverNodelet>();
+  DriverNodelet* driver = nullptr;  // the manager's, which it must not outlive
   const boost::function<boost::shared_ptr<nodelet::Nodelet>(const std::string&)> make = [&](const std::string& type) {
-    if (type == "driver") return boost::shared_ptr<nodelet::Nodelet>(driver);
+    if (type == "driver") return boost::shared_ptr<nodelet::Nodelet>(driver = new DriverNodelet);
     return boost::shared_ptr<nodelet::Nodelet>(plugins.createInstance(type));
   };
   nodelet::Loader manager(make);

@@ -25,6 +25,7 @@ class DriverNodelet(harness.TestCase):
             self.addCleanup(manager.kill)
             wrenches = harness.wrenches()
             outside = harness.Listener(harness.TOPIC, JointState) if listens else None
+            harness.wait_until(lambda: len(self.transports()) == (2 if listens else 1), "the connections of the driver")
             transports = self.transports()
             for stamp, positions in self.samples:
                 manager.stdin.write("%d %d %r %r %r\n" % (stamp.secs, stamp.nsecs, *positions))

@@ -98,6 +98,11 @@ class Headers:
 class Reference(harness.TestCase):
     maxDiff = None
 
+    def setUp(self):
+        super().setUp()
+        if rospy.has_param(harness.NODE):  # of the test before
+            rospy.delete_param(harness.NODE)
+
     # ------------------------------------------------------------------ topics and services
 
     def advertised(self, kind):
