@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "scene/yaml_reader.h"
 #include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
@@ -49,6 +50,24 @@ std::string textParameter(const ros::NodeHandle& node, const std::string& name, 
   std::ostringstream text;
   text << given;
   return text.str();
+}
+
+std::vector<std::string> textsParameter(const ros::NodeHandle& node, const std::string& name) {
+  XmlRpc::XmlRpcValue given;
+  if (!node.getParam(name, given)) return {};
+  const std::string what = "parameter '" + node.resolveName(name) + "'";
+  std::vector<std::string> texts;
+  if (given.getType() == XmlRpc::XmlRpcValue::TypeString) {
+    const auto text = static_cast<std::string>(given);
+    if (text.empty() || text.front() != '[') return {text};
+    for (const YamlCursor& element : parseYaml(text, what).list(0)) texts.push_back(element.text());
+    return texts;
+  }
+  if (node.getParam(name, texts)) return texts;
+  std::ostringstream text;
+  text << given;
+  throw std::invalid_argument(what + " is " + inQuotes(text.str()) +
+                              "; it must be a list of texts KEY=VALUE, or one of them; default: none");
 }
 
 }  // namespace tissue_contact

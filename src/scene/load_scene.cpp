@@ -106,8 +106,8 @@ void parseSections(const YamlMap& map, const PathContext& paths, Scene& scene) {
 }
 
 Scene parse(const std::string& yaml, const std::string& file, const PackagePath& package_path,
-            const ReadMore& read_more) {
-  const YamlMap map = parseYaml(yaml, file).map();
+            const std::vector<std::string>& settings, const ReadMore& read_more) {
+  const YamlMap map = parseYaml(yaml, file, settings).map();
   const PathContext paths{fs::path(file).parent_path().string(), package_path};
   Scene scene;
   scene.file = file;
@@ -117,26 +117,32 @@ Scene parse(const std::string& yaml, const std::string& file, const PackagePath&
     map.cursor().addLines(scene.entry_lines);
   } catch (const EntryError& error) {  // of a room's own check, which knows no lines
     map.cursor().addLines(scene.entry_lines);
-    throw std::invalid_argument(placeOf(scene, error.entry()) + ": " + error.what());
+    const SetPlaces& set = map.cursor().set();
+    const std::string* setting = settingOf(set, error.entry());
+    const std::string place =
+        setting != nullptr ? *setting + ": " + error.entry() : placeOf(scene, error.entry()) + withSettings(set);
+    throw std::invalid_argument(place + ": " + error.what());
   }
   return scene;
 }
 
 }  // namespace
 
-Scene parseScene(const std::string& yaml, const std::string& file, const PackagePath& package_path) {
-  return parse(yaml, file, package_path, nullptr);
+Scene parseScene(const std::string& yaml, const std::string& file, const PackagePath& package_path,
+                 const std::vector<std::string>& settings) {
+  return parse(yaml, file, package_path, settings, nullptr);
 }
 
-Scene loadScene(const std::string& file, const PackagePath& package_path) {
-  return loadScene(file, package_path, nullptr);
+Scene loadScene(const std::string& file, const PackagePath& package_path, const std::vector<std::string>& settings) {
+  return loadScene(file, package_path, settings, nullptr);
 }
 
-Scene loadScene(const std::string& file, const PackagePath& package_path, const ReadMore& read_more) {
+Scene loadScene(const std::string& file, const PackagePath& package_path, const std::vector<std::string>& settings,
+                const ReadMore& read_more) {
   // Only URIs: messages and Scene::file keep a plain path as it was given.
   const bool is_uri = file.find("://") != std::string::npos;
   const std::string path = is_uri ? resolvePath(file, "", package_path) : file;
-  return parse(readFile(path, "scene file", kMaxSceneBytes), path, package_path, read_more);
+  return parse(readFile(path, "scene file", kMaxSceneBytes), path, package_path, settings, read_more);
 }
 
 }  // namespace tissue_contact

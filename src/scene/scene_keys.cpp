@@ -17,6 +17,8 @@ constexpr std::array<std::pair<const char*, const char*>, 6> kSame = {{
     {"tissues[].pressure_where[]", "tissues[].fixed[]"},
 }};
 
+}  // namespace
+
 std::string tablePath(const std::string& path) {
   std::string kind;
   bool is_number = false;
@@ -30,8 +32,6 @@ std::string tablePath(const std::string& path) {
   }
   return kind.empty() ? "scene" : kind;
 }
-
-}  // namespace
 
 const std::map<std::string, std::vector<std::string>>& sceneKeys() {
   static const std::map<std::string, std::vector<std::string>> all = {

@@ -16,7 +16,10 @@ constexpr std::size_t kMaxTextBytes = 4096;
 
 int lineOf(const YAML::Node& node, int otherwise) {
   const YAML::Mark mark = node.Mark();
-  return mark.is_null() ? otherwise : mark.line + 1;
+  if (!mark.is_null()) return mark.line + 1;
+  // Made anew by withSettings(): as a map, it stands where its first key does.
+  const bool has_key = node.IsMap() && node.size() > 0 && !node.begin()->first.Mark().is_null();
+  return has_key ? node.begin()->first.Mark().line + 1 : otherwise;
 }
 
 std::string typeName(const YAML::Node& node) {
@@ -31,16 +34,23 @@ bool isPlain(const YAML::Node& node) { return node.Tag().empty() || node.Tag() =
 
 }  // namespace
 
-YamlCursor::YamlCursor(const YAML::Node& node, std::string file, std::string path, int line)
-    : node_(node), file_(std::move(file)), path_(std::move(path)), line_(line) {}
+YamlCursor::YamlCursor(const YAML::Node& node, std::string file, std::string path, int line,
+                       std::shared_ptr<const SetPlaces> set)
+    : node_(node), file_(std::move(file)), path_(std::move(path)), line_(line), set_(std::move(set)) {}
+
+const SetPlaces& YamlCursor::set() const {
+  static const SetPlaces none;
+  return set_ == nullptr ? none : *set_;
+}
 
 void YamlCursor::fail(const std::string& problem) const {
-  throw std::invalid_argument(file_ + ":" + std::to_string(line_) + ": " + (path_.empty() ? "scene" : path_) + ": " +
-                              problem);
+  const std::string* setting = settingOf(set(), path_);
+  const std::string place = setting != nullptr ? *setting : file_ + ":" + std::to_string(line_) + withSettings(set());
+  throw std::invalid_argument(place + ": " + (path_.empty() ? "scene" : path_) + ": " + problem);
 }
 
 void YamlCursor::addLines(std::map<std::string, int>& lines) const {
-  lines.emplace(path_, line_);
+  lines.emplace(path_, settingOf(set(), path_) != nullptr ? 0 : line_);
   if (node_.IsMap()) {
     for (const auto& entry : entries()) entry.second.addLines(lines);
   } else if (node_.IsSequence()) {
@@ -57,12 +67,12 @@ std::vector<std::pair<std::string, YamlCursor>> YamlCursor::entries() const {
   for (const auto& entry : node_) {
     const int line = lineOf(entry.first, line_);
     if (!entry.first.IsScalar() || entry.first.Scalar().empty()) {
-      YamlCursor(entry.first, file_, path_, line).fail("has a key that is not text; every key must be plain text");
+      below(entry.first, path_, line).fail("has a key that is not text; every key must be plain text");
     }
     const std::string key = entry.first.Scalar();
     const std::string shown = inQuotes(key);
     const std::string name = shown.substr(1, shown.size() - 2);
-    YamlCursor value(entry.second, file_, path_.empty() ? name : path_ + "." + name, line);
+    YamlCursor value = below(entry.second, path_.empty() ? name : path_ + "." + name, line);
     const auto [first, is_new] = line_of_key.emplace(key, line);
     if (!is_new) {
       value.fail("is given twice (first in line " + std::to_string(first->second) + "); remove one of them");
@@ -75,7 +85,7 @@ std::vector<std::pair<std::string, YamlCursor>> YamlCursor::entries() const {
 YamlCursor YamlCursor::element(const YAML::Node& node, std::size_t index) const {
   // yaml-cpp places an empty element where the next token stands, which may be lines below.
   const int line = node.IsNull() ? line_ : lineOf(node, line_);
-  return {node, file_, path_ + "[" + std::to_string(index) + "]", line};
+  return below(node, path_ + "[" + std::to_string(index) + "]", line);
 }
 
 std::vector<YamlCursor> YamlCursor::list(std::size_t minimum, std::size_t maximum) const {

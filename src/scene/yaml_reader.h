@@ -7,10 +7,12 @@
 
 #include <limits>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "scene/settings.h"
 #include "tissue_contact/core/range.h"
 #include "tissue_contact/core/types.h"
 
@@ -21,13 +23,17 @@ class YamlMap;
 /// Allowed keys of the map at a path such as "tissues[0].material"; "" is the whole file.
 /// @throws std::out_of_range where there is no map, or one with free keys (joint names).
 const std::vector<std::string>& keysAt(const std::string& path);
+/// By which sceneKeys() has the map at a path: "tissues[].material".
+std::string tablePath(const std::string& path);
 
 /// One value of the file with the place it stands at. Cheap to copy; the yaml-cpp tree is shared.
 class YamlCursor {
  public:
   /// @param path key path such as "tissues[0].name".
   /// @param line counted from 1.
-  YamlCursor(const YAML::Node& node, std::string file, std::string path, int line);
+  /// @param set what is not the file's; null: nothing.
+  YamlCursor(const YAML::Node& node, std::string file, std::string path, int line,
+             std::shared_ptr<const SetPlaces> set = nullptr);
 
   [[noreturn]] void fail(const std::string& problem) const;
 
@@ -35,6 +41,8 @@ class YamlCursor {
   int line() const { return line_; }
   bool isScalar() const { return node_.IsScalar(); }
 
+  /// What is not the file's.
+  const SetPlaces& set() const;
   /// Adds the lines of this value and of all below it, by key path.
   void addLines(std::map<std::string, int>& lines) const;
 
@@ -67,11 +75,15 @@ class YamlCursor {
   std::size_t indexOfWord(const std::vector<std::string>& allowed) const;
   std::string scalar(const std::string& wanted) const;
   YamlCursor element(const YAML::Node& node, std::size_t index) const;
+  YamlCursor below(const YAML::Node& node, std::string path, int line) const {
+    return {node, file_, std::move(path), line, set_};
+  }
 
   YAML::Node node_;
   std::string file_;
   std::string path_;
   int line_;
+  std::shared_ptr<const SetPlaces> set_;
 };
 
 /// A map whose keys have been checked.
@@ -96,7 +108,8 @@ class YamlMap {
 
 /// Parses text that must hold exactly one document. Size, depth and the number of values (aliases counted wherever they
 /// are used) are bounded, so that no file can exhaust time, stack or memory.
-YamlCursor parseYaml(const std::string& yaml, const std::string& file);
+/// @param settings "KEY=VALUE", as if the text said so (see withSettings()).
+YamlCursor parseYaml(const std::string& yaml, const std::string& file, const std::vector<std::string>& settings = {});
 
 /// Bytes allowed in a scene file: a hundred times what a big scene needs.
 constexpr std::size_t kMaxSceneBytes = 1U << 20U;

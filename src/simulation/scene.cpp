@@ -12,7 +12,7 @@ std::string placeOf(const Scene& scene, const std::string& entry) {
     around.resize(end == std::string::npos ? 0 : end);
   }
   const auto found = scene.entry_lines.find(around);
-  if (found != scene.entry_lines.end()) place += ":" + std::to_string(found->second);
+  if (found != scene.entry_lines.end()) place += found->second > 0 ? ":" + std::to_string(found->second) : " (--set)";
   const std::string shown = entry.empty() ? "scene" : entry;
   return place.empty() ? shown : place + ": " + shown;
 }

@@ -43,6 +43,13 @@ class BadStartup(harness.TestCase):
     def test_typo_in_a_key(self):
         self.assert_scene_refused(self.changed("youngs_modulus_pa", "young_modulus_pa"), "young_modulus_pa", "scene.yaml:5")
 
+    def test_bad_setting(self):
+        for given, words in [("step.max_step=0.002", ["--set step.max_step=0.002", 'did you mean "max_step_s"']),
+                             ("[step.max_step_s=0.002, 'tissues.block.block.cells=[1, 2]']", ["--set tissues.block.block.cells=[1, 2]", "3"]),
+                             ("[step.max_step_s", ["/tissue_contact/set"]), ("7", ["/tissue_contact/set", "KEY=VALUE"])]:
+            self.assert_refused(["_scene:=" + harness.SCENE, "_set:=" + given], *words)
+            rospy.delete_param("/tissue_contact/set")
+
     def test_unknown_contact_link(self):
         self.assert_scene_refused(self.changed("contact_links: [tip]", "contact_links: [jaw]"), "jaw", "probe")
 

@@ -14,6 +14,7 @@ import xmlrpc.client
 import rosgraph
 import rosgraph.network
 import rospy
+import yaml
 from dynamic_reconfigure.msg import Config, ConfigDescription, DoubleParameter
 from dynamic_reconfigure.srv import Reconfigure
 
@@ -166,7 +167,7 @@ class Reference(harness.TestCase):
     def test_defaults_and_ranges_of_parameters(self):
         """A value that is none is refused with what is allowed, and the default."""
         kinds = {row["type"] for row in TABLES["Private parameters"]}
-        self.assertLessEqual(kinds, {"number", "word", "switch", "text", "path", "-"})
+        self.assertLessEqual(kinds, {"number", "word", "switch", "text", "texts", "path", "-"})
         checked = 0
         for row in TABLES["Private parameters"]:
             if row["type"] not in ("number", "word", "switch"):
@@ -264,6 +265,12 @@ class Reference(harness.TestCase):
             self.assertEqual([row["column"] for row in TABLES[option]], columns)
             for row in TABLES[option]:
                 self.assertEqual(row["unit"], self.unit_of(row["column"]), row)
+
+    def test_keys_of_the_manifest(self):
+        manifest = self.path("made.yaml")
+        self.replayed(harness.SCENE, self.bag_of("press.bag", harness.press(3)), self.path("out.csv"), "--manifest", manifest)
+        with open(manifest, encoding="utf-8") as stream:
+            self.assertEqual([row["key"] for row in TABLES["--manifest"]], list(yaml.safe_load(stream)))
 
     def test_exit_codes(self):
         programs = {os.path.basename(file) for file in glob.glob(os.path.dirname(harness.program("tissue_contact_node")) + "/tissue_contact_*")}

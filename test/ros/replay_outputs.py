@@ -1,9 +1,13 @@
 #!/usr/bin/python3
 """Offline replay: what it writes and says when all is well."""
+import hashlib
 import os
 import re
+import subprocess
 
 import rospy
+import yaml
+from geometry_msgs.msg import WrenchStamped
 
 import harness
 
@@ -28,6 +32,61 @@ class ReplayOutputs(harness.TestCase):
             self.assertIn(words, errors)
         scene = self.changed_scene({"material: {": "material: {model: neo_hookean, dilatation: patch, "})
         self.assertNotIn("beyond the range", self.replay("neo.csv", scene=scene))
+
+    def test_settings_are_as_if_the_scene_said_so(self):
+        self.replay("said.csv", scene=self.changed_scene({"youngs_modulus_pa: 5000": "youngs_modulus_pa: 4000", "static: 0.6": "static: 0.7"}))
+        self.replay("set.csv", "--set", "tissues.block.material.youngs_modulus_pa=4000", "--set=friction.0.static=0.7")
+        self.replay("out.csv")
+        self.assertEqual(self.read("set.csv"), self.read("said.csv"))
+        self.assertNotEqual(self.read("set.csv"), self.read("out.csv"))
+
+    def test_the_node_takes_the_same_settings(self):
+        settings = ["tissues.block.material.youngs_modulus_pa=4000", "friction.0.static=0.7"]
+        self.replay("set.csv", *["--set=" + setting for setting in settings])
+        expected = [float(row["force_z_n"]) for row in harness.read_table(self.path("set.csv"))]
+        for given in [settings, "[%s]" % ", ".join(settings)]:
+            rospy.set_param(harness.NODE + "/set", given)
+            with harness.node(harness.SCENE):
+                wrenches = harness.Listener(harness.NODE + "/probe/wrench", WrenchStamped)
+                harness.JointSource().send_all(self.samples)
+                self.assertEqual([w.wrench.force.z for w in wrenches.wait_for_stamp(self.samples[-1][0])], expected)
+            rospy.delete_param(harness.NODE + "/set")
+
+    def test_a_manifest_tells_what_became_of_its_files(self):
+        self.replay("out.csv", "--manifest", self.path("made.yaml"), "--set", "friction.0.static=0.7")
+        with open(self.path("made.yaml"), encoding="utf-8") as stream:
+            manifest = yaml.safe_load(stream)
+        self.assertEqual(manifest["set"], ["friction.0.static=0.7"])
+        self.assertIn(self.bag, manifest["arguments"])
+        self.assertEqual(manifest["counts"]["joint states: accepted"], 40)
+        roles = [one["role"] for one in manifest["inputs"]]
+        self.assertEqual(roles[:3], ["--bag", "--scene", "the scene's URDF"])
+        self.assertEqual(len(manifest["program"]), 3)
+        with open(self.path("out.csv"), "rb") as stream:
+            self.assertEqual([(one["role"], one["sha256"]) for one in manifest["results"]], [("--csv", hashlib.sha256(stream.read()).hexdigest())])
+        check = [harness.program("check_manifest.py"), self.path("made.yaml")]
+        code, output = harness.run(check)
+        self.assertEqual((code, "all as they were" in output), (0, True), output)
+        with open(self.path("out.csv"), "a", encoding="ascii") as stream:
+            stream.write("\n")
+        code, output = harness.run(check)
+        self.assertEqual((code, "--csv %s: has another content" % self.path("out.csv") in output), (1, True), output)
+
+    def test_a_batch_is_the_same_bytes_as_replays_alone(self):
+        self.replay("out.csv")
+        lines = [["--scene=" + harness.SCENE, "--bag=" + self.bag, "--csv=" + self.path(name), *more]
+                 for name, more in [("a.csv", []), ("b.csv", ["--set=step.max_step=1"]), ("c.csv", ["--set=friction.0.static=0.7"]), ("d.csv", [])]]
+        with open(self.path("lines"), "w", encoding="utf-8") as stream:
+            stream.write("".join("\t".join(line) + "\n" for line in lines))
+        done = subprocess.run([harness.program("tissue_contact_replay"), "--batch", self.path("lines")], stdin=subprocess.DEVNULL, capture_output=True,
+                              text=True, timeout=harness.DEADLINE_S, check=True)
+        answers = [line.split("\t") for line in done.stdout.splitlines()]
+        self.assertEqual([answer[0] for answer in answers], ["ok", "failed", "ok", "ok"])
+        self.assertIn('unknown key; did you mean "max_step_s"', answers[1][2])
+        self.assertEqual(self.read("a.csv"), self.read("out.csv"))
+        self.assertEqual(self.read("d.csv"), self.read("out.csv"))
+        self.assertNotEqual(self.read("c.csv"), self.read("out.csv"))
+        self.assertFalse(os.path.exists(self.path("b.csv")))
 
     def test_likely_errors_of_the_force_are_columns_and_a_line(self):
         errors = self.replay("out.csv")

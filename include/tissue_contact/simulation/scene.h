@@ -58,7 +58,7 @@ struct AdvisorDescription {
 
 struct Scene {
   std::string file;  ///< where it was read from, for messages; may be empty
-  /// Line of each entry of that file by its path of keys, "tissues[0].material"; empty for a scene that was not read.
+  /// Line of each entry in it by its path, "tissues[0].material"; 0: set from outside; empty for a scene that was not read.
   std::map<std::string, int> entry_lines;
   std::string world_frame = "world";
   Vector3 gravity_m_per_s2 = Vector3::Zero();

@@ -20,6 +20,7 @@
 #include "ros/node/logger_service.h"
 #include "ros/node/private_parameters.h"
 #include "ros/node/shutdown_guard.h"
+#include "ros/parameter.h"
 #include "ros/publish/publish_options.h"
 #include "scene/read_more.h"
 #include "tissue_contact/core/whole_file.h"
@@ -37,6 +38,8 @@ Contact forces between instruments and soft tissue: joint states in, wrenches an
 
 private parameters
   ~scene               the scene (doc/scene.md): a path, or package://PACKAGE/PATH
+  ~set                 keys of the scene, as if its file said so: a list of KEY=VALUE, or one,
+                       tissues.block.material.youngs_modulus_pa=4000; elements of lists by name or index
   ~robot_description   text of a URDF, for scenes that take it from this parameter (or from another that they name);
                        looked for here, then in every namespace up to /
   ~tf_timeout_s        how long to wait for tf frames that the scene names, s; default 10
@@ -96,7 +99,8 @@ Simulator makeSimulator(const ros::NodeHandle& private_node, const std::vector<s
   };
   Scene scene;
   try {
-    scene = loadScene(file, packagePath, [&](const YamlMap& sections) { publish = parsePublish(sections); });
+    scene = loadScene(file, packagePath, textsParameter(private_node, "set"),
+                      [&](const YamlMap& sections) { publish = parsePublish(sections); });
   } catch (const std::exception& error) {
     throw naming_file(error);
   }

@@ -34,6 +34,7 @@ const std::vector<std::string> kOwnNames = {"diagnostic_period",
                                             "markers/strain_full_scale",
                                             "publish_mesh",
                                             "scene",
+                                            "set",
                                             "tf_timeout_s"};
 
 /// @param scene null: none is known yet.

@@ -12,7 +12,7 @@
 namespace tissue_contact {
 
 PlacedScene::PlacedScene(const PlaceOptions& options)
-    : scene(loadScene(options.scene_file, packagePath, parsePublish)),
+    : scene(loadScene(options.scene_file, packagePath, {}, parsePublish)),
       environment(bagEnvironment(scene, options.bag_file, options.urdf_file)) {
   environment.meshes.say = [](const std::string& line) { std::cerr << "tissue_contact_place: " << line << "\n"; };
   if (!options.bag_file.empty()) {

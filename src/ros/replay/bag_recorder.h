@@ -50,6 +50,8 @@ class BagRecorder {
   /// Writes the index, so that of several results none takes its place when one does not fit on the disk.
   /// @throws as record().
   void finish();
+  /// Where the bag is until it takes the target's place.
+  std::string path() const { return file_.path(); }
   /// Finished, takes the target's place.
   void commit() { file_.commit(); }
   /// Finished or not, takes the place that says "partial", if any message was recorded.

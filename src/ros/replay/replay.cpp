@@ -25,6 +25,8 @@
 #include "ros/replay/force_error_summary.h"
 #include "ros/replay/interruption.h"
 #include "ros/replay/joint_names.h"
+#include "ros/replay/manifest.h"
+#include "ros/replay/replay_batch.h"
 #include "ros/replay/replay_files.h"
 #include "ros/replay/replay_progress.h"
 #include "ros/replay/replay_table.h"
@@ -80,8 +82,9 @@ class Replay {
     }
     summarize();
     if (options_.plot_folder.empty()) return;
-    runScript("plot_forces.py",
-              {"--bag", options_.out_file, "--scene", options_.scene_file, "--output", options_.plot_folder});
+    std::vector<std::string> arguments = {"--bag", options_.out_file, "--output", options_.plot_folder};
+    if (!setsFriction()) arguments.insert(arguments.end(), {"--scene", options_.scene_file});
+    runScript("plot_forces.py", arguments);
   }
 
  private:
@@ -111,6 +114,7 @@ class Replay {
     if (!options_.csv_file.empty()) table_.emplace(options_.csv_file);
     if (!options_.timing_file.empty()) timing_.emplace(options_.timing_file);
     if (!options_.dump_file.empty()) dump_.emplace(options_.dump_file);
+    if (!options_.manifest_file.empty()) manifest_.emplace(options_.manifest_file);
     if (options_.out_file.empty()) return;
     recorder_ = std::make_unique<BagRecorder>(options_.out_file, simulator_, player_, publish_);
     AdvanceLimits limits;
@@ -145,10 +149,34 @@ class Replay {
     if (table_) table_->finish();
     if (timing_) timing_->finish();
     if (recorder_) recorder_->finish();
+    if (manifest_) describe();
     if (table_) table_->commit();
     if (timing_) timing_->commit();
     if (recorder_) recorder_->commit();
+    if (manifest_) manifest_->commit();  // last: it is of results that are there
     watch_.reset();
+  }
+
+  /// Into the manifest, while the results wait for their names.
+  void describe() {
+    ManifestContent content;
+    content.inputs = inputFiles(options_, simulator_);
+    if (table_) content.results.push_back({"--csv", options_.csv_file, table_->path()});
+    if (recorder_) content.results.push_back({"--out", options_.out_file, recorder_->path()});
+    for (int v = 0; v < kVerdictCount; ++v) {
+      const auto verdict = static_cast<Verdict>(v);
+      content.counts.emplace_back(std::string("joint states: ") + verdictText(verdict), player_.count(verdict));
+    }
+    content.counts.insert(content.counts.end(), {{"steps since the last reset", simulator_.stepCount()},
+                                                 {"resets", player_.resets()},
+                                                 {"gaps", player_.gaps()},
+                                                 {"jumps", jumps_},
+                                                 {"intervals not converged", not_converged_},
+                                                 {"intervals without a finite answer", discarded_},
+                                                 {"intervals with forces that no tissue bears", implausible_},
+                                                 {"intervals with pinched contacts", pinched_}});
+    writeManifest(manifest_->stream(), options_, content);
+    manifest_->finish();
   }
 
   /// Of what was recorded before the replay ended early.
@@ -161,6 +189,12 @@ class Replay {
     } catch (const std::exception& error) {
       std::cerr << kPrefix << error.what() << "\n";
     }
+  }
+
+  /// Then the coefficients in the scene's file are not those that were played with.
+  bool setsFriction() const {
+    return std::any_of(options_.settings.begin(), options_.settings.end(),
+                       [](const std::string& setting) { return setting.rfind("friction", 0) == 0; });
   }
 
   double wallTime() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
@@ -355,6 +389,7 @@ class Replay {
   JointNames joint_names_;
   std::optional<TimingTable> timing_;
   std::unique_ptr<BagRecorder> recorder_;
+  std::optional<WholeFile> manifest_;
   std::optional<SignalWatch> watch_;  ///< while there is something to be kept
   std::optional<WholeFile> dump_;     ///< until it is written
   std::optional<ReplayProgress> progress_;
@@ -389,6 +424,8 @@ int runReplay(int argc, char** argv) {
     if (options.help) {
       std::cout << replayUsage();
       requireWritten(std::cout);
+    } else if (!options.batch_file.empty()) {
+      replayBatch(options.batch_file);
     } else {
       replay(options);
     }

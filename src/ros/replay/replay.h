@@ -10,6 +10,7 @@ namespace tissue_contact {
 
 struct ReplayOptions {
   std::string scene_file;
+  std::vector<std::string> settings;  ///< of the scene: "KEY=VALUE"
   std::string bag_file;
   std::string csv_file;                                         ///< empty: none
   std::string out_file;                                         ///< bag of what the node would publish; empty: none
@@ -19,9 +20,12 @@ struct ReplayOptions {
   std::string urdf_file;                                        ///< empty: no scene parameter holds a URDF
   std::string changes_topic;  ///< of Changes in the bag; empty: the only one there; "none"
   std::string timing_file;    ///< empty: wall times are not written
+  std::string manifest_file;  ///< what the results were made from; empty: none
   long dump_step = 0;         ///< implicit step whose contact problem is written to `dump_file`, from 1; 0: none
   std::string dump_file;
-  bool help = false;  ///< show the usage and do nothing
+  std::string batch_file;              ///< of arguments of many replays, "-": standard input; empty: this one
+  std::vector<std::string> arguments;  ///< as they were given
+  bool help = false;                   ///< show the usage and do nothing
 };
 
 /// What --help prints.

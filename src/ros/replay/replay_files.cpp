@@ -18,6 +18,7 @@ std::vector<NamedFile> outputsOf(const ReplayOptions& options) {
           {"--out", options.out_file},
           {"--out, if it is interrupted,", partial},
           {"--timing", options.timing_file},
+          {"--manifest", options.manifest_file},
           {"--dump-file", options.dump_file}};
 }
 
@@ -43,19 +44,7 @@ std::vector<NamedFile> filesOf(const Scene& scene) {
   return files;
 }
 
-}  // namespace
-
-Scene loadReplayedScene(const ReplayOptions& options, PublishOptions& publish) {
-  requireRegularFile(options.bag_file, "bag");
-  requireFreeOutputs(outputsOf(options),
-                     {{"--scene", options.scene_file}, {"--bag", options.bag_file}, {"--urdf", options.urdf_file}});
-  // Also where nothing is published: a mistake is one wherever the scene is used.
-  Scene scene = loadScene(options.scene_file, packagePath, [&](const YamlMap& file) { publish = parsePublish(file); });
-  requireFreeOutputs(outputsOf(options), filesOf(scene));
-  return scene;
-}
-
-void requireModelsKept(const ReplayOptions& options, const Simulator& simulator) {
+std::vector<NamedFile> modelFiles(const Simulator& simulator) {
   std::vector<NamedFile> meshes;
   for (const Instrument& instrument : simulator.instruments()) {
     for (const RobotModel::Link& link : instrument.model().links()) {
@@ -63,7 +52,32 @@ void requireModelsKept(const ReplayOptions& options, const Simulator& simulator)
       addMeshes(link.geometry.visual, "the URDF's mesh", meshes);
     }
   }
-  requireFreeOutputs(outputsOf(options), meshes);
+  return meshes;
+}
+
+}  // namespace
+
+Scene loadReplayedScene(const ReplayOptions& options, PublishOptions& publish) {
+  requireRegularFile(options.bag_file, "bag");
+  requireFreeOutputs(outputsOf(options),
+                     {{"--scene", options.scene_file}, {"--bag", options.bag_file}, {"--urdf", options.urdf_file}});
+  // Also where nothing is published: a mistake is one wherever the scene is used.
+  Scene scene = loadScene(options.scene_file, packagePath, options.settings,
+                          [&](const YamlMap& file) { publish = parsePublish(file); });
+  requireFreeOutputs(outputsOf(options), filesOf(scene));
+  return scene;
+}
+
+void requireModelsKept(const ReplayOptions& options, const Simulator& simulator) {
+  requireFreeOutputs(outputsOf(options), modelFiles(simulator));
+}
+
+std::vector<NamedFile> inputFiles(const ReplayOptions& options, const Simulator& simulator) {
+  std::vector<NamedFile> files = {{"--bag", options.bag_file}, {"--urdf", options.urdf_file}};
+  for (const auto& more : {filesOf(simulator.scene()), modelFiles(simulator)}) {
+    files.insert(files.end(), more.begin(), more.end());
+  }
+  return files;
 }
 
 }  // namespace tissue_contact

@@ -2,8 +2,11 @@
 /// Room `ros/replay`, private: the files of a replay, and that no result replaces what it reads. Options in; a scene or a refusal out.
 #pragma once
 
+#include <vector>
+
 #include "ros/publish/publish_options.h"
 #include "ros/replay/replay.h"
+#include "tissue_contact/core/whole_file.h"
 #include "tissue_contact/simulation/scene.h"
 #include "tissue_contact/simulation/simulator.h"
 
@@ -16,5 +19,8 @@ Scene loadReplayedScene(const ReplayOptions& options, PublishOptions& publish);
 
 /// The same for the meshes that the robot models name.
 void requireModelsKept(const ReplayOptions& options, const Simulator& simulator);
+
+/// All files that a replay reads, by role; paths that are not given are empty.
+std::vector<NamedFile> inputFiles(const ReplayOptions& options, const Simulator& simulator);
 
 }  // namespace tissue_contact

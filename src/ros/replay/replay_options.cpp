@@ -13,9 +13,11 @@ constexpr Range kDuration{0.0, 1e9, "s", "", true};
 }  // namespace
 
 std::string replayUsage() {
-  return "usage: tissue_contact_replay --scene SCENE.yaml --bag IN.bag [--csv OUT.csv] [--out OUT.bag [--plot DIR]]\n"
-         "         [--from S] [--duration S] [--urdf ROBOT.urdf] [--changes TOPIC] [--timing TIMES.csv]\n"
-         "         [--dump-step N --dump-file PROBLEM.txt]\n"
+  return "usage: tissue_contact_replay --scene SCENE.yaml [--set KEY=VALUE ...] --bag IN.bag\n"
+         "         [--csv OUT.csv] [--out OUT.bag [--plot DIR]] [--manifest MADE.yaml] [--from S] [--duration S] "
+         "[--urdf ROBOT.urdf]\n"
+         "         [--changes TOPIC] [--timing TIMES.csv] [--dump-step N --dump-file PROBLEM.txt]\n"
+         "       tissue_contact_replay --batch LINES\n"
          "\n"
          "Plays the joint states of a bag through a scene, with the stepping of tissue_contact_node but without a\n"
          "roscore, and writes one CSV line per state of an arm, or what the node publishes: the same bytes every "
@@ -23,6 +25,9 @@ std::string replayUsage() {
          "--csv or --out is needed.\n"
          "\n"
          "  --scene FILE  the scene (doc/scene.md)\n"
+         "  --set KEY=VALUE  a key of the scene, as if the file said so: "
+         "tissues.block.material.youngs_modulus_pa=4000,\n"
+         "                friction.0.static=0.5; elements of lists by name or index; any number of times\n"
          "  --bag FILE    a ROS bag with the scene's joint-state topics; tf frames are taken from its /tf_static and "
          "/tf\n"
          "  --csv FILE    the result; replaced when the replay is complete, untouched when it fails or is interrupted\n"
@@ -40,6 +45,12 @@ std::string replayUsage() {
          "the\n"
          "                bag has several; none: as the scene has them throughout\n"
          "  --timing FILE   wall times of this run, one line per simulated interval; replaced or untouched as the CSV\n"
+         "  --manifest FILE  YAML: hashes of every input, of the program and of the results, versions, arguments, "
+         "counts\n"
+         "  --batch LINES   many replays, one after the other: a file with the arguments of one in each line, tabs "
+         "between\n"
+         "                them, or - for standard input; each is answered with a line, ok<tab>CPU seconds or\n"
+         "                failed<tab>CPU seconds<tab>message\n"
          "  --dump-step N   with --dump-file: write the contact problem of implicit step N (from 1), for "
          "tissue_contact_solve\n"
          "  --dump-file FILE  where to; replaced when that step is taken\n"
@@ -47,18 +58,28 @@ std::string replayUsage() {
          "\n"
          "Results replace regular files only, and keep their permissions: no input, link, device, FIFO or folder.\n"
          "Inputs must be regular files.\n"
-         "Exit code: 0 when the results were written, 1 with a message on stderr otherwise.\n";
+         "Exit code: 0 when the results were written, of a batch: when each line was answered; 1 with a message on "
+         "stderr\n"
+         "otherwise.\n";
 }
 
 ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
   const CommandLine line(arguments, {{"--scene", "--bag", "--csv", "--out", "--plot", "--from", "--duration", "--urdf",
-                                      "--changes", "--timing", "--dump-step", "--dump-file"},
+                                      "--changes", "--timing", "--manifest", "--batch", "--dump-step", "--dump-file"},
                                      {},
-                                     {}});
+                                     {"--set"}});
   ReplayOptions options;
   options.help = line.help();
+  options.arguments = arguments;
+  options.batch_file = line.value("--batch");
   if (options.help) return options;
+  if (line.has("--batch")) {
+    if (arguments.size() > 2 || arguments[0].rfind("--batch", 0) != 0)
+      throw std::invalid_argument("--batch takes the arguments of its replays from its lines; give no others");
+    return options;
+  }
   options.scene_file = line.required("--scene");
+  options.settings = line.all("--set");
   options.bag_file = line.required("--bag");
   options.csv_file = line.value("--csv");
   options.out_file = line.value("--out");
@@ -74,6 +95,7 @@ ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
   options.urdf_file = line.value("--urdf");
   options.changes_topic = line.value("--changes");
   options.timing_file = line.value("--timing");
+  options.manifest_file = line.value("--manifest");
   if (line.has("--dump-step") || line.has("--dump-file")) {
     constexpr std::int64_t kMost = 999'999'999'999'999;
     options.dump_file = line.required("--dump-file");

@@ -13,7 +13,7 @@ class PublishTest : public SceneTest {
   PublishOptions read(const std::string& yaml) const {
     PublishOptions options;
     write("scene.yaml", yaml);
-    loadScene(path("scene.yaml"), nullptr, [&](const YamlMap& file) { options = parsePublish(file); });
+    loadScene(path("scene.yaml"), nullptr, {}, [&](const YamlMap& file) { options = parsePublish(file); });
     return options;
   }
 

@@ -20,6 +20,7 @@ TEST(ReplayOptions, AreFilledIn) {
   EXPECT_EQ(options.csv_file, "o=1.csv");
   EXPECT_EQ(options.urdf_file, "r.urdf");
   EXPECT_EQ(options.dump_step, 7);
+  EXPECT_TRUE(options.settings.empty());
   EXPECT_EQ(options.dump_file, "p.txt");
   EXPECT_FALSE(options.help);
   EXPECT_EQ(options.out_file, "");
@@ -28,6 +29,8 @@ TEST(ReplayOptions, AreFilledIn) {
   const ReplayOptions part =
       parseReplayOptions({"--scene=s", "--bag=b", "--out=o.bag", "--plot=p", "--from=1.5", "--duration", "2"});
   EXPECT_EQ(part.csv_file, "");
+  const ReplayOptions set = parseReplayOptions({"--scene=s", "--set", "a.b=1", "--bag=b", "--csv=c", "--set=c=[2, 3]"});
+  EXPECT_EQ(set.settings, (std::vector<std::string>{"a.b=1", "c=[2, 3]"}));
   EXPECT_EQ(part.out_file, "o.bag");
   EXPECT_EQ(part.plot_folder, "p");
   EXPECT_EQ(part.from_s, 1.5);
@@ -36,7 +39,7 @@ TEST(ReplayOptions, AreFilledIn) {
 
 TEST(ReplayOptions, HelpNamesAll) {
   for (const char* key : {"--scene", "--bag", "--csv", "--out", "--plot", "--from", "--duration", "--urdf", "--timing",
-                          "--dump-step", "--dump-file", "--help"}) {
+                          "--set", "--dump-step", "--dump-file", "--help"}) {
     EXPECT_NE(replayUsage().find(key), std::string::npos) << key;
   }
 }

@@ -1,0 +1,242 @@
+#!/usr/bin/python3
+"""Sweeps: what a study may say, what is measured, that a killed or shuffled sweep has the same answers, and that only what is new is run.
+
+usage: sweep_test.py SOURCE_DIRECTORY PROGRAM_DIRECTORY      (in the environment of the package: PROGRAM_DIRECTORY/../../env.sh)
+"""
+import csv
+import hashlib
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+SOURCE, PROGRAMS = "", ""
+DEADLINE_S = 600.0  # for a machine that has more to do
+TIMES = ["cpu_time_s"]  # of a table: what is not the same each time
+
+
+def good_study(**more):
+    return dict({"bags": ["press.bag"], "scenes": ["press.yaml"]}, **more)
+
+
+class StudyTest(unittest.TestCase):
+    """Study files without replays."""
+
+    def setUp(self):
+        self.directory = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.directory)
+        for name in ["a.bag", "b.bag", "s.yaml"]:
+            self.write(name, "x")
+
+    def write(self, name, text):
+        file = os.path.join(self.directory, name)
+        with open(file, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        return file
+
+    def study(self, text):
+        from study import Study
+        return Study(self.write("study.yaml", text if text.startswith("!") else "bags: [a.bag]\nscenes: [s.yaml]\n" + text))
+
+    def test_variants_are_all_combinations_in_order(self):
+        study = self.study("set: {world_frame: room}\ncases: [{step.max_step_s: 0.001}, {step.max_step_s: 2e-3}]\n"
+                           "grid:\n  a.b: {from: 1, to: 100, count: 3, spacing: log}\n  a.c: [[1, 2], linear, true]\n")
+        self.assertEqual(study.count(), 18)
+        self.assertEqual(study.keys(), ["step.max_step_s", "a.b", "a.c"])
+        variants = [one.arguments() for one in study.variants()]
+        self.assertEqual(len(variants), 18)
+        self.assertEqual(variants[0], ["--set=world_frame=room", "--set=step.max_step_s=0.001", "--set=a.b=1.0", "--set=a.c=[1, 2]"])
+        self.assertEqual(variants[-1], ["--set=world_frame=room", "--set=step.max_step_s=2e-3", "--set=a.b=100.0", "--set=a.c=true"])
+        self.assertAlmostEqual(float(variants[3][2].rpartition("=")[2]), 10.0, delta=1e-12)
+
+    def test_patterns_choose_bags(self):
+        study = self.study("").__class__(self.write("p.yaml", "bags: ['*.bag']\nscenes: [s.yaml, package://p/s.yaml]\n"))
+        self.assertEqual([os.path.basename(bag) for bag in study.bags], ["a.bag", "b.bag"])
+        self.assertEqual(study.count(), 4)
+
+    def test_a_latin_hypercube_has_one_sample_in_each_part_of_each_range(self):
+        text = "latin_hypercube: {samples: 20, seed: %d, ranges: {a: {from: 1, to: 3}, b: {from: 1, to: 1e4, spacing: log}}}\n"
+        points = [[float(value) for _, value in one.settings] for one in self.study(text % 7).variants()]
+        import math
+        self.assertEqual(sorted(int((a - 1) / 2 * 20) for a, _ in points), list(range(20)))
+        self.assertEqual(sorted(int(math.log10(b) / 4 * 20) for _, b in points), list(range(20)))
+        self.assertEqual(points, [[float(value) for _, value in one.settings] for one in self.study(text % 7).variants()])
+        self.assertNotEqual(points, [[float(value) for _, value in one.settings] for one in self.study(text % 8).variants()])
+
+    def test_what_is_wrong_is_named(self):
+        from study import StudyError
+        for text, problem in [
+                ("grids: {}", 'grids: unknown key; did you mean "grid"? allowed here: bags, '), ("grid: {a: 3}", "grid.a: is 3; it must be a list"),
+                ("grid: {a: {from: 1, to: 0, count: 3}}", 'grid.a: "from" is 1 and "to" is 0'), ("grid: {a: {from: 1, to: 2}}", 'grid.a: required key "count"'),
+                ("grid: {a: {from: 0, to: 2, count: 2, spacing: log}}", "grid.a.from: is 0; it must be above 0"),
+                ("grid: {a: {from: 1, to: 2, count: 2.5}}", "grid.a.count: is 2.5; it must be a whole number from 2 to"),
+                ("grid: {a: [.nan]}", "grid.a[0]: is NaN"), ("grid: {a: [1]}\nset: {a: 1}", "a: is in two of set, cases, grid"),
+                ("grid: {a: {from: 1, to: 2, count: 2000}, b: {from: 1, to: 2, count: 2000}}", "has 4000000 variants; at most 1000000"),
+                ("latin_hypercube: {samples: 3, ranges: {}}", 'latin_hypercube: required key "seed" is missing'),
+                ("latin_hypercube: {samples: 0, seed: 1, ranges: {}}", "latin_hypercube.samples: is 0; it must be a whole number from 1"),
+                ("replay: {duration: 3}", 'replay.duration: unknown key; did you mean "duration_s"?'), ("replay: {from_s: -1}", "replay.from_s: is -1; it"),
+                ("keep_csv: 3", "keep_csv: is 3"), ("set: {'': 1}", "it must be one of a scene"), ("set: {a: 1, a: 2}", "the key a is given twice"),
+                ("set: &s {a: *s}", "aliases (*name) are not allowed"), ("set: [", "is no YAML"), ("bags: [none.bag]", "the key bags is given twice"),
+                ("set: " + "[" * 3000, "is no YAML"), ("cases: [{a: null}]", "cases[0].a: is null"), ("set: {a: 2020-01-01}", "write dates and the like")]:
+            with self.assertRaises(StudyError, msg=text) as caught:
+                self.study(text)
+            self.assertIn("study.yaml: ", str(caught.exception))
+            self.assertIn(problem, str(caught.exception))
+            self.assertNotIn("\n", str(caught.exception))
+        for text, problem in [("[]", "it must be a map"), ("bags: [a.bag]", 'required key "scenes"'), ("bags: [no.bag]\nscenes: [s.yaml]", "there is no such file"),
+                              ("bags: [.]\nscenes: [s.yaml]", "is no regular file"), ("x" * (1 << 20) + "x", "has more than")]:
+            with self.assertRaises(StudyError, msg=text[:50]) as caught:
+                self.study("").__class__(self.write("bad.yaml", text))
+            self.assertIn(problem, str(caught.exception))
+
+
+class MeasuresTest(unittest.TestCase):
+    def test_of_a_force_that_is_known(self):
+        from replays import measured
+        lines = ["stamp_s,instrument,force_x_n,force_y_n,force_z_n,torque_x_nm,torque_y_nm,torque_z_nm,static_contacts,kinetic_contacts,discarded,"
+                 "force_error_n,solver_error_n"]
+        states = [(0, 0), (2, 0), (1, 1), (0, 2), (0, 2), (1, 0), (0, 1), (0, 0)]  # slips where none holds any more: twice
+        for i, (held, sliding) in enumerate(states):
+            force = 5.0 if held or sliding else 0.0
+            lines.append("1700000000.%09d,probe,%g,%g,0,0,0,%g,%d,%d,0,0.2,0.1" % (i * 100000000, 0.6 * force, 0.8 * force, 0.01 * force, held, sliding))
+        result = measured("\n".join(lines) + "\n")["probe"]
+        for name, value in {"peak_force_n": 5.0, "mean_force_n": 5.0, "impulse_n_s": 3.0, "peak_torque_nm": 0.05, "angular_impulse_nm_s": 0.03,
+                            "contact_time_s": 0.6, "slips": 2, "likely_error_n": 0.2, "solver_error_n": 0.1, "discarded": 0}.items():
+            self.assertAlmostEqual(result[name], value, delta=1e-9, msg=name)
+
+
+class SweepTest(unittest.TestCase):
+    """Of whole sweeps of a small press, as users run them."""
+
+    GRID = {"tissues.block.material.youngs_modulus_pa": [3000, 5000, 8000, 12000], "friction.0.static": {"from": 0.45, "to": 0.9, "count": 3}}
+
+    def setUp(self):
+        sys.path.insert(0, os.path.join(SOURCE, "test", "ros"))
+        import harness  # needs the package's environment
+        self.directory = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.directory)
+        harness.write_bag(self.path("press.bag"), harness.press(20))
+        shutil.copy(harness.SCENE, self.path("press.yaml"))
+
+    def path(self, *names):
+        return os.path.join(self.directory, *names)
+
+    def write_study(self, **study):
+        import yaml
+        with open(self.path("study.yaml"), "w", encoding="utf-8") as stream:
+            yaml.safe_dump(good_study(**study), stream)
+
+    def start(self, *arguments):
+        environment = dict(os.environ, TISSUE_CONTACT_REPLAY=os.path.join(PROGRAMS, "tissue_contact_replay"))
+        return subprocess.Popen(["/usr/bin/python3", os.path.join(SOURCE, "sweep", "sweep.py"), self.path("study.yaml"), *arguments], env=environment,
+                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+
+    def sweep(self, *arguments, code=0):
+        process = self.start(*arguments)
+        output = process.communicate(timeout=DEADLINE_S)[0]
+        self.assertEqual(process.returncode, code, output)
+        return output
+
+    def table(self, folder="study"):
+        with open(self.path(folder, "table.csv"), newline="", encoding="utf-8") as stream:
+            return [{name: value for name, value in row.items() if name not in TIMES} for row in csv.DictReader(stream)]
+
+    def test_workers_and_order_change_nothing(self):
+        self.write_study(grid=self.GRID)
+        self.sweep("--jobs=1")
+        rows = self.table()
+        self.assertEqual(len(rows), 12)
+        self.assertEqual(len({row["sha256"] for row in rows}), 12)
+        stiffer = [float(row["peak_force_n"]) for row in rows if row["friction.0.static"] == "0.45"]
+        self.assertEqual(stiffer, sorted(stiffer))
+        for arguments in [["--jobs=2", "--out", self.path("two")], ["--jobs=2", "--shuffle=3", "--out", self.path("shuffled")]]:
+            self.sweep(*arguments)
+            self.assertEqual(self.table(os.path.basename(arguments[-1])), rows)
+        self.assertTrue(os.path.getsize(self.path("study", "table.png")) > 10000)
+        bare = [os.path.join(PROGRAMS, "tissue_contact_replay"), "--scene", self.path("press.yaml"), "--bag", self.path("press.bag"),
+                "--set", "tissues.block.material.youngs_modulus_pa=8000", "--set", "friction.0.static=0.9", "--csv", self.path("bare.csv")]
+        subprocess.run(bare, check=True, stderr=subprocess.DEVNULL, timeout=DEADLINE_S)
+        with open(self.path("bare.csv"), "rb") as stream:
+            self.assertEqual(rows[8]["sha256"], hashlib.sha256(stream.read()).hexdigest())
+        self.assertEqual((rows[8]["tissues.block.material.youngs_modulus_pa"], rows[8]["friction.0.static"]), ("8000", "0.9"))
+
+    def test_a_killed_sweep_goes_on_where_it_was(self):
+        grid = dict(self.GRID, **{"friction.0.static": {"from": 0.45, "to": 0.9, "count": 30}})
+        self.write_study(grid=grid, variants_per_job=40)
+        process = self.start("--jobs=2")
+        deadline = time.monotonic() + DEADLINE_S
+        while self.finished() < 15:
+            self.assertLess(time.monotonic(), deadline)
+            self.assertIsNone(process.poll(), "ended before it was killed")
+            time.sleep(0.02)
+        process.send_signal(signal.SIGTERM)
+        self.assertIn("the same command goes on", process.communicate(timeout=DEADLINE_S)[0])
+        before = self.finished()
+        self.assertTrue(15 <= before < 120, before)
+        output = self.sweep("--jobs=2")
+        self.assertRegex(output, "120 variants, [1-9][0-9]+ of them done before")
+        self.assertEqual(self.finished(), 120)  # none was run twice
+        rows = self.table()
+        self.sweep("--jobs=1", "--out", self.path("whole"))
+        self.assertEqual(self.table("whole"), rows)
+
+    def finished(self):
+        """Lines of results."""
+        folder = self.path("study", "results")
+        count = 0
+        for name in os.listdir(folder) if os.path.isdir(folder) else []:
+            if name.endswith((".jsonl", ".part")):
+                try:
+                    with open(os.path.join(folder, name), "rb") as stream:
+                        count += stream.read().count(b"\n")
+                except FileNotFoundError:  # given its name meanwhile
+                    pass
+        return count
+
+    def test_only_what_is_new_is_run(self):
+        self.write_study(grid=dict(self.GRID))
+        self.sweep()
+        first = self.table()
+        self.assertIn("12 variants, 12 of them done before", self.sweep())
+        self.assertEqual(self.finished(), 12)
+        self.write_study(grid=dict(self.GRID, **{"tissues.block.material.youngs_modulus_pa": [3000, 4000, 8000]}))
+        self.assertIn("9 variants, 6 of them done before", self.sweep())
+        self.assertEqual(self.finished(), 15)
+        self.assertEqual([row["sha256"] for row in self.table() if row["tissues.block.material.youngs_modulus_pa"] == "8000"],
+                         [row["sha256"] for row in first if row["tissues.block.material.youngs_modulus_pa"] == "8000"])
+        with open(self.path("press.yaml"), "a", encoding="utf-8") as stream:
+            stream.write("# changed\n")
+        self.assertIn("9 variants, 0 of them done before", self.sweep())
+
+    def test_verify_finds_another_answer(self):
+        self.write_study(grid=dict(self.GRID))
+        self.assertIn("nothing to verify", self.sweep("--verify", code=1))
+        self.sweep()
+        self.assertIn("1 of 12 variants repeated: the same hashes", self.sweep("--verify"))
+        for name in os.listdir(self.path("study", "results")):
+            file = self.path("study", "results", name)
+            with open(file, encoding="utf-8") as stream:
+                text = stream.read()
+            with open(file, "w", encoding="utf-8") as stream:
+                stream.write(text.replace('"sha256": "', '"sha256": "0'))
+        self.assertIn("1 of 12 variants repeated: 1 differ", self.sweep("--verify=5", code=1))
+
+    def test_refused_variants_are_told_and_wrong_keys_end_the_sweep(self):
+        self.write_study(grid={"friction.0.kinetic": [0.3, 5.0]}, keep_csv=True)
+        self.assertIn("1 variants were refused, the first: ", self.sweep())
+        good, bad = self.table()
+        self.assertEqual((good["error"], bad["sha256"], bad["peak_force_n"]), ("", "", ""))
+        self.assertIn("--set friction.0.kinetic=5.0", bad["error"])
+        self.assertEqual(os.listdir(self.path("study", "csv")), [good["key"] + ".csv"])
+        self.write_study(grid={"friction.0.kinetics": [0.3, 0.4]})
+        self.assertIn('unknown key; did you mean "kinetic"?', self.sweep(code=1))
+
+
+if __name__ == "__main__":
+    SOURCE, PROGRAMS = sys.argv[1:3]
+    sys.path.insert(0, os.path.join(SOURCE, "sweep"))
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
