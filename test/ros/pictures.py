@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """What shows a running node to people: the configuration RViz is opened with and how the view follows a tip, without RViz, and the plots of
 watch.py."""
+import itertools
 import math
 import os
 
@@ -72,17 +73,23 @@ class Pictures(harness.TestCase):
             source = harness.JointSource()
             harness.wait_until(lambda: os.path.exists(self.path("shown.rviz")), "RViz")
 
-            def go(heights, start_s):
-                """The probe to the last of these heights; where the views are then."""
-                for i, height in enumerate(heights + 20 * heights[-1:]):  # and stays, for markers at 10 Hz
-                    source.send(rospy.Time.from_sec(start_s) + rospy.Duration.from_sec(0.02) * i, (0.0, 0.0, height))
+            stamps = (rospy.Time(1000) + rospy.Duration.from_sec(0.02) * i for i in itertools.count())
+
+            def go(heights):
+                """The probe to the last of these heights, where it stays until tf, which tells no newcomer what was before, has it there."""
+                for height in heights:
+                    source.send(next(stamps), (0.0, 0.0, height))
                 place = 0.026 + heights[-1]  # base_pose, and the ball hangs on it
-                harness.wait_until(lambda: abs(self.view_frames(tf).get(tip, (0, 0, -1))[2] - place) < 1e-6, "the tip at %g m" % place)
+
+                def is_there():
+                    source.send(next(stamps), (0.0, 0.0, heights[-1]))
+                    return abs(self.view_frames(tf).get(tip, (0, 0, -1))[2] - place) < 1e-6
+                harness.wait_until(is_there, "the tip at %g m" % place)
                 return self.view_frames(tf)
 
-            near = go([0.0005 * i for i in range(10)], 1000)
-            far = go([0.005 + 0.01 * i for i in range(40)], 1000.6)
-            back = go([0.395 - 0.01 * i for i in range(40)], 1001.8)
+            near = go([0.0005 * i for i in range(10)])
+            far = go([0.005 + 0.01 * i for i in range(40)])
+            back = go([0.395 - 0.01 * i for i in range(40)])
             tf.close()
         with open(self.path("shown.rviz"), encoding="utf-8") as stream:
             views = yaml.safe_load(stream)["Visualization Manager"]["Views"]
