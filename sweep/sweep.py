@@ -205,16 +205,19 @@ def snakemake(folder, jobs, profile):
                "--rerun-triggers", "mtime", "--keep-going", "--scheduler", "greedy"]
     command += ["--profile", profile] if profile else ["--cores", str(jobs)]
     with open(folder.file(LOG), "w", encoding="utf-8") as log:
-        process = subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, start_new_session=True, close_fds=False)
-
-        def end(number, _):
-            os.killpg(process.pid, signal.SIGINT if profile else signal.SIGKILL)  # with a cluster Snakemake cancels its jobs
-            process.wait()
-            sys.exit("sweep: ended by signal %d; the same command goes on" % number)
-
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, end)
-        return process.wait()
+        process = subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, start_new_session=True, close_fds=False)
+        try:
+            return process.wait()
+        except SystemExit:
+            os.killpg(process.pid, signal.SIGINT if profile else signal.SIGKILL)  # with a cluster Snakemake cancels its jobs
+            process.wait()
+            raise
+
+
+def end(number, _):
+    sys.exit("sweep: ended by signal %d; the same command goes on" % number)
 
 
 def cpu_seconds():
@@ -236,7 +239,7 @@ def run(folder, study, options, keyed):
     lost = [key for key, _ in missing if key not in after]
     if not lost:
         spent = sum(after[key]["cpu_time_s"] for key, _ in missing)
-        print("sweep: %d jobs; CPU time %.1f s, of which %.1f s in replays" % (len(jobs), cpu_seconds(), spent))
+        print("sweep: %d jobs; CPU time of replays %.1f s%s" % (len(jobs), spent, "" if options.profile else ", of all %.1f s" % cpu_seconds()))
         return
     crashes = folder.crashes()
     first = next((crashes[key]["crashed"] for key in lost if key in crashes), None)

@@ -107,5 +107,15 @@ def plot_one(axis, instruments, rows, values, measure):
         different = numpy.unique(x)
         if 1 < len(different) <= len(x) / 2:
             axis.plot(different, [numpy.median(y[x == value]) for value in different], color=dots.get_color(), linewidth=1.2)
-    axis.set_ylim(bottom=0)
+    axis.set_ylim(0, 1.05 * max(row[measure] for row in rows) or 1)
     axis.grid(alpha=0.3)
+    if len(set(values)) > 2 and len(instruments) == 1:
+        axis.set_title(rank_correlation(values, [row[measure] for row in rows]), loc="left", fontsize="x-small", pad=2)
+
+
+def rank_correlation(values, measures):
+    """Spearman's: 1 where a measure always grows with the value, 0 where it does not care."""
+    if len(set(measures)) < 2:
+        return ""
+    from scipy.stats import spearmanr
+    return "rank correlation %.2f" % spearmanr(values, measures)[0]
