@@ -14,7 +14,8 @@ constexpr double kWellCovered = 0.25;
 /// covered by its own focus.
 constexpr double kLattice = 0.25;
 
-constexpr std::size_t kMostCarried = 100'000;
+/// In a saved state: each place is compared with each focus, so that more would keep a reader busy for long.
+constexpr std::size_t kMostCarried = 10'000;
 
 void requirePossible(const StateArchive& archive, const Vector3& p_T, double cell_m, double coarsening) {
   constexpr double kMost_m = 1e6;  // so that no product of two overflows

@@ -22,15 +22,16 @@ double MeshFollower::lead(double dt) { return std::max(kLead_s, 2.0 * dt); }
 
 ComingMesh* MeshFollower::follow(const std::vector<TouchedPlace>& places, const NodalVectors& x, double last_dt) {
   touched_ = !places.empty();
-  if (pending_ && isDue(x, last_dt)) {
-    pause();
+  const bool is_due = pending_ && isDue(x, last_dt);
+  if (is_due) pause();
+  if (is_due && comingKeeps(places)) {
     ComingMesh* const taken = take();
     if (taken != nullptr) ++moves_.prepared;
     return taken;
   }
   const auto is_lost = [&](const TouchedPlace& one) { return one.touches && !isCovered(one, 0.0, kLost); };
   const bool is_first = last_dt == 0.0;  // nobody waits for it
-  if (is_first ? !areCovered(places, 0.0) : std::any_of(places.begin(), places.end(), is_lost)) {
+  if (is_due || (is_first ? !areCovered(places, 0.0) : std::any_of(places.begin(), places.end(), is_lost))) {
     drop();
     listPlaces(places, lead(last_dt));
     makeMesh();
@@ -56,6 +57,14 @@ bool MeshFollower::isDue(const NodalVectors& x, double last_dt) {
 
 bool MeshFollower::isCovered(const TouchedPlace& touched, double ahead_s, double share) const {
   return !touched.rest_W.allFinite() || refinement_.cells().isCovered(placeAhead(touched, ahead_s), share);
+}
+
+/// @return whether what touches now lies within what the prepared mesh has fine, so that it is not made coarse under load.
+bool MeshFollower::comingKeeps(const std::vector<TouchedPlace>& places) const {
+  if (error_ || !coming_.next.transfer) return true;
+  return std::none_of(places.begin(), places.end(), [&](const TouchedPlace& one) {
+    return one.touches && one.rest_W.allFinite() && !coming_.next.cells.isCovered(placeAhead(one, 0.0), kLost);
+  });
 }
 
 /// @return whether all will lie well within what is fine in so much time.
@@ -153,12 +162,13 @@ void MeshFollower::carry(StateArchive& archive, int nodes) {
   carryPlaces(archive, places_);
   archive.carry(elapsed_s_);
   archive.carry(steps_);
-  archive.check(elapsed_s_ >= 0.0 && elapsed_s_ <= 1e9 && steps_ >= 0, "a mesh begun at a time that is none");
+  archive.check(elapsed_s_ >= 0.0 && elapsed_s_ <= 1e9 && steps_ >= 0 && steps_ <= 1'000'000'000,
+                "a mesh begun at a time that is none");
   archive.carry(has_snapshot_);
   if (has_snapshot_) {
     snapshot_.resize(3, nodes);
     archive.carry(snapshot_);
-    archive.check(snapshot_.cwiseAbs().maxCoeff() <= 1e9, "a position that no tissue has");
+    archive.check(snapshot_.allFinite() && snapshot_.cwiseAbs().maxCoeff() <= 1e9, "a position that no tissue has");
   }
   if (archive.isReading()) goOn();
 }

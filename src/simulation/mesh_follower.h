@@ -60,6 +60,7 @@ class MeshFollower {
   bool isDue(const NodalVectors& x, double last_dt);
   FinePlace placeAhead(const TouchedPlace& touched, double ahead_s) const;
   bool isCovered(const TouchedPlace& touched, double ahead_s, double share) const;
+  bool comingKeeps(const std::vector<TouchedPlace>& places) const;
   bool areCovered(const std::vector<TouchedPlace>& places, double ahead_s) const;
   void listPlaces(const std::vector<TouchedPlace>& touched, double ahead_s);
   void begin();
