@@ -3,11 +3,13 @@ import csv
 import hashlib
 import json
 import math
+import operator
 import os
 import subprocess
 import tempfile
 
-AXES = "xyz"
+COLUMNS = ["stamp_s", "instrument", "static_contacts", "kinetic_contacts", "discarded", "force_x_n", "force_y_n", "force_z_n", "torque_x_nm",
+           "torque_y_nm", "torque_z_nm", "force_error_n", "solver_error_n"]  # of a replay's CSV, that are looked at
 
 
 class Replayer:
@@ -61,24 +63,24 @@ class Measures:
         self.contact_s = 0.0
         self.slips = self.discarded = 0
 
-    def add(self, row):
-        seconds, _, nanoseconds = row["stamp_s"].partition(".")
+    def add(self, stamp_s, _, held, sliding, discarded, *numbers):
+        """Of COLUMNS."""
+        numbers = list(map(float, numbers))
+        seconds, _, nanoseconds = stamp_s.partition(".")
         stamp = int(seconds) * 1000000000 + int(nanoseconds.ljust(9, "0"))
         interval = (stamp - self.before) * 1e-9 if self.before is not None and stamp > self.before else 0.0
         self.before = stamp
-        for kind in self.peak:
-            name, unit = kind.split("_")
-            size = math.sqrt(sum(float(row["%s_%s_%s" % (name, axis, unit)]) ** 2 for axis in AXES))
+        for kind, size in zip(self.peak, (math.hypot(*numbers[:3]), math.hypot(*numbers[3:6]))):
             self.peak[kind] = max(self.peak[kind], size)
             self.impulse[kind] += size * interval
-        held, sliding = int(row["static_contacts"]), int(row["kinetic_contacts"])
+        held, sliding = int(held), int(sliding)
         self.slips += self.was_held and not held and sliding > 0
         self.was_held = held > 0
-        self.discarded += int(row["discarded"])
+        self.discarded += int(discarded)
         if held or sliding:
             self.contact_s += interval
-            for name in self.squares:
-                self.squares[name] += float(row[name]) ** 2 * interval
+            for name, error in zip(self.squares, numbers[6:]):
+                self.squares[name] += error ** 2 * interval
 
     def result(self):
         def over_contact(value):
@@ -99,9 +101,10 @@ def measured(text):
     instruments = {}
     lines = csv.reader(text.splitlines())
     columns = next(lines)
+    pick = operator.itemgetter(*[columns.index(name) for name in COLUMNS])
     for line in lines:
-        row = dict(zip(columns, line))
-        instruments.setdefault(row["instrument"], Measures()).add(row)
+        row = pick(line)
+        instruments.setdefault(row[1], Measures()).add(*row)
     return {name: one.result() for name, one in instruments.items()}
 
 

@@ -59,10 +59,11 @@ class Inputs:
     def __init__(self, program, study):
         self._program, self._study = program, study
         self._bags = {bag: sha256_of(bag) for bag in study.bags}
+        self._measures = sha256_of(os.path.join(HERE, "replays.py"))
         self._scenes = {}
 
     def key(self, variant):
-        return fold(self._scene(variant), self._bags[variant.bag], variant.settings, self._study.options)[:32]
+        return fold(self._scene(variant), self._bags[variant.bag], variant.settings, self._study.options, self._measures)[:32]
 
     def _scene(self, variant):
         words = tuple((key, value) for key, value in variant.settings if not re.fullmatch(r"[-+\d.eE]+", value))
@@ -133,8 +134,10 @@ class Folder:
 
 def plan(folder, study, program, variants, keep_csv):
     """Writes the jobs of a run. @return {job: how many variants}."""
-    for name in os.listdir(folder.file("jobs")):
-        os.remove(folder.file("jobs", name))
+    old = [folder.file("jobs", name) for name in os.listdir(folder.file("jobs"))]
+    old += [folder.file("results", name) for name in os.listdir(folder.file("results")) if name.endswith(".log")]
+    for file in old:
+        os.remove(file)
     run, size = folder.next_run(), per_job(len(variants), study.per_job)
     jobs = {}
     for i in range(0, len(variants), size):
@@ -150,8 +153,8 @@ def plan(folder, study, program, variants, keep_csv):
 
 
 def per_job(variants, wanted):
-    """Some 200 jobs, since Snakemake spends a tenth of a second on each; fewer where that would be less than ten variants for each of eight."""
-    return max(wanted or max(min(10, variants // 8), math.ceil(variants / 200)), math.ceil(variants / MOST_JOBS))
+    """Some 100 jobs, since each costs a quarter of a second; fewer where that would be less than ten variants for each of eight."""
+    return max(wanted or max(min(10, variants // 8), math.ceil(variants / 100)), math.ceil(variants / MOST_JOBS))
 
 
 # ---------------------------------------------------------------------------------------------- running
