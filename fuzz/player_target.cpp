@@ -10,6 +10,7 @@
 
 #include "fuzz/fuzz_support.h"
 #include "support/text_scene.h"
+#include "tissue_contact/core/content_hash.h"
 #include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 #include "tissue_contact/simulation/scene.h"
@@ -83,21 +84,6 @@ double strangePosition(unsigned which) {
                                    3.0};
   return kPositions[which % 8];
 }
-
-/// Bits of all that came out, in order (64-bit FNV-1a).
-class Digest {
- public:
-  template <typename Number>
-  void add(Number number) {
-    unsigned char bytes[sizeof number];
-    std::memcpy(bytes, &number, sizeof number);
-    for (const unsigned char byte : bytes) value_ = (value_ ^ byte) * 1099511628211ULL;
-  }
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 14695981039346656037ULL;
-};
 
 /// Plays an input once.
 class Run {
@@ -195,6 +181,11 @@ class Run {
     }
   }
 
+  template <typename Number>
+  void note(Number number) {
+    digest_.add(&number, sizeof number);
+  }
+
   void playAll() {
     while (const std::optional<PlayedSample> played = player_.playNext()) {
       checkCounts();
@@ -210,8 +201,8 @@ class Run {
   }
 
   void checkPlayed(const PlayedSample& played) {
-    digest_.add(static_cast<int>(played.verdict));
-    digest_.add(played.stamp_ns);
+    note(static_cast<int>(played.verdict));
+    note(played.stamp_ns);
     if (played.verdict != Verdict::kAccepted) {
       fuzz::require(!played.detail.empty() && played.topic >= 0, "a refusal names its topic and why");
       return;
@@ -225,7 +216,7 @@ class Run {
       moment_before_ns_ = last_moment_ns_;
     }
     fuzz::require(!played.interrupted || played.instruments.empty(), "what was interrupted owes no wrench");
-    for (const int instrument : played.instruments) digest_.add(instrument);
+    for (const int instrument : played.instruments) note(instrument);
   }
 
   void watchTools() {
@@ -247,30 +238,30 @@ class Run {
       const NodalVectors& v = simulator_.velocities(t);
       fuzz::require(x.allFinite() && v.allFinite(), "finite nodes");
       fuzz::require(was_fast_ || x.cwiseAbs().maxCoeff() < kFartherThanTools * farthest_m_, "nodes that stay near");
-      for (Eigen::Index i = 0; i < x.size(); ++i) digest_.add(x.data()[i]);
-      for (Eigen::Index i = 0; i < v.size(); ++i) digest_.add(v.data()[i]);
+      for (Eigen::Index i = 0; i < x.size(); ++i) note(x.data()[i]);
+      for (Eigen::Index i = 0; i < v.size(); ++i) note(v.data()[i]);
     }
     for (int i = 0; i < static_cast<int>(simulator_.instruments().size()); ++i) {
       const Wrench wrench = simulator_.wrench(i);
       fuzz::require(wrench.force.allFinite() && wrench.torque.allFinite(), "finite wrenches");
       fuzz::require(wrench.force.norm() < kMostForce || simulator_.report().implausible_load.found,
                     "a load that no tissue bears is flagged");
-      for (int k = 0; k < 3; ++k) digest_.add(wrench.force[k]);
-      for (int k = 0; k < 3; ++k) digest_.add(wrench.torque[k]);
+      for (int k = 0; k < 3; ++k) note(wrench.force[k]);
+      for (int k = 0; k < 3; ++k) note(wrench.torque[k]);
     }
   }
 
   void addCounts() {
-    for (int verdict = 0; verdict < kVerdictCount; ++verdict) digest_.add(player_.count(static_cast<Verdict>(verdict)));
-    digest_.add(player_.merged());
-    digest_.add(player_.resets());
-    digest_.add(player_.gaps());
+    for (int verdict = 0; verdict < kVerdictCount; ++verdict) note(player_.count(static_cast<Verdict>(verdict)));
+    note(player_.merged());
+    note(player_.resets());
+    note(player_.gaps());
   }
 
   Simulator& simulator_;
   JointStatePlayer player_;
   AdvanceLimits limits_;
-  Digest digest_;
+  ContentHash digest_;  ///< bits of all that came out, in order
   std::int64_t stamps_ns_[3] = {10000000000, 10000000000, 10000000000};
   std::int64_t pushed_ = 0;
   std::int64_t updates_ = 0;  ///< of these, to the topic that only updates

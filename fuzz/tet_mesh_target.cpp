@@ -1,8 +1,12 @@
 /// @file
 /// Tetrahedral meshes: Gmsh .msh and legacy VTK, as a tissue reads them.
+#include <array>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "fuzz/fuzz_support.h"
+#include "mesh/labels.h"
 #include "tissue_contact/mesh/tet_mesh.h"
 
 using namespace tissue_contact;
@@ -23,6 +27,27 @@ void use(const TetMesh& mesh) {
   fuzz::require(!surface.empty(), "a checked mesh has a surface");
 }
 
+/// What the file calls its parts, as regions of a scene would name them: some hold a node, others are refused.
+void useLabels(const TetMesh& mesh, const MeshLabels& labels) {
+  std::vector<Region> regions;
+  for (const MeshLabels::Group& group : labels.groups) {
+    for (const std::array<int, 4>& element : group.elements) {
+      for (const int node : element) fuzz::require(node >= -1 && node < labels.nodes.cols(), "group nodes in range");
+    }
+    regions.emplace_back(GroupRegion{group.name.empty() ? std::to_string(group.number) : group.name});
+  }
+  for (const MeshLabels::CellData& data : labels.cell_data) {
+    fuzz::require(data.values.size() == mesh.tetrahedra.size(), "a number for each tetrahedron");
+    regions.emplace_back(CellDataRegion{data.name, data.values.front()});
+  }
+  for (const Region& region : regions) {
+    try {
+      fixedNodes(mesh.positions, withPlaces({region}, labels, mesh, "fixed", "input"), "input");
+    } catch (const std::invalid_argument&) {
+    }
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -35,6 +60,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const TetMesh mesh = loadTetMesh(description);
       checkRead(mesh);
       use(mesh);
+      MeshLabels labels;
+      useLabels(loadTetMesh(description, {}, &labels), labels);
     } catch (const std::invalid_argument&) {
     }
   }

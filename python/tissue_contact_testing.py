@@ -27,7 +27,7 @@ from std_msgs.msg import Empty
 from tissue_contact.msg import Status
 
 DEADLINE_S = 60.0  # a machine may be busy with other tests
-FNV_OFFSET, FNV_PRIME = 14695981039346656037, 1099511628211  # of LockStep::digest() in C++
+HASH_START, HASH_FACTOR = 0xcbf29ce484222325, 0x100000001b3  # of ContentHash in C++
 
 
 class TissueFixture:
@@ -126,11 +126,12 @@ class TissueFixture:
         """Of all wrenches with their stamps, to compare runs with: that of LockStep::digest() in C++ for the same joint states."""
         rows = [(wrench.header.stamp.to_nsec(), place, wrench.wrench)
                 for place, name in enumerate(self._wrenches) for wrench in self.wrenches(name)]
-        digest = FNV_OFFSET
+        digest = HASH_START
         for stamp_ns, _, wrench in sorted(rows, key=lambda row: row[:2]):
             numbers = [getattr(vector, axis) for vector in [wrench.force, wrench.torque] for axis in "xyz"]
             for word in struct.unpack("<7Q", struct.pack("<Q6d", stamp_ns, *numbers)):
-                digest = (digest ^ word) * FNV_PRIME % 2 ** 64
+                digest = (digest ^ word) * HASH_FACTOR % 2 ** 64
+                digest ^= digest >> 29
         return digest
 
 

@@ -2,8 +2,9 @@
 """Opens RViz on what tissue_contact_node simulates, whatever the scene: what launch/scene.launch runs beside the node.
 
 Waits for the node's markers, then starts RViz with config/scene.rviz, its topic, fixed frame, grid and view changed to those of the
-scene: tissues, legend and, where they are near, the tips of the instruments are in the picture, upright. Ends with RViz.
-With --write FILE it writes that configuration instead, to keep or to change.
+scene: tissues, legend and, where they are near, the tips of the instruments are in the picture, upright. The view follows a
+tip that leaves it, and among the saved views (panel Views) is one close to each tip that moves with it. Ends with RViz.
+With --write FILE it writes a configuration instead, to keep or to change, whose view stays where it is.
 """
 import argparse
 import math
@@ -17,6 +18,8 @@ import numpy
 import rospkg
 import rospy
 import yaml
+from geometry_msgs.msg import TransformStamped, Vector3
+from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
@@ -25,6 +28,10 @@ from whole_file import whole_file
 # Of the angle RViz opens to both sides of the view, 22.5 degrees: a ball of that radius fills the height of the window at
 # 2.6 radii. What is looked at is a box, and mostly lower than long.
 RADII_AWAY = 2.3
+TIP_AWAY = 0.6  # a tip that is farther from the middle, and than it was at first, takes the view along; in radii
+CLOSE = 3.0  # times nearer than all: the view of one tip
+TIP = "/tip"  # ends the names of markers at tips
+VIEW = "tissue_contact_view"  # tf frames of our own: in the middle of the view, and VIEW/INSTRUMENT at each tip
 PATIENCE_S = 10.0  # before it says what it waits for
 
 
@@ -66,10 +73,19 @@ class Picture:
         self.ground = self.up * min((self.up * one[:, 2]).min() for one in points)
         size = numpy.linalg.norm(numpy.ptp(numpy.concatenate(points), axis=0))
         middle = self.middle(points)
-        tips = [ends(m, right) for m in markers if m.ns == "force_texts"]
-        points += [tip for tip in tips if numpy.linalg.norm(tip[0] - middle) < size]
+        texts = [ends(m, right) for m in markers if m.ns == "force_texts"]
+        points += [text for text in texts if numpy.linalg.norm(text[0] - middle) < size]
         self.focus = self.middle(points)
         self.radius = max(numpy.linalg.norm(numpy.ptp(numpy.concatenate(points), axis=0)) / 2.0, 1e-6)
+
+        nearest = min((numpy.linalg.norm(tip - self.focus) for tip in tips_of(markers).values()), default=0.0)
+        self.reach = max(TIP_AWAY * self.radius, nearest if nearest < self.radius else 0.0)
+
+    def follow(self, tips):
+        """Where the middle of the view is to be: that of the scene, or so far from there that the nearest tip is in the picture."""
+        way = min((tip - self.focus for tip in tips), key=numpy.linalg.norm, default=numpy.zeros(3))
+        length = numpy.linalg.norm(way)
+        return self.focus + way * max(0.0, 1.0 - self.reach / max(length, 1e-12))
 
     @staticmethod
     def middle(points):
@@ -77,9 +93,19 @@ class Picture:
         return (everything.min(axis=0) + everything.max(axis=0)) / 2.0
 
 
-def configuration(markers, node):
-    """The configuration of RViz as text."""
-    picture = Picture(markers)
+def tips_of(markers):
+    """{instrument: place of its tip}"""
+    return {m.ns[:-len(TIP)]: array([m.pose.position])[0] for m in markers if m.ns.endswith(TIP)}
+
+
+def view_at(name, frame, distance, picture, focus=(0.0, 0.0, 0.0)):
+    return {"Class": "rviz/Orbit", "Name": name, "Distance": float(distance), "Focal Point": dict(zip("XYZ", map(float, focus))),
+            "Near Clip Distance": float(picture.radius / 100.0), "Pitch": 0.45, "Yaw": picture.yaw, "Invert Z Axis": picture.up < 0.0,
+            "Target Frame": frame, "Value": "Orbit (rviz)"}
+
+
+def configuration(picture, tips, node, follows):
+    """The configuration of RViz as text. It `follows` where a Follower runs beside it."""
     with open(os.path.join(rospkg.RosPack().get_path("tissue_contact"), "config", "scene.rviz"), encoding="utf-8") as stream:
         config = yaml.safe_load(stream)
     manager = config["Visualization Manager"]
@@ -94,18 +120,17 @@ def configuration(markers, node):
             display["Plane Cell Count"] = 2 * math.ceil(1.5 * picture.radius / cell)
             corner = [cell * round(float(c) / cell) for c in picture.focus[:2]]
             display["Offset"] = dict(zip("XYZ", corner + [float(picture.ground)]))
-    view = manager["Views"]["Current"]
-    view["Distance"] = float(RADII_AWAY * picture.radius)
-    view["Focal Point"] = dict(zip("XYZ", map(float, picture.focus)))
-    view["Near Clip Distance"] = float(picture.radius / 100.0)
-    view["Yaw"] = picture.yaw
-    view["Invert Z Axis"] = picture.up < 0.0
+    away = RADII_AWAY * picture.radius
+    manager["Views"] = {"Current": view_at("All", "<Fixed Frame>", away, picture, picture.focus)}
+    if follows:
+        manager["Views"] = {"Current": view_at("All", VIEW, away, picture),
+                            "Saved": [view_at("All", VIEW, away, picture)] +
+                                     [view_at("Tip of " + name, VIEW + "/" + name, away / CLOSE, picture) for name in tips]}
     return yaml.safe_dump(config, sort_keys=False)
 
 
 def markers_of(node):
     """The first markers of the node. It shows them to whoever comes, before its first joint state too."""
-    rospy.init_node("open_rviz", argv=[], anonymous=True, disable_signals=True)  # not by the name that RViz is to have
     markers = None
     while markers is None:
         try:
@@ -114,8 +139,28 @@ def markers_of(node):
             raise
         except rospy.ROSException:
             print("waiting for %s/markers: the node must run, and publish.markers_rate_hz of its scene be above 0" % node, flush=True)
-    rospy.signal_shutdown("has the view")
     return markers
+
+
+class Follower:
+    """Tells tf where the views are, with every message of the node's markers."""
+
+    def __init__(self, picture, node):
+        self._picture = picture
+        self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        rospy.Subscriber(node + "/markers", MarkerArray, self._take, queue_size=1)
+
+    def _take(self, message):
+        tips = tips_of(message.markers)
+        places = {VIEW: self._picture.follow(tips.values()), **{VIEW + "/" + name: tip for name, tip in tips.items()}}
+        self._tf.publish(TFMessage([self._transform(message.markers[0].header, *one) for one in places.items()]))
+
+    @staticmethod
+    def _transform(header, frame, place):
+        transform = TransformStamped(header=header, child_frame_id=frame)
+        transform.transform.translation = Vector3(*place)
+        transform.transform.rotation.w = 1.0
+        return transform
 
 
 def run_rviz(config, arguments):
@@ -139,8 +184,12 @@ def main():
     parser.add_argument("--node", default="/tissue_contact", help="default: %(default)s")
     parser.add_argument("--write", metavar="FILE", help="writes the configuration to this file and opens nothing")
     arguments = parser.parse_args(rospy.myargv()[1:])
-    config = configuration(markers_of(arguments.node), arguments.node)
+    rospy.init_node("open_rviz", argv=[], anonymous=True, disable_signals=True)  # not by the name that RViz is to have
+    markers = markers_of(arguments.node)
+    picture = Picture(markers)
+    config = configuration(picture, tips_of(markers), arguments.node, follows=not arguments.write)
     if not arguments.write:
+        Follower(picture, arguments.node)  # rospy keeps it
         sys.exit(run_rviz(config, [a for a in sys.argv[1:] if ":=" in a]))
     try:
         with whole_file(arguments.write) as part:

@@ -29,7 +29,7 @@ from tissue_contact.msg import ContactArray, ContactPoint, Status, TissueMesh, T
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
 from plot_forces import Forces, friction_of, plot
 
-QUIET_S = 10.0  # so long after the last joint state the node has either answered or never will
+QUIET_S = 10.0  # without a wrench, after the last joint state: the node will not answer it
 RVIZ_START_S = 30.0
 LAUNCH_END_S = 10.0  # roslaunch ends its nodes within this, us among them
 
@@ -187,6 +187,18 @@ def wait_quietly(condition, limit_s):
     return condition()
 
 
+def wait_for_the_rest(recorder, talk):
+    """Whether the last joint state gets its wrench. A node slower than the recording is still at work, with a wrench now and then."""
+    while not wait_quietly(recorder.is_answered, 1.0):
+        last = recorder.last_wrench
+        wait_quietly(lambda: recorder.last_wrench != last, QUIET_S)
+        if rospy.is_shutdown() or recorder.last_wrench == last:
+            return recorder.is_answered()
+        if talk:
+            print(recorder.line(), flush=True)
+    return True
+
+
 def end_launch():
     """Ends the roslaunch that started us as Ctrl-C would. The launch file's nodes are `required`, so that it ends when one
     fails; were we just to return, it would call our good end a death, in red."""
@@ -234,7 +246,7 @@ def main():
     watch(recorder, lambda: child.poll() is not None, talk=not shown)
     if not rospy.is_shutdown() and child.returncode != 0:
         fail("rosbag play ended with exit code %s" % child.returncode)
-    answered = wait_quietly(recorder.is_answered, QUIET_S)
+    answered = wait_for_the_rest(recorder, talk=not shown)
     recorder.open = False
     if rospy.is_shutdown():
         return

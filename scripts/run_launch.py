@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Runs a launch file of this package on a ROS master of its own, and tells whether it did what it is for.
 
-usage: run_launch.py demo.launch|grasp.launch|two_psm.launch [arg:=value ...]
+usage: run_launch.py demo.launch|grasp.launch|two_psm.launch|incline.launch [arg:=value ...]
        run_launch.py scene.launch scene:=FILE bag:=FILE [arg:=value ...]
 
 roslaunch returns 0 whatever became of its nodes. This returns 0 only when the plots were written, else 1. The master

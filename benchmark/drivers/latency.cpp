@@ -1,10 +1,13 @@
 // The two programs of benchmark/drivers/latency, which starts them.
 //   latency --echo                     a bare node: a WrenchStamped for every joint state, nothing else
 //   latency --seconds S --rate-hz F    joint states of a probe that presses and drags; table of publish -> wrench received
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <dynamic_reconfigure/Config.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
+#include <tf2_msgs/TFMessage.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include <algorithm>
@@ -12,6 +15,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -19,9 +23,11 @@
 #include <unordered_map>
 #include <vector>
 
+#include "tissue_contact/Changes.h"
 #include "tissue_contact/ContactArray.h"
 #include "tissue_contact/Status.h"
 #include "tissue_contact/TissueMesh.h"
+#include "tissue_contact/TissueTopology.h"
 #include "tissue_contact/core/command_line.h"
 
 namespace {
@@ -79,6 +85,11 @@ class Latencies {
     return sent_.count(stamp.toNSec()) == 0;
   }
 
+  std::size_t count() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return ms_.size();
+  }
+
   void print() {
     const std::lock_guard<std::mutex> lock(mutex_);
     std::sort(ms_.begin(), ms_.end());
@@ -98,12 +109,61 @@ class Latencies {
   ros::Subscriber subscriber_;
 };
 
-template <typename Message>
-ros::Subscriber countMessages(ros::NodeHandle& node, const std::string& topic, std::atomic<long>& count) {
-  const boost::function<void(const boost::shared_ptr<const Message>&)> take =
-      [&count](const boost::shared_ptr<const Message>&) { ++count; };
-  return node.subscribe<Message>(topic, 10, take);
-}
+/// What else a user looks at: counted, by a thread of its own.
+class Others {
+ public:
+  Others() : spinner_(1, &queue_) {
+    node_.setCallbackQueue(&queue_);
+    count<geometry_msgs::WrenchStamped>("/tissue_contact/probe/body/measured_cf");  // hasAll() takes the first two
+    count<geometry_msgs::WrenchStamped>("/tissue_contact/probe/spatial/measured_cf");
+    count<tissue_contact::TissueTopology>("/tissue_contact/block/topology");
+    count<tissue_contact::TissueMesh>("/tissue_contact/block/mesh");
+    count<visualization_msgs::MarkerArray>("/tissue_contact/markers");
+    count<tissue_contact::ContactArray>("/tissue_contact/contacts");
+    count<tissue_contact::Status>("/tissue_contact/status");
+    count<tissue_contact::Changes>("/tissue_contact/changes");
+    count<dynamic_reconfigure::Config>("/tissue_contact/parameter_updates");
+    count<tf2_msgs::TFMessage>("/tf");
+    count<diagnostic_msgs::DiagnosticArray>("/diagnostics");
+    count<geometry_msgs::WrenchStamped>("/device/servo_cf");
+    spinner_.start();
+  }
+
+  bool connected() const {
+    return std::all_of(topics_.begin(), topics_.end(),
+                       [](const Topic& topic) { return topic.subscriber.getNumPublishers() > 0; });
+  }
+
+  /// Whether CRTK's wrenches came, as many as the others: they leave a moment later.
+  bool hasAll(std::size_t wrenches) const {
+    return topics_[0].count >= static_cast<long>(wrenches) && topics_[1].count >= static_cast<long>(wrenches);
+  }
+
+  void print() const {
+    for (const Topic& topic : topics_) std::printf("beside %-44s %8ld\n", topic.name.c_str(), topic.count.load());
+  }
+
+ private:
+  struct Topic {
+    std::string name;
+    std::atomic<long> count{0};
+    ros::Subscriber subscriber;
+  };
+
+  template <typename Message>
+  void count(const std::string& name) {
+    Topic& topic = topics_.emplace_back();
+    topic.name = name;
+    const boost::function<void(const boost::shared_ptr<const Message>&)> take =
+        [&topic](const boost::shared_ptr<const Message>&) { ++topic.count; };
+    topic.subscriber = node_.subscribe<Message>(name, kQueue, take);
+  }
+
+  ros::CallbackQueue queue_;
+  ros::NodeHandle node_;
+  std::deque<Topic> topics_;
+  ros::AsyncSpinner spinner_;
+};
 
 sensor_msgs::JointState jointsAt(double time_s) {
   constexpr double kTurn = 2.0 * 3.14159265358979;
@@ -120,21 +180,11 @@ int measure(int argc, char** argv, double seconds, double rate_hz) {
   const ros::Publisher publisher = node.advertise<sensor_msgs::JointState>(kJoints, kQueue);
   Latencies ours(node, "tissue_contact", "/tissue_contact/probe/wrench");
   Latencies bare(node, "bare echo", "/latency_echo/probe/wrench");
-  // What else a user looks at, read by a thread of its own.
-  std::atomic<long> bulky{0};
-  ros::CallbackQueue bulky_queue;
-  ros::NodeHandle bulky_node("/tissue_contact");
-  bulky_node.setCallbackQueue(&bulky_queue);
-  const std::vector<ros::Subscriber> others = {
-      countMessages<tissue_contact::TissueMesh>(bulky_node, "block/mesh", bulky),
-      countMessages<visualization_msgs::MarkerArray>(bulky_node, "markers", bulky),
-      countMessages<tissue_contact::ContactArray>(bulky_node, "contacts", bulky),
-      countMessages<tissue_contact::Status>(bulky_node, "status", bulky)};
+  const Others others;
   ros::AsyncSpinner spinner(1);
-  ros::AsyncSpinner bulky_spinner(1, &bulky_queue);
   spinner.start();
-  bulky_spinner.start();
-  while (ros::ok() && !(ours.connected() && bare.connected() && publisher.getNumSubscribers() >= 2)) {
+  while (ros::ok() &&
+         !(ours.connected() && bare.connected() && others.connected() && publisher.getNumSubscribers() >= 2)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate_hz));
@@ -151,14 +201,14 @@ int measure(int argc, char** argv, double seconds, double rate_hz) {
   }
   constexpr std::chrono::seconds kPatience(30);
   const Clock::time_point end = Clock::now() + kPatience;
-  while (Clock::now() < end && !(ours.answered(last) && bare.answered(last))) {
+  while (Clock::now() < end && !(ours.answered(last) && bare.answered(last) && others.hasAll(ours.count()))) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   std::printf("%-16s %7s %8s %9s %9s %9s   ms, publish -> wrench received\n", "", "sent", "answered", "p50", "p99",
               "max");
   ours.print();
   bare.print();
-  std::printf("meshes, markers, contacts and status received beside: %ld\n", bulky.load());
+  others.print();
   ros::shutdown();
   return 0;
 }

@@ -1,8 +1,10 @@
 /// A ball wanders over a block whose mesh follows it: prints what the steps cost in which the mesh moves and the others, and how
-/// much the force turns in either. The ball (5 mm) is pressed 2 mm deep and slides along a figure of eight.
+/// much the force turns in either; of the stepping thread, and by the clock on the wall, which also has in it what steps wait for the
+/// worker that prepares meshes. The ball (5 mm) is pressed 2 mm deep and slides along a figure of eight.
 /// usage: moving_mesh [--speed M_PER_S] [--length M] [--refinement never|auto|MAP] [--tolerance T] [--trace FILE] [--surfaces FILE]
 ///   --trace: every step as CSV; --surfaces: the surface at six moments, for plot_moving_mesh.py
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -78,6 +80,10 @@ Simulator makeScene(const Arguments& arguments) {
   return Simulator(parseScene(yaml, "moving_mesh", environment.package_path), environment);
 }
 
+double wallSeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 /// Of the figure of eight, by an angle; its length is some 0.3 m.
 Vector3 eight(double angle) { return {0.033 * std::sin(angle), 0.033 * std::sin(2.0 * angle), 0.0}; }
 
@@ -109,13 +115,17 @@ void writeSurface(const Simulator& simulator, const Vector3& ball, std::FILE* fi
 /// Steps of one kind: in which the mesh moved, or not.
 struct Steps {
   std::vector<double> ms;
+  std::vector<double> wall_ms;
   std::vector<double> turns;  ///< what the force is off from going on as before, over its size
 };
 
 void print(const char* name, const Steps& steps) {
   std::printf(
-      "%s: %zu steps, median_ms %.3f p99_ms %.3f max_ms %.3f, force turns by median %.3f %% p99 %.3f %% max %.3f %%\n",
+      "%s: %zu steps, median_ms %.3f p99_ms %.3f max_ms %.3f, wall median_ms %.3f p99_ms %.3f max_ms %.3f, force turns "
+      "by "
+      "median %.3f %% p99 %.3f %% max %.3f %%\n",
       name, steps.ms.size(), quantile(steps.ms, 0.5), quantile(steps.ms, 0.99), quantile(steps.ms, 1.0),
+      quantile(steps.wall_ms, 0.5), quantile(steps.wall_ms, 0.99), quantile(steps.wall_ms, 1.0),
       100.0 * quantile(steps.turns, 0.5), 100.0 * quantile(steps.turns, 0.99), 100.0 * quantile(steps.turns, 1.0));
 }
 
@@ -131,14 +141,17 @@ void run(const Arguments& arguments) {
   for (std::size_t k = 0; k < path.size(); ++k) {
     const int before = simulator.meshRevision(0);
     const double start = processorSeconds();
+    const double wall_start = wallSeconds();
     simulator.advance(kStep, {path[k]});
     const double ms = 1e3 * (processorSeconds() - start);
+    const double wall_ms = 1e3 * (wallSeconds() - wall_start);
     forces.push_back(simulator.wrench(0).force);
     const Vector3& force = forces.back();
     const double turn = (force - 2.0 * forces[k + 1] + forces[k]).norm() / force.norm();
     if (k > slides_from + 10) {
       for (Steps* const steps : {&all, simulator.meshRevision(0) != before ? &moved : &stayed}) {
         steps->ms.push_back(ms);
+        steps->wall_ms.push_back(wall_ms);
         steps->turns.push_back(turn);
       }
     }
@@ -151,6 +164,9 @@ void run(const Arguments& arguments) {
   print("all", all);
   print("mesh moves", moved);
   print("mesh stays", stayed);
+  const MeshMoves moves = simulator.meshMoves(0);
+  std::printf("moves: %d prepared, of which steps waited for %d; %d at once\n", moves.prepared, moves.waited,
+              moves.at_once);
 }
 
 }  // namespace

@@ -318,9 +318,9 @@ void ContactDetector::findNear(const std::vector<NodalVectors>& positions, const
   }
 }
 
-void ContactDetector::setSurface(int tissue, TissueSurface surface, const NodalVectors& rest) {
-  MovingSurface& own = (*implementation_->surfaces)[tissue];
-  own = MovingSurface(tissue, std::move(surface), rest);
+void ContactDetector::swapSurface(MovingSurface& surface) {
+  MovingSurface& own = (*implementation_->surfaces)[surface.tissue()];
+  std::swap(own, surface);
   implementation_->narrow_phase.makeRoom(own);
 }
 

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "mesh/face_table.h"
+#include "mesh/region.h"
 #include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/core/text.h"
 
@@ -15,7 +16,10 @@ namespace tissue_contact {
 namespace {
 
 bool before(const Vector3& a, const Vector3& b) {
-  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  const double order_a = placeOrder(a);
+  const double order_b = placeOrder(b);
+  return order_a != order_b ? order_a < order_b
+                            : std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
 /// Nodes of an element and what it is made of.

@@ -26,9 +26,11 @@ bool holds(const SphereRegion& sphere, const Vector3& x, double rounding) {
 
 bool holds(const MemberRegion& members, const Vector3& x, double rounding) {
   const std::vector<Vector3>& places = *members.places;
-  const auto first = std::lower_bound(places.begin(), places.end(), x.x() - rounding,
-                                      [](const Vector3& place, double from) { return place.x() < from; });
-  for (auto place = first; place != places.end() && place->x() <= x.x() + rounding; ++place) {
+  const double order = placeOrder(x);
+  const double apart = rounding + 1e-15 * x.norm();  // placeOrder() rounds, too
+  const auto first = std::lower_bound(places.begin(), places.end(), order - apart,
+                                      [](const Vector3& place, double from) { return placeOrder(place) < from; });
+  for (auto place = first; place != places.end() && placeOrder(*place) <= order + apart; ++place) {
     if ((*place - x).norm() <= rounding) return true;
   }
   return false;
@@ -74,6 +76,11 @@ void describe(const CellDataRegion& data, std::ostream& out) { out << "cell data
 
 double roundingDistance(const NodalVectors& x) {
   return x.cols() == 0 ? 0.0 : 1e-9 * (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).norm();
+}
+
+double placeOrder(const Vector3& place) {
+  // Of length 1: square roots of 2, 3 and 5, which no small whole numbers relate.
+  return Vector3(0.4472135954999579, 0.5477225575051661, 0.7071067811865476).dot(place);
 }
 
 bool anyHolds(const std::vector<Region>& regions, const Vector3& x, double rounding) {

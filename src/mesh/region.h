@@ -14,6 +14,10 @@ namespace tissue_contact {
 /// 3 in a mesh with nodes at x.
 double roundingDistance(const NodalVectors& x);
 
+/// What the places of a MemberRegion are sorted by: how far they lie along a direction in which nodes of structured meshes, which share
+/// coordinates by the thousand, hardly ever lie side by side.
+double placeOrder(const Vector3& place);
+
 /// Whether any of the regions holds the point (m, in T). Boundaries count as inside.
 bool anyHolds(const std::vector<Region>& regions, const Vector3& x, double rounding);
 

@@ -123,12 +123,12 @@ YamlCursor parseYaml(const std::string& yaml, const std::string& file, const std
   }
   const int line = document.Mark().is_null() ? 1 : document.Mark().line + 1;
   const auto checked = [&](const YAML::Node& tree, std::shared_ptr<const SetPlaces> set) {
-    const YamlCursor root(tree, name, "", line, std::move(set));
+    YamlCursor root(tree, name, "", line, std::move(set));
     int values_left = kMaxValues;
     checkSize(tree, 0, values_left, root);
     return root;
   };
-  const YamlCursor root = checked(document, nullptr);
+  YamlCursor root = checked(document, nullptr);
   if (settings.empty()) return root;
   const auto places = std::make_shared<SetPlaces>();
   const YAML::Node tree = withSettings(document, settings, parseSetting, *places);

@@ -6,18 +6,16 @@
 namespace tissue_contact {
 
 ContactPressure::ContactPressure(const std::vector<Tissue>& tissues) : tissues_(tissues), surfaces_(tissues.size()) {
-  for (std::size_t t = 0; t < tissues.size(); ++t) changeSurface(static_cast<int>(t));
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    TrianglesOfNodes triangles = trianglesOfNodes(tissues[t]);
+    swapSurface(static_cast<int>(t), triangles);
+  }
 }
 
-void ContactPressure::changeSurface(int tissue) {
+void ContactPressure::swapSurface(int tissue, TrianglesOfNodes& triangles) {
   clear();
-  const Tissue& now = tissues_[tissue];
-  Surface& surface = surfaces_[tissue];
-  surface.first_load.assign(now.nodeCount(), -1);
-  surface.triangles_of_node.assign(now.nodeCount(), {});
-  for (std::size_t i = 0; i < now.surface().size(); ++i) {
-    for (const int node : now.surface()[i]) surface.triangles_of_node[node].push_back(static_cast<int>(i));
-  }
+  surfaces_[tissue].triangles_of_node.swap(triangles);
+  surfaces_[tissue].first_load.assign(surfaces_[tissue].triangles_of_node.size(), -1);
 }
 
 void ContactPressure::clear() {

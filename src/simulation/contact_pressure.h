@@ -18,6 +18,7 @@
 #include <array>
 #include <vector>
 
+#include "simulation/triangles_of_nodes.h"
 #include "tissue_contact/contact/contact.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/simulation/solved_contact.h"
@@ -31,8 +32,8 @@ class ContactPressure {
   /// @param tissues must outlive this.
   explicit ContactPressure(const std::vector<Tissue>& tissues);
 
-  /// A tissue has another surface now. Nothing presses any more.
-  void changeSurface(int tissue);
+  /// Goes on with another surface of a tissue, whose triangles are exchanged for those before. Nothing presses any more.
+  void swapSurface(int tissue, TrianglesOfNodes& triangles);
 
   void clear();  ///< nothing presses
 
@@ -52,7 +53,7 @@ class ContactPressure {
     int next = -1;    ///< index of another load of the same node, -1: none
   };
   struct Surface {
-    std::vector<std::vector<int>> triangles_of_node;
+    TrianglesOfNodes triangles_of_node;
     std::vector<int> first_load;  ///< per node; -1: none
   };
 

@@ -52,22 +52,23 @@ std::vector<std::size_t> groupsOf(const std::vector<TouchingTissues>& pairs, std
 
 }  // namespace
 
-SurfaceEdges::SurfaceEdges(const std::vector<Tissue>& tissues)
-    : at_nodes_(tissues.size()), graded_(tissues.size()), largest_(tissues.size()) {
-  for (std::size_t t = 0; t < tissues.size(); ++t) setSurface(static_cast<int>(t), tissues[t]);
+SurfaceEdges::SurfaceEdges(const std::vector<Tissue>& tissues) {
+  for (const Tissue& tissue : tissues) surfaces_.push_back(lengthsOf(tissue));
 }
 
-void SurfaceEdges::setSurface(int index, const Tissue& tissue) {
-  const VectorX& edges = at_nodes_[index] = edgesAtNodes(tissue);
-  const double mean = meanSurfaceEdge(&tissue, 1);
+SurfaceEdges::Lengths SurfaceEdges::lengthsOf(const Tissue& tissue) {
+  Lengths lengths;
+  const VectorX& edges = lengths.at_nodes = edgesAtNodes(tissue);
+  const double mean = lengths.mean = meanSurfaceEdge(&tissue, 1);
   const double finest = (edges.array() > 0.0).select(edges.array(), mean).minCoeff();
-  graded_[index] = finest < mean / kEven || edges.maxCoeff() > mean * kEven;
-  largest_[index] = graded_[index] ? edges.maxCoeff() : mean;
+  lengths.graded = finest < mean / kEven || edges.maxCoeff() > mean * kEven;
+  lengths.largest = lengths.graded ? edges.maxCoeff() : mean;
+  return lengths;
 }
 
 double SurfaceEdges::at(int tissue, const std::array<int, 3>& nodes, const Vector3& weights) const {
   double edge = 0.0;
-  for (int i = 0; i < 3; ++i) edge += weights[i] == 0.0 ? 0.0 : weights[i] * at_nodes_[tissue][nodes[i]];
+  for (int i = 0; i < 3; ++i) edge += weights[i] == 0.0 ? 0.0 : weights[i] * surfaces_[tissue].at_nodes[nodes[i]];
   return edge;
 }
 
@@ -78,7 +79,7 @@ double SurfaceEdges::finer(const Contact& contact) const {
 }
 
 double SurfaceEdges::scaleAt(int tissue, const std::array<int, 3>& nodes, const Vector3& weights) const {
-  return graded_[tissue] ? at(tissue, nodes, weights) : largest_[tissue];
+  return surfaces_[tissue].graded ? at(tissue, nodes, weights) : surfaces_[tissue].largest;
 }
 
 double SurfaceEdges::coarserScale(const Contact& contact) const {

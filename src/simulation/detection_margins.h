@@ -3,6 +3,7 @@
 /// edges are. Tissues and their velocities in; margins out.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "tissue_contact/contact/contact.h"
@@ -15,10 +16,19 @@ namespace tissue_contact {
 /// Lengths at rest of the edges of all tissue surfaces, where they are.
 class SurfaceEdges {
  public:
+  /// Of one surface.
+  struct Lengths {
+    VectorX at_nodes;      ///< per node, m; 0 for nodes inside
+    double mean = 0.0;     ///< of the whole surface, m
+    bool graded = false;   ///< some place is more than twice as fine or coarse
+    double largest = 0.0;  ///< mean of the surface, or of its coarsest place where it is graded, m
+  };
+  static Lengths lengthsOf(const Tissue& tissue);
+
   explicit SurfaceEdges(const std::vector<Tissue>& tissues);
 
-  /// Goes on with another surface of a tissue.
-  void setSurface(int index, const Tissue& tissue);
+  /// Goes on with another surface of a tissue, whose lengths are exchanged for those before.
+  void swapSurface(int index, Lengths& lengths) { std::swap(surfaces_[index], lengths); }
 
   /// Mean of the sides of the triangles about the contact's point, m; of two surfaces that of the finer one.
   double finer(const Contact& contact) const;
@@ -26,15 +36,13 @@ class SurfaceEdges {
   /// The scale of a surface there, m, of two that of the coarser one: the same mean where the mesh is graded, that of the whole
   /// surface where no place of it is twice as fine or coarse.
   double coarserScale(const Contact& contact) const;
-  double largestScale(int tissue) const { return largest_[tissue]; }
+  double largestScale(int tissue) const { return surfaces_[tissue].largest; }
 
  private:
   double at(int tissue, const std::array<int, 3>& nodes, const Vector3& weights) const;
   double scaleAt(int tissue, const std::array<int, 3>& nodes, const Vector3& weights) const;
 
-  std::vector<VectorX> at_nodes_;  ///< per tissue and node; 0 for nodes inside
-  std::vector<bool> graded_;
-  std::vector<double> largest_;  ///< mean of the surface, or of its coarsest place where it is graded
+  std::vector<Lengths> surfaces_;  ///< per tissue
 };
 
 /// Contacts are looked for as far as present speeds can close in the step, and half as much again, since speeds change

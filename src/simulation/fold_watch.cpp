@@ -1,18 +1,27 @@
 #include "simulation/fold_watch.h"
 
+#include <algorithm>
+
 namespace tissue_contact {
 
 FoldWatch::FoldWatch(const std::vector<TouchingTissues>& pairs, const std::vector<Tissue>& tissues)
     : pairs_(pairs), bodies_(pairs.size()), apart_(pairs.size()) {
-  for (std::size_t t = 0; t < tissues.size(); ++t) setMesh(static_cast<int>(t), tissues[t]);
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    std::optional<ConvexBody> body = bodyOf(static_cast<int>(t), tissues[t]);
+    swapMesh(static_cast<int>(t), body);
+  }
 }
 
-void FoldWatch::setMesh(int index, const Tissue& tissue) {
+std::optional<ConvexBody> FoldWatch::bodyOf(int index, const Tissue& tissue) const {
+  const auto folds = [&](const TouchingTissues& pair) { return pair.tissue == index && pair.other == index; };
+  if (std::none_of(pairs_.begin(), pairs_.end(), folds)) return std::nullopt;
+  if (tissue.tetrahedra().empty() || !isConvex(tissue.restPositions(), tissue.surface())) return std::nullopt;
+  return ConvexBody(tissue.restPositions(), tissue.tetrahedra());
+}
+
+void FoldWatch::swapMesh(int index, std::optional<ConvexBody>& body) {
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
-    if (pairs_[p].tissue != index || pairs_[p].other != index) continue;
-    bodies_[p].reset();
-    if (tissue.tetrahedra().empty() || !isConvex(tissue.restPositions(), tissue.surface())) continue;
-    bodies_[p].emplace(tissue.restPositions(), tissue.tetrahedra());
+    if (pairs_[p].tissue == index && pairs_[p].other == index) bodies_[p].swap(body);
   }
 }
 

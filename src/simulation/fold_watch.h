@@ -19,8 +19,10 @@ class FoldWatch {
   FoldWatch() = default;
   FoldWatch(const std::vector<TouchingTissues>& pairs, const std::vector<Tissue>& tissues);
 
-  /// Goes on with another mesh of a tissue.
-  void setMesh(int index, const Tissue& tissue);
+  /// What is watched of a tissue that may fold; none where it may not, or cannot be left out.
+  std::optional<ConvexBody> bodyOf(int index, const Tissue& tissue) const;
+  /// Goes on with another mesh of a tissue, whose body is exchanged for that before.
+  void swapMesh(int index, std::optional<ConvexBody>& body);
 
   /// Per pair, whether it can be left out; empty: none ever can. No allocation.
   /// @param travels_m per tissue: the way any node of it may go in the coming step.

@@ -16,10 +16,9 @@ struct FrictionTable::Entry {
   std::unique_ptr<const AnisotropicFriction> anisotropic;  ///< what law.anisotropic points to
 };
 
-/// What is needed to find the surface triangle of a contact; empty for tissues without regions and fibres.
 struct FrictionTable::Surface {
   const Tissue* tissue = nullptr;
-  std::vector<std::vector<int>> triangles_of_node;
+  TrianglesOfNodes triangles_of_node;  ///< see trianglesOf()
 
   /// The surface triangle of a point: of those that share it (an edge, a vertex), the one that faces most against
   /// `outward` (unit). -1 where triangles are not kept.
@@ -98,8 +97,7 @@ FrictionTable::FrictionTable(const Scene& scene, const std::vector<Instrument>& 
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     between_tissues_.emplace_back(tissues.size(), none[t]);
   }
-  surfaces_.resize(tissues.size());
-  for (std::size_t t = 0; t < tissues.size(); ++t) setSurface(static_cast<int>(t), tissues[t]);
+  for (const Tissue& tissue : tissues) surfaces_.push_back({&tissue, trianglesOf(tissue)});
   std::vector<std::size_t> sorted(scene.friction.size());
   std::iota(sorted.begin(), sorted.end(), std::size_t{0});
   std::stable_sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
@@ -110,15 +108,13 @@ FrictionTable::FrictionTable(const Scene& scene, const std::vector<Instrument>& 
   }
 }
 
-void FrictionTable::setSurface(int index, const Tissue& tissue) {
-  Surface& surface = surfaces_[index];
-  surface.tissue = &tissue;
-  surface.triangles_of_node.clear();
-  if (tissue.surfaceRegions().empty() && tissue.surfaceFibres().empty()) return;
-  surface.triangles_of_node.resize(tissue.nodeCount());
-  for (std::size_t i = 0; i < tissue.surface().size(); ++i) {
-    for (const int node : tissue.surface()[i]) surface.triangles_of_node[node].push_back(static_cast<int>(i));
-  }
+TrianglesOfNodes FrictionTable::trianglesOf(const Tissue& tissue) {
+  return tissue.surfaceRegions().empty() && tissue.surfaceFibres().empty() ? TrianglesOfNodes()
+                                                                           : trianglesOfNodes(tissue);
+}
+
+void FrictionTable::swapSurface(int index, TrianglesOfNodes& triangles) {
+  surfaces_[index].triangles_of_node.swap(triangles);
 }
 
 void FrictionTable::add(const FrictionDescription& description, const Scene& scene,

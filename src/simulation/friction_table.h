@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "simulation/triangles_of_nodes.h"
 #include "tissue_contact/contact/contact.h"
 #include "tissue_contact/friction/friction_law.h"
 #include "tissue_contact/instrument/instrument.h"
@@ -36,8 +37,10 @@ class FrictionTable {
   CoulombLaw at(const Contact& contact, const std::vector<NodalVectors>& x, const std::vector<std::vector<Pose>>& X_WL,
                 const ContactBefore& before) const;
 
-  /// Goes on with another surface of a tissue, which must outlive this.
-  void setSurface(int index, const Tissue& tissue);
+  /// What is needed of the surface of a tissue to find the triangle of a contact; empty without regions and fibres.
+  static TrianglesOfNodes trianglesOf(const Tissue& tissue);
+  /// Goes on with another surface of a tissue, which has become that one; exchanges its triangles for those before.
+  void swapSurface(int index, TrianglesOfNodes& triangles);
 
   /// Whether any law asks for the pressure.
   bool dependsOnPressure() const;

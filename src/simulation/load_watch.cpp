@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "tissue_contact/mesh/tet_mesh.h"
 #include "tissue_contact/mesh/triangle_mesh.h"
@@ -36,9 +37,11 @@ std::vector<double> nodeAreas(const Tissue& tissue) {
 
 LoadWatch::LoadWatch(const Scene& scene, const std::vector<Tissue>& tissues) {
   for (std::size_t t = 0; t < tissues.size(); ++t) {
-    bodies_.emplace_back().law = scene.tissues[t].material.model;
+    Body& body = bodies_.emplace_back();
+    body.tissue = &tissues[t];
+    body.law = scene.tissues[t].material.model;
+    body.mesh = meshOf(tissues[t], body.law);
     setMaterials(static_cast<int>(t), scene.tissues[t]);
-    setMesh(static_cast<int>(t), tissues[t]);
   }
 }
 
@@ -52,26 +55,28 @@ void LoadWatch::setMaterials(int index, const TissueDescription& description) {
   }
 }
 
-void LoadWatch::setMesh(int index, const Tissue& tissue) {
+LoadWatch::Mesh LoadWatch::meshOf(const Tissue& tissue, ElasticModel law) {
   const std::vector<Tetrahedron>& elements = tissue.tetrahedra();
   const auto nodes = static_cast<std::size_t>(tissue.nodeCount());
-  Body& body = bodies_[index];
-  body.tissue = &tissue;
-  body.node_area = nodeAreas(tissue);
-  body.node_seen.assign(nodes, 0);
-  body.element_seen.assign(elements.size(), 0);
-  if (hasRange(body.law)) body.strains.resize(elements.size());
-  body.first_of_node.assign(nodes + 1, 0);
+  Mesh mesh;
+  mesh.node_area = nodeAreas(tissue);
+  mesh.node_seen.assign(nodes, 0);
+  mesh.element_seen.assign(elements.size(), 0);
+  if (hasRange(law)) mesh.strains.resize(elements.size());
+  mesh.first_of_node.assign(nodes + 1, 0);
   for (const Tetrahedron& element : elements) {
-    for (const int node : element) ++body.first_of_node[node + 1];
+    for (const int node : element) ++mesh.first_of_node[node + 1];
   }
-  for (std::size_t i = 0; i < nodes; ++i) body.first_of_node[i + 1] += body.first_of_node[i];
-  body.elements_of_node.resize(body.first_of_node.back());
-  std::vector<int> next(body.first_of_node.begin(), body.first_of_node.end() - 1);
+  for (std::size_t i = 0; i < nodes; ++i) mesh.first_of_node[i + 1] += mesh.first_of_node[i];
+  mesh.elements_of_node.resize(mesh.first_of_node.back());
+  std::vector<int> next(mesh.first_of_node.begin(), mesh.first_of_node.end() - 1);
   for (std::size_t e = 0; e < elements.size(); ++e) {
-    for (const int node : elements[e]) body.elements_of_node[next[node]++] = static_cast<int>(e);
+    for (const int node : elements[e]) mesh.elements_of_node[next[node]++] = static_cast<int>(e);
   }
+  return mesh;
 }
+
+void LoadWatch::swapMesh(int index, Mesh& mesh) { std::swap(bodies_[index].mesh, mesh); }
 
 void LoadWatch::check(const std::vector<SolvedContact>& contacts, const std::vector<NodalVectors>& positions,
                       ImplausibleLoad& load, LawError& law_error) {
@@ -95,12 +100,12 @@ void LoadWatch::check(const std::vector<SolvedContact>& contacts, const std::vec
       if (contact.force_on_tissue_n.norm() > contacts[strongest].force_on_tissue_n.norm()) strongest = end;
       for (int i = 0; i < 3; ++i) {
         const int node = contact.contact.nodes[i];
-        if (contact.contact.weights[i] == 0.0 || body.node_seen[node] == checks_) continue;
-        body.node_seen[node] = checks_;
-        area += body.node_area[node];
+        if (contact.contact.weights[i] == 0.0 || body.mesh.node_seen[node] == checks_) continue;
+        body.mesh.node_seen[node] = checks_;
+        area += body.mesh.node_area[node];
         checkElements(body, node, x, key.instrument, key.tissue, load);
       }
-      if (body.strains.empty()) continue;
+      if (body.mesh.strains.empty()) continue;
       const UnderTool under = underTool(body, contact.contact);
       sum.strain += contact.force_on_tissue_n.norm() * under.strain;
       sum.poissons_ratio += contact.force_on_tissue_n.norm() * under.poissons_ratio;
@@ -125,16 +130,16 @@ void LoadWatch::check(const std::vector<SolvedContact>& contacts, const std::vec
 void LoadWatch::checkElements(Body& body, int node, const NodalVectors& x, int instrument, int tissue,
                               ImplausibleLoad& load) {
   const std::vector<Tetrahedron>& elements = body.tissue->tetrahedra();
-  for (int i = body.first_of_node[node]; i < body.first_of_node[node + 1]; ++i) {
-    const int e = body.elements_of_node[i];
-    if (body.element_seen[e] == checks_) continue;
-    body.element_seen[e] = checks_;
+  for (int i = body.mesh.first_of_node[node]; i < body.mesh.first_of_node[node + 1]; ++i) {
+    const int e = body.mesh.elements_of_node[i];
+    if (body.mesh.element_seen[e] == checks_) continue;
+    body.mesh.element_seen[e] = checks_;
     const NodalVectors& rest = body.tissue->restPositions();
     const double rest_volume = signedVolume(rest, elements[e]);
     const double volume = signedVolume(x, elements[e]) / rest_volume;
-    if (!body.strains.empty()) {
+    if (!body.mesh.strains.empty()) {
       const Matrix3 F = edgeMatrix(x, elements[e]) * edgeMatrix(rest, elements[e]).inverse();
-      body.strains[e] = {rest_volume * equivalentStrain(F), rest_volume};
+      body.mesh.strains[e] = {rest_volume * equivalentStrain(F), rest_volume};
     }
     if (!(volume < kInsideOut)) continue;
     ++load.inverted_elements;
@@ -157,12 +162,12 @@ LoadWatch::UnderTool LoadWatch::underTool(const Body& body, const Contact& conta
     const int node = contact.nodes[k];
     UnderTool sum;  // times volume
     double volume = 0.0;
-    for (int i = body.first_of_node[node]; i < body.first_of_node[node + 1]; ++i) {
-      const int e = body.elements_of_node[i];
+    for (int i = body.mesh.first_of_node[node]; i < body.mesh.first_of_node[node + 1]; ++i) {
+      const int e = body.mesh.elements_of_node[i];
       const int region = regions.empty() ? -1 : regions[e];
-      sum.strain += body.strains[e].times_volume;
-      if (region >= 0) sum.poissons_ratio += body.strains[e].volume * body.poissons_ratio_of_regions[region];
-      volume += body.strains[e].volume;
+      sum.strain += body.mesh.strains[e].times_volume;
+      if (region >= 0) sum.poissons_ratio += body.mesh.strains[e].volume * body.poissons_ratio_of_regions[region];
+      volume += body.mesh.strains[e].volume;
     }
     mean.strain += std::abs(contact.weights[k]) * sum.strain / volume;
     mean.poissons_ratio += std::abs(contact.weights[k]) * sum.poissons_ratio / volume;

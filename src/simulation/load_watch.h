@@ -30,8 +30,20 @@ class LoadWatch {
 
   /// Goes on with other materials of a tissue.
   void setMaterials(int index, const TissueDescription& description);
-  /// Goes on with another mesh of a tissue, which must outlive this.
-  void setMesh(int index, const Tissue& tissue);
+  /// What is kept of a tissue's mesh.
+  struct Mesh {
+    std::vector<double> node_area;   ///< m^2 at rest, a third of each surface triangle around
+    std::vector<int> first_of_node;  ///< into elements_of_node, one more than nodes
+    std::vector<int> elements_of_node;
+    std::vector<long> node_seen, element_seen;  ///< the check in which it last was
+    struct Strain {
+      double times_volume, volume;
+    };
+    std::vector<Strain> strains;  ///< of the elements seen in this check; empty: the law has no range
+  };
+  static Mesh meshOf(const Tissue& tissue, ElasticModel law);
+  /// Goes on with another mesh of a tissue, which has become that one; exchanges what is kept of it for what was before.
+  void swapMesh(int index, Mesh& mesh);
 
   /// @param contacts sorted by key. No allocation once it has grown.
   void check(const std::vector<SolvedContact>& contacts, const std::vector<NodalVectors>& positions,
@@ -41,17 +53,10 @@ class LoadWatch {
   struct Body {
     const Tissue* tissue;
     double modulus_pa;
-    std::vector<double> node_area;   ///< m^2 at rest, a third of each surface triangle around
-    std::vector<int> first_of_node;  ///< into elements_of_node, one more than nodes
-    std::vector<int> elements_of_node;
-    std::vector<long> node_seen, element_seen;  ///< the check in which it last was
+    Mesh mesh;
     ElasticModel law;
     double poissons_ratio;                          ///< of the tissue
     std::vector<double> poissons_ratio_of_regions;  ///< less that
-    struct Strain {
-      double times_volume, volume;
-    };
-    std::vector<Strain> strains;  ///< of the elements seen in this check; empty: the law has no range
   };
   struct UnderTool {
     double strain = 0.0;

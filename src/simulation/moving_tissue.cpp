@@ -8,18 +8,17 @@ MovingTissue::MovingTissue(const Scene& scene, const Tissue& tissue, NodalVector
                            BodySystem& system)
     : scene_(scene), tissue_(tissue), x_(x), v_(v), system_(system), loads_(NodalVectors::Zero(3, tissue.nodeCount())) {
   reset();
-  watchSleep();
+  watchSleep(meanSurfaceEdge(&tissue_, 1));
 }
 
-void MovingTissue::watchSleep() {
+void MovingTissue::watchSleep(double edge_m) {
   sleep_.reset();
   if (!advisedSleep(scene_) || tissue_.elasticity().hasMemory()) return;
-  sleep_.emplace(tissue_.fixed(), system_, meanSurfaceEdge(&tissue_, 1), tissue_.attachmentStiffness(),
-                 advisedSleepByParts(scene_));
+  sleep_.emplace(tissue_.fixed(), system_, edge_m, tissue_.attachmentStiffness(), advisedSleepByParts(scene_));
   system_.fixed = &sleep_->still();
 }
 
-void MovingTissue::changeMesh() {
+void MovingTissue::changeMesh(std::unique_ptr<Elasticity::State>& elastic_state, double edge_m) {
   for (int i = 0; i < tissue_.nodeCount(); ++i) {
     if (!tissue_.fixed()[i]) continue;
     x_.col(i) = tissue_.restPositions().col(i);
@@ -29,16 +28,16 @@ void MovingTissue::changeMesh() {
   system_.b.setZero(3, tissue_.nodeCount());
   system_.mass = tissue_.nodeMasses();
   sleep_.reset();
-  elastic_state_ = tissue_.elasticity().makeStateAt(x_);
+  elastic_state_.swap(elastic_state);
   makeState();
-  watchSleep();
+  watchSleep(edge_m);
 }
 
 void MovingTissue::changeMaterials() {
   sleep_.reset();
   elastic_state_ = tissue_.elasticity().makeStateAfter(*elastic_state_, x_);
   makeState();
-  watchSleep();
+  watchSleep(meanSurfaceEdge(&tissue_, 1));
   still_changed_ = false;
 }
 
@@ -69,7 +68,8 @@ void MovingTissue::carry(StateArchive& archive) {
   archive.carry(v_);
   archive.carry(loads_);
   constexpr double kMost = 1e9;  // m, m/s: what is farther or faster has long stopped to be tissue
-  archive.check(x_.cwiseAbs().maxCoeff() <= kMost && v_.cwiseAbs().maxCoeff() <= kMost && loads_.allFinite(),
+  archive.check(x_.allFinite() && v_.allFinite() && loads_.allFinite() && x_.cwiseAbs().maxCoeff() <= kMost &&
+                    v_.cwiseAbs().maxCoeff() <= kMost,
                 "a position, speed or force that no tissue has");
   elastic_state_->carry(archive);
   archive.carry(system_.b);

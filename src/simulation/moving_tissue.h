@@ -30,9 +30,10 @@ class MovingTissue {
 
   /// Undeformed, at rest, awake.
   void reset();
-  /// Goes on with another mesh, awake, with a fresh elastic state. x and v are those of its nodes already; fixed ones are put to
-  /// where they rest.
-  void changeMesh();
+  /// Goes on with another mesh, awake, and a fresh elastic state of it, which is exchanged for that before. x and v are those of its nodes
+  /// already; fixed ones are put to where they rest.
+  /// @param edge_m mean edge of its surface.
+  void changeMesh(std::unique_ptr<Elasticity::State>& elastic_state, double edge_m);
   /// Goes on with other materials, awake, where it is and as fast as it is. Bodies with memory keep theirs.
   void changeMaterials();
   /// At rest where it is, awake, with a fresh elastic state: what was not finite may have got into tangents. Bodies with memory
@@ -70,7 +71,7 @@ class MovingTissue {
 
  private:
   void makeState();
-  void watchSleep();
+  void watchSleep(double edge_m);
   double allowedHeldForce(std::optional<double> pressing_n) const;
 
   const Scene& scene_;

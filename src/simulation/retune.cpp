@@ -77,12 +77,16 @@ void Simulator::Implementation::retune() {
   const Scene changed = std::move(*retuned);
   retuned.reset();
   bool is_other_body = false;
+  for (const auto& follower : followers) {
+    if (follower) follower->pause();  // it may be making a tissue from those numbers
+  }
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     if (!takeTissue(changed.tissues[t], scene.tissues[t])) continue;
     if (refinements[t]) takeTissue(changed.tissues[t], refinements[t]->description());
     tissues[t].changeMaterials(scene.tissues[t]);
     load_watch.setMaterials(static_cast<int>(t), scene.tissues[t]);
     moving[t].changeMaterials();
+    if (followers[t]) followers[t]->goOn();
     is_other_body = true;
   }
   if (takeFriction(changed, scene)) friction = FrictionTable(scene, instruments, tissues);

@@ -15,7 +15,7 @@ namespace tissue_contact {
 namespace {
 
 /// With the version of what follows it.
-constexpr const char* kStateTitle = "tissue_contact simulation 1";
+constexpr const char* kStateTitle = "tissue_contact simulation 2";
 
 NodalVectors handOver(NodalVectors& values) {
   NodalVectors copy = values;
@@ -54,7 +54,7 @@ std::vector<std::string> Simulator::advice() const {
     }
     const std::vector<double> cells_m = all.touched_places.cellsOn(static_cast<int>(t));
     const double cell_m = cells_m.empty() ? 0.0 : cells_m.front();
-    meshes[t] = refinementLine(scene().tissues[t], cells_m, all.refinements[t]->reach(cell_m),
+    meshes[t] = refinementLine(scene().tissues[t], cells_m, all.refinements[t]->cells().reach(cell_m),
                                all.refinements[t]->nodesAtMost(), shapes);
   }
   return adviceLines(scene(), all.folds, meshes);
@@ -162,6 +162,10 @@ const std::vector<ForceErrorEstimate>& Simulator::forceErrors() const {
 int Simulator::meshRevision(int tissue) const {
   const auto& refinement = implementation_->refinements.at(tissue);
   return refinement ? refinement->revision() : 0;
+}
+MeshMoves Simulator::meshMoves(int tissue) const {
+  const auto& follower = implementation_->followers.at(tissue);
+  return follower ? follower->moves() : MeshMoves();
 }
 long Simulator::stepCount() const { return implementation_->step_count; }
 void Simulator::lowerClosestApproach(Approach& closest) {

@@ -15,12 +15,10 @@ namespace {
 /// A mesh is refined before an instrument reaches it that moves on as fast for so many steps.
 constexpr double kStepsAhead = 4.0;
 
-TissueSurface surfaceOf(const Tissue& tissue) { return {tissue.surface(), tissue.fixed(), tissue.thickness()}; }
-
 std::vector<TissueSurface> surfacesOf(const std::vector<Tissue>& tissues) {
   std::vector<TissueSurface> surfaces;
   surfaces.reserve(tissues.size());
-  for (const Tissue& tissue : tissues) surfaces.push_back(surfaceOf(tissue));
+  for (const Tissue& tissue : tissues) surfaces.push_back({tissue.surface(), tissue.fixed(), tissue.thickness()});
   return surfaces;
 }
 
@@ -103,7 +101,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
   }
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     const std::vector<double> cells_m = touched_places.cellsOn(static_cast<int>(t));
-    approach_m.push_back(refinements[t] && !cells_m.empty() ? refinements[t]->reach(cells_m.back()) : -1.0);
+    approach_m.push_back(refinements[t] && !cells_m.empty() ? refinements[t]->cells().reach(cells_m.back()) : -1.0);
   }
   near_m.resize(tissues.size());
   solution.v.resize(tissues.size());
@@ -111,17 +109,21 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     moving.emplace_back(scene, tissues[t], x[t], solution.v[t], problem.bodies[t]);
   }
+  followers.resize(tissues.size());
+  for (std::size_t t = 0; t < tissues.size(); ++t) {
+    if (!refinements[t]) continue;
+    if (!worker) worker = std::make_unique<BackgroundWorker>();
+    followers[t] = std::make_unique<MeshFollower>(usersOf(static_cast<int>(t)), *refinements[t], *worker);
+  }
 }
 
 void Simulator::Implementation::reset() {
   motion.reset();
   contacts.clear();
   for (std::size_t t = 0; t < tissues.size(); ++t) {
-    if (!refinements[t] || !refinements[t]->reset()) continue;
-    takeMesh(static_cast<int>(t), {});
-    x[t] = tissues[t].restPositions();
-    solution.v[t].setZero(3, tissues[t].nodeCount());
-    moving[t].changeMesh();
+    if (!refinements[t]) continue;
+    followers[t]->drop();
+    if (refinements[t]->reset()) restartMesh(static_cast<int>(t));
   }
   for (MovingTissue& tissue : moving) tissue.reset();
   problem.contacts.clear();
@@ -182,13 +184,10 @@ void Simulator::Implementation::carryMeshes(StateArchive& archive) {
     bool is_refined = refinements[t] != nullptr;
     archive.require(is_refined ? 1 : 0, "is refined in one of scene and state only");
     if (is_refined) {
+      if (archive.isReading()) followers[t]->drop();
       refinements[t]->carry(archive);
-      if (archive.isReading()) {
-        takeMesh(static_cast<int>(t), {});
-        x[t] = tissues[t].restPositions();
-        solution.v[t].setZero(3, tissues[t].nodeCount());
-        moving[t].changeMesh();
-      }
+      if (archive.isReading()) restartMesh(static_cast<int>(t));
+      followers[t]->carry(archive, tissues[t].nodeCount());
     }
     archive.require(hashOf(tissues[t].restPositions()), "the mesh, or its place in the world, is another one");
     archive.require(hashOf(tissues[t].tetrahedra()), "the elements are others");
@@ -202,7 +201,7 @@ void Simulator::Implementation::step(double dt) {
   residuals.reset();
   restTissues();
   if (retuned) retune();
-  refineTissues();
+  refineTissues(dt);
   detectContacts(dt);
   wakeTouched();
   assemble(dt);
@@ -227,21 +226,22 @@ void Simulator::Implementation::restTissues() {
 }
 
 /// Lets the meshes follow what touched tissues in the step before, or is near to them now.
-void Simulator::Implementation::refineTissues() {
-  if (std::none_of(refinements.begin(), refinements.end(), [](const auto& one) { return one != nullptr; })) return;
-  for (std::size_t t = 0; t < tissues.size(); ++t) {
-    near_m[t] = approach_m[t] < 0.0 ? -1.0 : approach_m[t] + kStepsAhead * motion.longestTravel();
-  }
+void Simulator::Implementation::refineTissues(double dt) {
+  if (!worker) return;
+  const double touches_m = kStepsAhead * motion.longestTravel();
+  const double ahead_m = touches_m + MeshFollower::lead(dt) / dt * motion.longestTravel();
+  for (std::size_t t = 0; t < tissues.size(); ++t) near_m[t] = approach_m[t] < 0.0 ? -1.0 : approach_m[t] + ahead_m;
   detector.findNear(x, motion.startPoses(), near_m, near);
   bool any = false;
   for (std::size_t t = 0; t < tissues.size(); ++t) {
-    if (!refinements[t]) continue;
+    if (!followers[t]) continue;
     const int tissue = static_cast<int>(t);
-    touched_places.begin(tissue, contacts.solved(), tissues[t].restPositions());
-    touched_places.addNear(near, *refinements[t], kStepsAhead * motion.longestTravel(), tissues[t].restPositions());
-    const std::optional<NodeTransfer> transfer = refinements[t]->follow(touched_places.places());
-    if (!transfer) continue;
-    changeMesh(tissue, *transfer);
+    const NodalVectors& rest = tissues[t].restPositions();
+    touched_places.begin(tissue, contacts.solved(), rest, last_dt);
+    touched_places.addNear(near, refinements[t]->cells(), {motion, dt, ahead_m, touches_m}, x[t], rest);
+    ComingMesh* const coming = followers[t]->follow(touched_places.places(), x[t], last_dt);
+    if (coming == nullptr) continue;
+    changeMesh(tissue, *coming);
     any = true;
   }
   if (!any) return;
@@ -249,24 +249,40 @@ void Simulator::Implementation::refineTissues() {
   solver->reset();
 }
 
-void Simulator::Implementation::changeMesh(int tissue, const NodeTransfer& transfer) {
-  takeMesh(tissue, transfer.to_new);
+void Simulator::Implementation::changeMesh(int tissue, ComingMesh& coming) {
+  const NodeTransfer& transfer = *coming.next.transfer;
   x[tissue] = transfer.carried(x[tissue]);
   solution.v[tissue] = transfer.carried(solution.v[tissue]);
-  moving[tissue].changeMesh();
+  takeMesh(tissue, coming, transfer.to_new);
 }
 
-/// Makes again what has been made from the mesh of this tissue. Members that refer to each other keep their places.
+/// Goes on with all that was made from another mesh of this tissue; x and v are those of its nodes already. Members that refer to each
+/// other keep their places.
 /// @param to_new see StepContacts::renumber().
-void Simulator::Implementation::takeMesh(int tissue, const std::vector<int>& to_new) {
-  tissues[tissue] = refinements[tissue]->tissue();
-  const Tissue& now = tissues[tissue];
-  friction.setSurface(tissue, now);
-  edges.setSurface(tissue, now);
-  load_watch.setMesh(tissue, now);
-  detector.setSurface(tissue, surfaceOf(now), now.restPositions());
-  folds.setMesh(tissue, now);
-  contacts.renumber(tissue, to_new);
+void Simulator::Implementation::takeMesh(int tissue, ComingMesh& coming, const std::vector<int>& to_new) {
+  if (!coming.elastic_state) makeStateAt(x[tissue], coming);
+  const double edge_m = coming.edges.mean;
+  std::swap(tissues[tissue], *coming.tissue);
+  friction.swapSurface(tissue, coming.friction_triangles);
+  edges.swapSurface(tissue, coming.edges);
+  load_watch.swapMesh(tissue, coming.loads);
+  detector.swapSurface(*coming.surface);
+  folds.swapMesh(tissue, coming.fold);
+  contacts.renumber(tissue, to_new, coming.pressure_triangles);
+  moving[tissue].changeMesh(coming.elastic_state, edge_m);
+}
+
+/// Undeformed and at rest, with the mesh that the refinement has now.
+void Simulator::Implementation::restartMesh(int tissue) {
+  ComingMesh coming;
+  makeParts(refinements[tissue]->tissue(), usersOf(tissue), coming);
+  x[tissue] = coming.tissue->restPositions();
+  solution.v[tissue].setZero(3, coming.tissue->nodeCount());
+  takeMesh(tissue, coming, {});
+}
+
+MeshUsers Simulator::Implementation::usersOf(int tissue) const {
+  return {tissue, scene.tissues[tissue].material.model, friction.dependsOnPressure(), &folds};
 }
 
 void Simulator::Implementation::detectContacts(double dt) {
@@ -363,8 +379,8 @@ void Simulator::Implementation::sumWrenches() {
 CoarseCells Simulator::Implementation::coarsestCells() const {
   CoarseCells coarsest;
   for (std::size_t t = 0; t < refinements.size(); ++t) {
-    if (!refinements[t] || !(refinements[t]->coarsening() > coarsest.factor)) continue;
-    coarsest = {static_cast<int>(t), refinements[t]->coarsening()};
+    if (!followers[t] || !(followers[t]->coarsening() > coarsest.factor)) continue;
+    coarsest = {static_cast<int>(t), followers[t]->coarsening()};
   }
   return coarsest;
 }

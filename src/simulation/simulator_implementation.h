@@ -14,6 +14,7 @@
 #include "simulation/friction_table.h"
 #include "simulation/instrument_motion.h"
 #include "simulation/load_watch.h"
+#include "simulation/mesh_follower.h"
 #include "simulation/moving_tissue.h"
 #include "simulation/step_contacts.h"
 #include "simulation/tissue_refinement.h"
@@ -35,9 +36,11 @@ struct Simulator::Implementation {
   void step(double dt);
   void restTissues();
   void retune();
-  void refineTissues();
-  void changeMesh(int tissue, const NodeTransfer& transfer);
-  void takeMesh(int tissue, const std::vector<int>& to_new);
+  void refineTissues(double dt);
+  void changeMesh(int tissue, ComingMesh& coming);
+  void takeMesh(int tissue, ComingMesh& coming, const std::vector<int>& to_new);
+  void restartMesh(int tissue);
+  MeshUsers usersOf(int tissue) const;
   void detectContacts(double dt);
   void wakeTouched();
   void assemble(double dt);
@@ -86,6 +89,9 @@ struct Simulator::Implementation {
   long step_count = 0;
   double last_dt = 0.0;  ///< of the step before, s
   std::function<void()> observer;
+  std::vector<std::unique_ptr<MeshFollower>> followers;  ///< per tissue; null as in refinements
+  std::unique_ptr<BackgroundWorker>
+      worker;  ///< of the followers, null without any; last, so that it ends before what it works on
 };
 
 }  // namespace tissue_contact

@@ -250,8 +250,8 @@ Vector3 StepContacts::slipOf(std::size_t c, const ContactProblem& problem, const
   return slip.norm() > most ? Vector3(slip * (most / slip.norm())) : slip;
 }
 
-void StepContacts::renumber(int tissue, const std::vector<int>& to_new) {
-  if (pressure_) pressure_->changeSurface(tissue);
+void StepContacts::renumber(int tissue, const std::vector<int>& to_new, TrianglesOfNodes& triangles) {
+  if (pressure_) pressure_->swapSurface(tissue, triangles);
   for (SolvedContact& solved : contacts_) {
     Contact& contact = solved.contact;
     if (contact.key.tissue == tissue) renumberPoint(to_new, contact.key.feature, contact.nodes, contact.weights);

@@ -68,7 +68,8 @@ class StepContacts {
 
   /// The mesh of a tissue has changed, the tissue is the new one: contacts go on at the same places.
   /// @param to_new per node before; -1: it is no more. A contact of such nodes is continued by the nearest one of its shape.
-  void renumber(int tissue, const std::vector<int>& to_new);
+  /// @param triangles trianglesOfNodes() of it if friction depends on pressure; they are exchanged for those before.
+  void renumber(int tissue, const std::vector<int>& to_new, TrianglesOfNodes& triangles);
   /// To be called once all meshes that change have been renumbered.
   void finishRenumbering();
 

@@ -58,34 +58,60 @@ void TouchedPlaces::add(const std::array<int, 3>& nodes, const Vector3& weights,
   if (cell_m > 0.0) places_.push_back({pointOf(rest, nodes, weights), cell_m});
 }
 
-void TouchedPlaces::begin(int tissue, const std::vector<SolvedContact>& contacts, const NodalVectors& rest) {
+/// Places of one shape move alike: the frames of single contacts are tilted as the dimple is, which cancels in their mean.
+void TouchedPlaces::addSpeed(std::size_t first, const Vector3& slips_W, double last_dt) {
+  if (first == places_.size() || !(last_dt > 0.0)) return;
+  const Vector3 velocity_W = slips_W / (-last_dt * static_cast<double>(places_.size() - first));
+  for (std::size_t i = first; i < places_.size(); ++i) places_[i].velocity_W = velocity_W;
+}
+
+void TouchedPlaces::begin(int tissue, const std::vector<SolvedContact>& contacts, const NodalVectors& rest,
+                          double last_dt) {
   tissue_ = tissue;
   touching_.clear();
   places_.clear();
+  std::size_t first_of_shape = 0;
+  Vector3 slips_W = Vector3::Zero();
   for (const SolvedContact& solved : contacts) {
     const ContactKey& key = solved.contact.key;
     if (solved.state == ContactState::kOpen) continue;
     if (key.instrument >= 0) {
       if (key.tissue != tissue) continue;
+      if (touching_.empty() || !sameShapes(touching_.back(), key)) {  // they follow one another
+        addSpeed(first_of_shape, slips_W, last_dt);
+        first_of_shape = places_.size();
+        slips_W.setZero();
+        touching_.push_back(key);
+      }
       add(solved.contact.nodes, solved.contact.weights, cellUnder(tissue, key.instrument, key.link, key.shape), rest);
-      if (touching_.empty() || !sameShapes(touching_.back(), key)) touching_.push_back(key);  // they follow one another
+      if (solved.state == ContactState::kKinetic) slips_W += solved.slip_W;
       continue;
     }
+    addSpeed(first_of_shape, slips_W, last_dt);
     const double cell_m = refinements_[tissue].cell_m;  // between tissues no shape says how fine
     if (key.tissue == tissue) add(solved.contact.nodes, solved.contact.weights, cell_m, rest);
     if (key.other_tissue == tissue) add(solved.contact.other_nodes, solved.contact.other_weights, cell_m, rest);
+    first_of_shape = places_.size();
+    slips_W.setZero();
   }
+  addSpeed(first_of_shape, slips_W, last_dt);
 }
 
-void TouchedPlaces::addNear(const std::vector<NearPlace>& near, const TissueRefinement& refinement, double ahead_m,
-                            const NodalVectors& rest) {
+void TouchedPlaces::addNear(const std::vector<NearPlace>& near, const FineCells& cells, const Approaching& approaching,
+                            const NodalVectors& x, const NodalVectors& rest) {
   for (const NearPlace& place : near) {
     const auto touches = [&](const ContactKey& key) {
       return key.instrument == place.instrument && key.link == place.contact_link && key.shape == place.shape;
     };
     if (place.tissue != tissue_ || std::any_of(touching_.begin(), touching_.end(), touches)) continue;
     const double cell_m = cellUnder(tissue_, place.instrument, place.contact_link, place.shape);
-    if (place.distance_m < refinement.reach(cell_m) + ahead_m) add(place.nodes, place.weights, cell_m, rest);
+    if (!(cell_m > 0.0) || !(place.distance_m < cells.reach(cell_m) + approaching.ahead_m)) continue;
+    const auto& [a, b, c] = place.nodes;
+    const Vector3 n = (x.col(b) - x.col(a)).cross(x.col(c) - x.col(a)).stableNormalized();
+    const Vector3 p_W = pointOf(x, place.nodes, place.weights);
+    const Vector3 v_W = approaching.motion.pointVelocity(place.instrument, place.contact_link, p_W, approaching.dt);
+    places_.push_back({pointOf(rest, place.nodes, place.weights), cell_m, v_W - n.dot(v_W) * n,
+                       place.distance_m < approaching.touches_m});
   }
 }
 

@@ -1,22 +1,15 @@
 #include "tissue_contact/tissue/tet_elasticity.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <utility>
 
+#include "core/rotation_by_svd.h"
 #include "tissue/element_kernel.h"
 #include "tissue/rotation_state.h"
 #include "tissue/tet_elements.h"
 
 namespace tissue_contact {
 namespace {
-
-Quaternion rotationBySvd(const Matrix3& F) {
-  const Eigen::JacobiSVD<Matrix3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix3 U = svd.matrixU();
-  if ((U * svd.matrixV().transpose()).determinant() < 0.0) U.col(2) = -U.col(2);
-  return Quaternion(U * svd.matrixV().transpose());
-}
 
 Quaternion rotationInLane(const RotationBatch& q, std::size_t lane) {
   return Quaternion(q[0][lane], q[1][lane], q[2][lane], q[3][lane]).normalized();
@@ -69,7 +62,7 @@ Quaternion nearestRotation(const Matrix3& F, const Quaternion& guess) {
     q.normalize();
     if (squared < 0.25 * kLastStepSquared) return q;
   }
-  return rotationBySvd(F);
+  return Quaternion(rotationBySvd(F));
 }
 
 TetElasticity::TetElasticity(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,

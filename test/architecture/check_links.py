@@ -13,7 +13,7 @@ SOURCE = pathlib.Path()
 FOLDERS = "src|include|test|validation|benchmark|config|scripts|sweep|doc|launch|msg|urdf|fuzz"
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 NAMED = re.compile(r"(?<![\w/.$*-])((?:%s)/[\w./*-]*[\w*/])" % FOLDERS)
-MADE_BY_THE_BUILD = {"config/grasp.bag", "config/two_psm.bag"}
+MADE_BY_THE_BUILD = {"config/grasp.bag", "config/two_psm.bag", "config/incline.bag"}
 
 
 def headings(text):

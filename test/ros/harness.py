@@ -138,7 +138,10 @@ class JointSource:
 
     def __init__(self, topic=TOPIC):
         self._publisher = rospy.Publisher(topic, JointState, queue_size=100000, tcp_nodelay=True)
-        wait_until(lambda: self._publisher.get_num_connections() > 0, "a subscriber of " + topic)
+        wait_until(self.is_heard, "a subscriber of " + topic)
+
+    def is_heard(self):
+        return self._publisher.get_num_connections() > 0
 
     def send(self, stamp, positions, names=("x", "y", "z")):
         self._publisher.publish(joint_state(stamp, positions, names))

@@ -16,7 +16,8 @@ class Nodelet(harness.TestCase):
 
     def press(self):
         wrenches = harness.wrenches()
-        harness.JointSource().send_all(self.samples)
+        self.source = harness.JointSource()
+        self.source.send_all(self.samples)
         got = wrenches.wait(lambda all: len(all) >= 40, "40 wrenches")
         wrenches.close()
         return [(w.header.stamp, harness.wrench_bits(w)) for w in got]
@@ -32,6 +33,7 @@ class Nodelet(harness.TestCase):
             for _ in range(2):
                 with nodelet("load", TYPE, "manager", "__name:=tissue_contact"):
                     self.assertEqual(self.press(), expected)
+                harness.wait_until(lambda: not self.source.is_heard(), "the end of its connection")  # or the next one's would be taken for there
 
     def test_a_bad_scene_is_told(self):
         with nodelet("standalone", TYPE, "__name:=tissue_contact", "_scene:=/missing.yaml") as process:

@@ -1,10 +1,13 @@
 #!/usr/bin/python3
-"""What shows a running node to people: the configuration RViz is opened with, without RViz, and the plots of watch.py."""
+"""What shows a running node to people: the configuration RViz is opened with and how the view follows a tip, without RViz, and the plots of
+watch.py."""
+import itertools
+import math
 import os
-import unittest
 
 import rospy
 import yaml
+from tf2_msgs.msg import TFMessage
 
 import harness
 
@@ -47,6 +50,57 @@ class Pictures(harness.TestCase):
         self.assertTrue(0.5 < view["Distance"] / before["Distance"] < 2.0, view)
         for axis, place in zip("XYZ", (3.0, -2.0, 1.0)):
             self.assertAlmostEqual(view["Focal Point"][axis], place, delta=0.1)
+
+    @staticmethod
+    def view_frames(tf):
+        """{frame of the views: its newest place}"""
+        frames = {}
+        for message in list(tf.messages):
+            for one in message.transforms:
+                if one.child_frame_id.startswith("tissue_contact_view"):
+                    place = one.transform.translation
+                    frames[one.child_frame_id] = (place.x, place.y, place.z)
+        return frames
+
+    def test_the_view_follows_a_tip_that_leaves_it(self):
+        """With a program in the place of RViz that keeps what it is started with."""
+        rviz = self.write("rviz", '#!/bin/sh\ncp "$2" "%s"\nexec sleep 1000\n' % self.path("shown.rviz"))
+        os.chmod(rviz, 0o755)
+        opened = ["env", "PATH=%s:%s" % (self.directory, os.environ["PATH"]), harness.program("open_rviz.py")]
+        all_of_it, tip = "tissue_contact_view", "tissue_contact_view/probe"
+        with harness.node(harness.SCENE), harness.running(opened):
+            tf = harness.Listener("/tf", TFMessage, connect=False)
+            source = harness.JointSource()
+            harness.wait_until(lambda: os.path.exists(self.path("shown.rviz")), "RViz")
+
+            stamps = (rospy.Time(1000) + rospy.Duration.from_sec(0.02) * i for i in itertools.count())
+
+            def go(heights):
+                """The probe to the last of these heights, where it stays until tf, which tells no newcomer what was before, has it there."""
+                for height in heights:
+                    source.send(next(stamps), (0.0, 0.0, height))
+                place = 0.026 + heights[-1]  # base_pose, and the ball hangs on it
+
+                def is_there():
+                    source.send(next(stamps), (0.0, 0.0, heights[-1]))
+                    return abs(self.view_frames(tf).get(tip, (0, 0, -1))[2] - place) < 1e-6
+                harness.wait_until(is_there, "the tip at %g m" % place)
+                return self.view_frames(tf)
+
+            near = go([0.0005 * i for i in range(10)])
+            far = go([0.005 + 0.01 * i for i in range(40)])
+            back = go([0.395 - 0.01 * i for i in range(40)])
+            tf.close()
+        with open(self.path("shown.rviz"), encoding="utf-8") as stream:
+            views = yaml.safe_load(stream)["Visualization Manager"]["Views"]
+        self.assertEqual(views["Current"]["Target Frame"], all_of_it)
+        self.assertEqual({view["Name"]: view["Target Frame"] for view in views["Saved"]}, {"All": all_of_it, "Tip of probe": tip})
+        height = 2 * views["Current"]["Distance"] * math.tan(math.radians(22.5))  # of what is in the picture, in its middle
+        self.assertLess(math.dist(near[tip], near[all_of_it]), height / 2)
+        self.assertLess(math.dist(far[tip], far[all_of_it]), height / 2)
+        self.assertGreater(math.dist(far[tip], near[all_of_it]), height)  # it would be out of a view that stays
+        for a, b in zip(back[all_of_it], near[all_of_it]):
+            self.assertAlmostEqual(a, b, 9)
 
     def test_watch_draws_what_comes(self):
         picture = self.path("my plots.png")

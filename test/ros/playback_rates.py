@@ -1,19 +1,29 @@
 #!/usr/bin/python3
 """A bag gives the same bits at any playback rate, through the node and offline."""
-import signal
+import contextlib
 
 import rospy
+from rosgraph_msgs.msg import Clock
+from std_srvs.srv import SetBool
 
 import harness
 
 
-def state_of(process):
-    """A letter: T, it stands still."""
-    with open("/proc/%d/stat" % process.pid, encoding="ascii") as stream:
-        return stream.read().rpartition(")")[2].split()[0]
-
-
 class PlaybackRates(harness.TestCase):
+    @contextlib.contextmanager
+    def played_with_a_clock(self, bag, *options):
+        """Wrenches of a node with simulated time, while `rosbag play --clock` plays."""
+        rospy.set_param("/use_sim_time", True)
+        try:
+            with harness.node(harness.SCENE):
+                wrenches = harness.wrenches()
+                with harness.running([harness.program_of("rosbag", "play"), "__name:=player", "--quiet", "--clock",
+                                      "--wait-for-subscribers", "--queue", "100000", *options, bag, "--topics", harness.TOPIC]):
+                    yield wrenches
+                wrenches.close()
+        finally:
+            rospy.delete_param("/use_sim_time")
+
     def test_node_and_replay_agree_to_the_last_bit(self):
         samples = harness.press(100, start_s=1644257420)
         bag = self.bag_of("press.bag", samples)
@@ -39,23 +49,32 @@ class PlaybackRates(harness.TestCase):
         """Every round has the bits of the first: the loop resets the scene, and a clock that stands still changes nothing."""
         samples = harness.press(100)
         bag = self.bag_of("press.bag", samples)
-        rospy.set_param("/use_sim_time", True)
-        self.addCleanup(rospy.delete_param, "/use_sim_time")
-        with harness.node(harness.SCENE):
-            wrenches = harness.wrenches()
-            with harness.running([harness.program_of("rosbag", "play"), "--quiet", "--clock", "--loop", "--wait-for-subscribers", "--rate",
-                                  "5", "--queue", "100000", bag, "--topics", harness.TOPIC]) as player:
-                wrenches.wait(lambda all: len(all) >= 150, "a round and a half")
-                player.send_signal(signal.SIGSTOP)
-                harness.wait_until(lambda: state_of(player) == "T", "a player that stands still")
-                player.send_signal(signal.SIGCONT)
-                got = wrenches.wait(lambda all: len(all) >= 300, "three rounds")
-            wrenches.close()
+        with self.played_with_a_clock(bag, "--loop", "--rate", "2") as wrenches:
+            wrenches.wait(lambda all: len(all) >= 130, "a round and a third")
+            pause = rospy.ServiceProxy("/player/pause_playback", SetBool)
+            self.assertTrue(pause(True).success)
+            clock = harness.Listener("/clock", Clock)  # which is told on, and stands still
+            clock.wait(lambda all: len(all) > 20 and len({one.clock for one in all[-20:]}) == 1, "a clock that stands still")
+            clock.close()
+            seen = len(wrenches.messages)
+            self.assertLess(seen, 300)
+            self.assertTrue(pause(False).success)
+            got = wrenches.wait(lambda all: len(all) >= 300, "three rounds")
         rounds = [[(w.header.stamp, harness.wrench_bits(w)) for w in got[i:i + 100]] for i in (0, 100, 200)]
         self.assertEqual([stamp for stamp, _ in rounds[0]], [stamp for stamp, _ in samples])
         self.assertTrue(any(any(bits) for _, bits in rounds[0]))
         self.assertEqual(rounds[1], rounds[0])
         self.assertEqual(rounds[2], rounds[0])
+
+    def test_simulated_time_at_any_rate(self):
+        samples = harness.press(100)
+        bag = self.bag_of("press.bag", samples)
+        self.replayed(harness.SCENE, bag, self.path("replay.csv"))
+        expected = [(stamp, bits) for stamp, _, bits in harness.read_csv(self.path("replay.csv"))]
+        for rate in ["0.2", "10"]:
+            with self.played_with_a_clock(bag, "--rate", rate) as wrenches:
+                got = wrenches.wait(lambda all: len(all) >= 100, "every wrench")
+            self.assertEqual([(harness.stamp_text(w.header.stamp), harness.wrench_bits(w)) for w in got], expected, rate)
 
     def test_a_mesh_that_follows_the_tool_gives_the_same_bytes(self):
         samples = harness.press_and_drag(30)

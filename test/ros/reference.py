@@ -8,32 +8,32 @@ import re
 import socket
 import subprocess
 import threading
+import xml.etree.ElementTree
 import xmlrpc.client
 
 import rosgraph
 import rosgraph.network
 import rospy
 import yaml
-from dynamic_reconfigure.msg import Config, DoubleParameter
+from dynamic_reconfigure.msg import Config, ConfigDescription, DoubleParameter
 from dynamic_reconfigure.srv import Reconfigure
 
 import harness
 
-DOCUMENT = os.path.join(harness.PACKAGE, "doc", "reference.md")
 RATES = "publish: {mesh_rate_hz: 20, contacts_rate_hz: 50, status_rate_hz: 10, markers_rate_hz: 10, tf: true}"
 NAMES = {"~": harness.NODE + "/", "<instrument>": "probe", "<tissue>": "block", "instruments[].joint_state_topics[]": harness.TOPIC}
 UNITS = ["m/s", "Pa", "rad", "N", "m", "s", "W"]
-SUFFIXES = [("_m_per_s", "m/s"), ("_nm", "N m"), ("_pa", "Pa"), ("_rad", "rad"), ("_n", "N"), ("_w", "W"), ("_m", "m"), ("_s", "s")]
+SUFFIXES = [("_m_per_s", "m/s"), ("_per_s", "1/s"), ("_hz", "Hz"), ("_nm", "N m"), ("_pa", "Pa"), ("_rad", "rad"), ("_n", "N"), ("_w", "W"), ("_m", "m"), ("_s", "s")]
 
 
 def cells(line):
     return [cell.strip() for cell in line.strip().strip("|").split("|")]
 
 
-def read_tables():
+def read_tables(document):
     """{heading: [{column: cell}]}; what is wholly in backticks comes without them."""
     tables, heading, columns = collections.OrderedDict(), None, None
-    with open(DOCUMENT, encoding="utf-8") as stream:
+    with open(os.path.join(harness.PACKAGE, "doc", document), encoding="utf-8") as stream:
         for line in stream:
             if line.startswith("#"):
                 heading, columns = line.strip("# \n`"), None
@@ -48,7 +48,8 @@ def read_tables():
     return tables
 
 
-TABLES = read_tables()
+TABLES = read_tables("reference.md")
+HAPTICS = read_tables("haptics.md")["Feeling the force"]
 
 
 def full_name(name):
@@ -98,6 +99,11 @@ class Headers:
 class Reference(harness.TestCase):
     maxDiff = None
 
+    def setUp(self):
+        super().setUp()
+        if rospy.has_param(harness.NODE):  # of the test before
+            rospy.delete_param(harness.NODE)
+
     # ------------------------------------------------------------------ topics and services
 
     def advertised(self, kind):
@@ -145,9 +151,9 @@ class Reference(harness.TestCase):
 
     # ------------------------------------------------------------------ parameters
 
-    def refusal(self, *arguments):
+    def refusal(self, *arguments, program="tissue_contact_node"):
         """The fatal message of a start that must fail."""
-        code, output = harness.run([harness.program("tissue_contact_node"), "__name:=tissue_contact", *arguments])
+        code, output = harness.run([harness.program(program), "__name:=tissue_contact", *arguments])
         self.assertEqual(code, 1, output)
         if rospy.has_param(harness.NODE):
             rospy.delete_param(harness.NODE)
@@ -167,16 +173,67 @@ class Reference(harness.TestCase):
             if row["type"] not in ("number", "word", "switch"):
                 continue
             said = self.refusal("_scene:=" + harness.SCENE, "_%s:=bad_value" % row["parameter"])
-            allowed, default = re.search(r'bad_value"; it must be (.*?); default ([\w.+-]+)', said).groups()
+            allowed, default = self.told(said)
             if row["type"] == "number":
-                self.assertEqual(read_numbers(row["allowed"]), read_numbers(allowed)[:2], said)
-                self.assertEqual(*[text if text == "auto" else float(text) for text in (row["default"], default)], said)
-                self.assertEqual(row["unit"], re.search(r"<=? \S+ ?(.*)", allowed).group(1), said)
+                self.assert_number(row, said)
             else:
                 self.assertEqual(row["allowed"].replace("`", ""), allowed.replace(" or ", ", "), said)
                 self.assertEqual(row["default"], default, said)
             checked += 1
         self.assertGreaterEqual(checked, 4)
+
+    @staticmethod
+    def told(refusal):
+        """What is allowed, and the default."""
+        return re.search(r'bad_value"; it must be (.*?); default ([\w.+-]+)', refusal).groups()
+
+    def assert_number(self, row, refusal):
+        """A row that has what the refusal of a bad value tells."""
+        allowed, default = self.told(refusal)
+        self.assertEqual(read_numbers(row["allowed"]), read_numbers(allowed)[:2], refusal)
+        self.assertEqual("> " in row["allowed"], "> " in allowed, refusal)
+        self.assertEqual(*[text if text == "auto" else float(text) for text in (row["default"], default)], refusal)
+        self.assertEqual(row["unit"], re.search(r"<=? \S+ ?(.*)", allowed).group(1), refusal)
+
+    def test_parameters_of_haptics(self):
+        """Names, defaults and ranges; and the same defaults of the launch file's arguments and in --help."""
+        name = "tissue_contact_haptics"
+        known = re.search(r"it reads (.*)\. Correct", self.refusal("_no_such_parameter:=1", program=name)).group(1)
+        self.assertEqual(sorted(known.split(", ")), sorted(row["parameter"] for row in HAPTICS))
+        launch = xml.etree.ElementTree.parse(os.path.join(harness.PACKAGE, "launch", "haptics.launch"))
+        arguments = {argument.get("name"): argument.get("default") for argument in launch.iter("arg") if argument.get("default") is not None}
+        self.assertEqual(set(arguments), {row["parameter"] for row in HAPTICS} | {"name"})
+        lines = harness.run([harness.program(name), "--help"])[1].splitlines()
+        helped = {word: re.search(r"default ([\d.]+)$", line) for line in lines for word in re.findall(r"~(\w+)", line)}
+        self.assertEqual(set(helped), {row["parameter"] for row in HAPTICS})
+        for row in HAPTICS:
+            self.assertEqual(arguments[row["parameter"]], row["default"], row)
+            if row["type"] == "number":
+                self.assert_number(row, self.refusal("_%s:=bad_value" % row["parameter"], program=name))
+                self.assertEqual(helped[row["parameter"]].group(1), row["default"], row)
+
+    def test_numbers_that_change(self):
+        """Every kind there is, in a scene that has them all: names, types, ranges and units of its descriptions."""
+        where = "where: [{sphere: {center_m: [0, 0, 0.02], radius_m: 0.02}}]"
+        scene = self.changed_scene({
+            "    damping: {stiffness_s: 0.003}\n": "    damping: {stiffness_s: 0.003}\n    regions:\n      - {name: hard, %s, material: "
+            "{youngs_modulus_pa: 8000, poissons_ratio: 0.3}, damping: {stiffness_s: 0.01}}\n" % where,
+            "static: 0.6, kinetic: 0.4}\n": "static: 0.6, kinetic: 0.4}\n  - {instrument: probe, tissue: block, region: hard, law: "
+            "orthotropic, axis: {link_direction: [1, 0, 0]}, static: [0.6, 0.5], kinetic: [0.4, 0.3]}\n"})
+        with harness.node(scene):
+            described = harness.Listener(harness.NODE + "/parameter_descriptions", ConfigDescription).wait(len, "descriptions")[0]
+        names = {"block.hard": "<other>", "friction/probe/": "friction/<one>/", "/block/": "/<tissue>/", "regions/hard": "regions/<region>"}
+        found = set()
+        for one in described.groups[0].parameters:
+            name = one.name
+            for given, general in names.items():
+                name = name.replace(given, general)
+            name = re.sub("^(friction/<one>/)<tissue>", r"\1<other>", re.sub("/[0-9]$", "/<n>", name))
+            low, high = [next(number.value for number in limits.doubles + limits.ints if number.name == one.name)
+                         for limits in (described.min, described.max)]
+            found.add((name, one.type, self.unit_of(one.name), low, high))
+        self.assertEqual(found, {(row["parameter"], row["type"], row["unit"], *read_numbers(row["allowed"]))
+                                 for row in TABLES["Numbers that change while it runs"]})
 
     # ------------------------------------------------------------------ messages, tables, programs
 

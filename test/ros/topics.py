@@ -160,7 +160,7 @@ class Topics(unittest.TestCase):
         for message in self.listeners["markers"].messages:
             self.assertEqual({m.header.frame_id for m in message.markers}, {"world"})
         pressed = self.listeners["markers"].messages[11].markers
-        self.assertEqual({m.ns for m in pressed}, {"block", "probe", "contact_forces", "force_texts", "legend"})
+        self.assertEqual({m.ns for m in pressed}, {"block", "probe", "probe/tip", "contact_forces", "force_texts", "legend"})
         surface = [m for m in pressed if m.ns == "block" and m.id == 0][0]
         self.assertEqual(surface.type, Marker.TRIANGLE_LIST)
         self.assertEqual(len(surface.points), 3 * 2 * (2 * 36 + 4 * 12))

@@ -82,7 +82,7 @@ class TwoPsm(harness.TestCase):
         half = ROLL[arm] / 2
         to_base = [-math.sin(half), 0.0, 0.0, math.cos(half)]
         for row, wrench, body, spatial in list(zip(rows, messages["wrench"], messages["body/measured_cf"], messages["spatial/measured_cf"]))[::50]:
-            self.assertEqual((body.header.frame_id, spatial.header.frame_id), ("tip", "psm_base"))
+            self.assertEqual((body.header.frame_id, spatial.header.frame_id), (arm + "/tip", arm + "/psm_base"))
             self.assertEqual([body.header.stamp, spatial.header.stamp], [wrench.header.stamp] * 2)
             exerted = [-number for number in harness.wrench_of(wrench)]
             self.assertEqual(harness.wrench_of(body), exerted)

@@ -2,6 +2,7 @@
 """Two topics, of two instruments or of an arm and its jaw: moments in the order of their stamps, whichever way they arrive;
 the bits of the replay."""
 import rospy
+from tf2_msgs.msg import TFMessage
 
 import harness
 
@@ -115,11 +116,24 @@ class TwoTopics(harness.TestCase):
             self.assertEqual([(harness.stamp_text(w.header.stamp), harness.wrench_bits(w)) for w in wrenches[:100]],
                              expected, name)
 
-    def test_tf_of_two_links_with_one_name_is_refused(self):
-        with harness.node(self.changed_scene({"tf: false": "tf: true"}, source=self.scene, name="tf.yaml")) as node:
-            harness.wait_until(lambda: node.poll() is not None, "the end of the node")
-            self.assertEqual(node.returncode, 1)
-            self.assertIn("publish.tf", harness.output_of(node))
+    def test_frames_of_links_with_one_name_have_the_instruments(self):
+        with harness.node(self.changed_scene({"tf: false": "tf: true"}, source=self.scene, name="tf.yaml")):
+            tf = harness.Listener("/tf", TFMessage)
+            listeners = {name: harness.wrenches(name) for name in ["probe", "other"]}
+            sources = [harness.JointSource(topic) for topic in (harness.TOPIC, "/other/joint_states")]
+            for sample in self.samples[:3]:
+                for source in sources:
+                    source.send(*sample)
+            for name, listener in listeners.items():
+                self.assertEqual(listener.wait(len, "a wrench")[0].header.frame_id, name + "/tip")
+            frames = tf.wait(len, "transforms")[0].transforms
+        parents = {one.child_frame_id: one.header.frame_id for one in frames}
+        self.assertEqual(len(parents), len(frames))
+        for name in listeners:
+            way = [name + "/tip"]
+            while way[-1] in parents:
+                way.append(parents[way[-1]])
+            self.assertEqual((way[-2], way[-1]), (name + "/base", "world"))
 
 
 if __name__ == "__main__":

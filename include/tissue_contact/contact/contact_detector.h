@@ -92,9 +92,8 @@ class ContactDetector {
   void findNear(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL,
                 const std::vector<double>& within_m, std::vector<NearPlace>& near);
 
-  /// Goes on with another surface of a tissue, as do all that share it.
-  /// @param rest positions at rest, m, world frame.
-  void setSurface(int tissue, TissueSurface surface, const NodalVectors& rest);
+  /// Goes on with another surface of a tissue, as do all that share it; it is exchanged for the one before.
+  void swapSurface(MovingSurface& surface);
 
  private:
   struct Implementation;

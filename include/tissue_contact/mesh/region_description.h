@@ -34,7 +34,7 @@ struct CellDataRegion {  ///< the tetrahedra of a VTK mesh whose value in an arr
 /// Either of the two once the mesh is read: points within rounding of these, m in T.
 struct MemberRegion {
   std::string label;                                   ///< for messages
-  std::shared_ptr<const std::vector<Vector3>> places;  ///< by x, then y, then z
+  std::shared_ptr<const std::vector<Vector3>> places;  ///< ascending by placeOrder()
 };
 using Region = std::variant<BoxRegion, PlaneRegion, SphereRegion, GroupRegion, CellDataRegion, MemberRegion>;
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tissue_contact/core/content_hash.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 #include "tissue_contact/simulation/scene.h"
 #include "tissue_contact/simulation/simulator.h"
@@ -49,8 +50,8 @@ class LockStep {
   /// no tissue bears, gaps. Empty: all is well.
   const std::vector<std::string>& complaints() const { return complaints_; }
 
-  /// Of all wrenches so far with their stamps (FNV-1a over 64-bit words); the one of tissue_contact_testing.py.
-  std::uint64_t digest() const { return digest_; }
+  /// Of all wrenches so far with their stamps (ContentHash); the one of tissue_contact_testing.py.
+  std::uint64_t digest() const { return digest_.value(); }
 
   const Simulator& simulator() const { return simulator_; }
 
@@ -66,7 +67,7 @@ class LockStep {
   std::int64_t steps_ = 0;
   std::vector<double> peaks_;  ///< per instrument, N
   std::vector<std::string> complaints_;
-  std::uint64_t digest_;
+  ContentHash digest_;
 };
 
 }  // namespace tissue_contact

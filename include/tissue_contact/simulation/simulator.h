@@ -53,6 +53,14 @@ struct CoarseCells {
   double factor = 1.0;  ///< the newest refined cells are longer by it than asked for
 };
 
+/// How the mesh of a tissue has moved since it was built.
+struct MeshMoves {
+  int prepared = 0;  ///< beside the steps
+  int at_once = 0;   ///< within a step, which took the longer: something touched where nobody could know of it in time
+  /// How often steps waited for a mesh that was not ready: for figures, since it depends on the machine.
+  int waited = 0;
+};
+
 /// How the last step went.
 struct StepReport {
   int substeps = 0;          ///< implicit steps taken for the last advance
@@ -102,6 +110,7 @@ class Simulator {
   /// How often the mesh of a tissue has changed since the start: nodes, tetrahedra and surface of tissues()[tissue] are those of
   /// this revision. Never decreases, not by reset() either. The nodes of the unrefined mesh are the first of every other.
   int meshRevision(int tissue) const;
+  MeshMoves meshMoves(int tissue) const;
 
   /// Which models were chosen for the scene and why, a line for each choice; for a log.
   std::vector<std::string> advice() const;

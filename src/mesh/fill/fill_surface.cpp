@@ -199,6 +199,10 @@ TetMesh fillSurface(const MeshDescription& description, const MeshPreparation& p
     return mesh;
   }
   Filled filled = fill(description, version);
+  if (keyOf(description, version) != key) {
+    throw std::invalid_argument(sourceOf(description) +
+                                " was written to while it was filled; start again once that is done");
+  }
   tell(description, filled.notes, preparation);
   const std::string trouble = cache.write(key, {withNotes(std::move(filled.made.file), filled.notes)});
   if (!trouble.empty()) {

@@ -29,7 +29,7 @@ struct ProgramEnd {
 ProgramEnd runProgram(const std::vector<std::string>& arguments, const std::string& folder,
                       const ProgramLimits& limits);
 
-/// A folder that exists as long as this object, which only its owner may enter.
+/// A folder that exists as long as this object and this process, however that ends, which only its owner may enter.
 class ScratchFolder {
  public:
   /// @throws std::system_error when none can be made.
@@ -43,6 +43,7 @@ class ScratchFolder {
 
  private:
   std::string path_;
+  int lives_ = -1;  ///< end of a pipe: closed, the folder goes
 };
 
 }  // namespace tissue_contact

@@ -54,8 +54,7 @@ MovingSurface::MovingSurface(int tissue, TissueSurface surface, const NodalVecto
       normals_(triangles_.size()) {
   findFans();
   measureAtRest();
-  place(rest);
-  fit();
+  fit(rest);
 }
 
 void MovingSurface::findFans() {
@@ -122,6 +121,11 @@ void MovingSurface::place(const NodalVectors& positions) {
   ++placed_;
   box_.setEmpty();
   for (const int node : nodes_) box_.extend(x(node));
+}
+
+void MovingSurface::fit(const NodalVectors& positions) {
+  place(positions);
+  fit();
 }
 
 void MovingSurface::fit() {

@@ -60,6 +60,8 @@ class MovingSurface {
   /// What follows depends on the last positions alone.
   /// @throws std::invalid_argument for another number of nodes.
   void place(const NodalVectors& positions);
+  /// The same, and brings all up to date at once that overlapping() else would in time.
+  void fit(const NodalVectors& positions);
   const NodalVectors& positions() const { return x_; }
   Vector3 x(int node) const { return x_.col(node); }
   const Eigen::AlignedBox3d& box() const { return box_; }  ///< around the nodes that triangles use

@@ -1,12 +1,13 @@
 #include "ros/place/registration.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
+
+#include "core/rotation_by_svd.h"
 
 namespace tissue_contact {
 namespace {
@@ -27,14 +28,6 @@ Pose between(const StampedPose& before, const StampedPose& after, std::int64_t s
   return X;
 }
 
-/// The rotation nearest to the sum of rotations.
-Matrix3 meanRotation(const Matrix3& sum) {
-  const Eigen::JacobiSVD<Matrix3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vector3 signs = Vector3::Ones();
-  signs.z() = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-}
-
 double angleOf(const Matrix3& R) { return Eigen::AngleAxisd(R).angle(); }
 
 Vector3 spreadOf(const NodalVectors& points) {
@@ -51,7 +44,7 @@ void compareTurns(const std::vector<PosePair>& pairs, Registration& registration
   };
   Matrix3 sum = Matrix3::Zero();
   for (const PosePair& pair : pairs) sum += turn(pair);
-  const Matrix3 mean = meanRotation(sum);
+  const Matrix3 mean = rotationBySvd(sum);
   registration.tip_turn_rad = angleOf(mean);
   double squares = 0.0;
   for (const PosePair& pair : pairs) squares += std::pow(angleOf(mean.transpose() * turn(pair)), 2);

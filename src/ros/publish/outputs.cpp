@@ -61,8 +61,9 @@ Outputs::Outputs(const ros::NodeHandle& private_node, const Simulator& simulator
       complete_(std::move(complete)),
       bulky_(simulator, options, markerStyle(node_)),
       taker_(simulator, player, options, publishedMesh(node_)),
-      wrenches_(wrenchMessages(simulator)) {
-  checkNames(simulator, options.tf);
+      frames_(frameNames(simulator)),
+      wrenches_(wrenchMessages(simulator, frames_)) {
+  checkNames(simulator);
   checkColor(simulator.scene(), markerStyle(node_), publishedMesh(node_));
 }
 
@@ -87,7 +88,7 @@ void Outputs::publishWrenches(const PlayedSample& played) {
     fillWrench(simulator_.wrench(i), played.stamp_ns, wrenches_[index]);
     wrench_publishers_[index].publish(wrenches_[index]);
     if (!options_.crtk) continue;
-    fillCrtk(simulator_, i, played.stamp_ns, crtk_);
+    fillCrtk(simulator_, frames_, i, played.stamp_ns, crtk_);
     body_publishers_[index].publish(crtk_.body);
     spatial_publishers_[index].publish(crtk_.spatial);
   }
@@ -98,7 +99,7 @@ void Outputs::publishState(const PlayedSample& played, int substeps, double step
   last_stamp_ns_ = played.stamp_ns;
   publishSnapshot(played, substeps, step_time_s);
   if (!broadcaster_ || !is_new_stamp) return;  // tf2 warns about repeated stamps
-  fillTransforms(simulator_, played.stamp_ns, transforms_);
+  fillTransforms(simulator_, frames_, played.stamp_ns, transforms_);
   broadcaster_->sendTransform(transforms_.transforms);
 }
 

@@ -34,7 +34,7 @@ class Outputs {
  public:
   /// Refuses the scene before anything is advertised. Simulator and player must outlive this.
   /// @param complete fills in what only its caller knows of a Status.
-  /// @throws std::invalid_argument: a name that cannot be part of a topic, tf of two links with one name, a bad private
+  /// @throws std::invalid_argument: a name that cannot be part of a topic, two links of one frame, a bad private
   ///   parameter ~publish_mesh or below ~markers.
   Outputs(const ros::NodeHandle& private_node, const Simulator& simulator, const JointStatePlayer& player,
           const PublishOptions& options, std::function<void(Status&)> complete);
@@ -79,6 +79,7 @@ class Outputs {
   std::vector<ros::Publisher> spatial_publishers_;              ///< likewise
   std::unique_ptr<tf2_ros::TransformBroadcaster> broadcaster_;  ///< null: not asked for
 
+  const FrameNames frames_;
   std::vector<geometry_msgs::WrenchStamped> wrenches_;
   CrtkMessages crtk_;
   tf2_msgs::TFMessage transforms_;

@@ -20,6 +20,7 @@ using visualization_msgs::Marker;
 
 const char* const kForceNamespace = "contact_forces";
 const char* const kForceTexts = "force_texts";
+const char* const kTipOf = "/tip";  // behind an instrument's name, which has no slash
 
 geometry_msgs::Vector3 scale(double x, double y, double z) { return toVector(Vector3(x, y, z)); }
 
@@ -138,6 +139,7 @@ SceneMarkers::SceneMarkers(const Simulator& simulator, const MarkerStyle& style,
   addTissues();
   for (std::size_t i = 0; i < simulator.instruments().size(); ++i) addInstrument(static_cast<int>(i), is_shown);
   addForceTexts();
+  addTips();
   legend_.emplace(simulator, frame_, style.color, message_.markers);
   first_arrow_ = message_.markers.size();
 }
@@ -194,6 +196,17 @@ void SceneMarkers::addForceTexts() {
   for (std::size_t i = 0; i < simulator_.instruments().size(); ++i) {
     message_.markers.push_back(newMarker(simulator_, kForceTexts, static_cast<int>(i), Marker::TEXT_VIEW_FACING));
     message_.markers.back().scale.z = 1.2 * frame_.letter();
+  }
+}
+
+void SceneMarkers::addTips() {
+  first_tip_ = message_.markers.size();
+  for (const Instrument& instrument : simulator_.instruments()) {
+    Marker& marker =
+        message_.markers.emplace_back(newMarker(simulator_, instrument.name() + kTipOf, 0, Marker::SPHERE));
+    const double diameter_m = 0.3 * frame_.letter();
+    marker.scale = scale(diameter_m, diameter_m, diameter_m);
+    marker.color = wordColor();
   }
 }
 
@@ -261,7 +274,7 @@ void SceneMarkers::updateTissue(std::size_t tissue, const MeshRevision& mesh, co
   }
 }
 
-/// With the name where there are several, in the colour of what bears most of it.
+/// And the tips they are of. With the name where there are several, in the colour of what bears most of it.
 void SceneMarkers::updateForceTexts(const SceneSnapshot& snapshot) {
   const std::vector<Instrument>& instruments = simulator_.instruments();
   for (std::size_t i = 0; i < instruments.size(); ++i) {
@@ -276,9 +289,9 @@ void SceneMarkers::updateForceTexts(const SceneSnapshot& snapshot) {
     Marker& marker = message_.markers[first_text_ + i];
     marker.text = (instruments.size() > 1 ? instruments[i].name() + " " : "") + forceText(force_n.norm());
     marker.color = slides_n > held_n ? kineticColor() : held_n > 0.0 ? staticColor() : wordColor();
-    const Pose& X_WT = snapshot.link_poses[i][static_cast<std::size_t>(instruments[i].tipLink())];
-    marker.pose.position =
-        toPoint(textPlace(X_WT.translation(), half_widths_[i]) + 1.2 * frame_.halfWidth(marker.text));
+    const Vector3 tip = snapshot.link_poses[i][static_cast<std::size_t>(instruments[i].tipLink())].translation();
+    marker.pose.position = toPoint(textPlace(tip, half_widths_[i]) + 1.2 * frame_.halfWidth(marker.text));
+    message_.markers[first_tip_ + i].pose.position = toPoint(tip);
   }
 }
 

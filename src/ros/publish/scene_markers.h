@@ -19,7 +19,7 @@ namespace tissue_contact {
 
 /// Keeps one MarkerArray and updates it in place. Everything is drawn in the world frame, so RViz needs no tf.
 /// Namespaces: `<tissue>` (triangles and their edges), `<instrument>` (its touching shapes, and its other links as the
-/// URDF draws them), `force_texts` (the force of the tissues on each instrument, beside its tip), `legend` (MarkerLegend),
+/// URDF draws them), `force_texts` (the force of the tissues on each instrument, beside its tip), `<instrument>/tip` (origin of its tip link, where the wrench is taken), `legend` (MarkerLegend),
 /// `contact_forces` (an arrow per touching contact: the force on the instrument, from the contact point; held contacts blue, sliding
 /// ones red). Scales are FullScale's: they depend on what this object has drawn so far, and on nothing else.
 class SceneMarkers {
@@ -44,6 +44,7 @@ class SceneMarkers {
   void addInstrument(int instrument, bool is_shown);
   void addShape(int instrument, int link, const ShapeDescription& shape, const TriangleMesh* mesh, bool touches);
   void addForceTexts();
+  void addTips();
   void layOut(std::size_t tissue, const MeshRevision& mesh);
   void updateTissue(std::size_t tissue, const MeshRevision& mesh, const NodalVectors& x);
   void findColors(std::size_t tissue, const MeshRevision& mesh, const SceneSnapshot& snapshot);
@@ -68,6 +69,7 @@ class SceneMarkers {
   std::vector<double> half_widths_;                     ///< per instrument: of the widest shape that touches, m
   std::vector<ShapeMarker> shapes_;
   std::size_t first_text_ = 0;  ///< one per instrument
+  std::size_t first_tip_ = 0;   ///< likewise
   std::optional<MarkerLegend> legend_;
   std::size_t first_arrow_ = 0;
 };

@@ -39,9 +39,10 @@ BagRecorder::BagRecorder(const std::string& file, const Simulator& simulator, co
       bag_(std::make_unique<rosbag::Bag>()),
       taker_(simulator, player, options, PublishedMesh::kRefined),
       messages_(simulator, MarkerStyle(), options.markers_rate_hz > 0.0, sink()),
-      wrenches_(wrenchMessages(simulator)),
+      frames_(frameNames(simulator)),
+      wrenches_(wrenchMessages(simulator, frames_)),
       latched_(latchedTopologies()) {
-  checkNames(simulator, options.tf);
+  checkNames(simulator);
   guarded([this] { bag_->open(file_.path(), rosbag::bagmode::Write); });
 }
 
@@ -97,7 +98,7 @@ void BagRecorder::record(const PlayedSample& played, int steps, ros::Time record
     const std::string& name = simulator_.instruments()[static_cast<std::size_t>(i)].name();
     write(topicOf(name + "/wrench"), wrench);
     if (!options_.crtk) continue;
-    fillCrtk(simulator_, i, played.stamp_ns, crtk_);
+    fillCrtk(simulator_, frames_, i, played.stamp_ns, crtk_);
     write(topicOf(name + "/body/measured_cf"), crtk_.body);
     write(topicOf(name + "/spatial/measured_cf"), crtk_.spatial);
   }
@@ -112,7 +113,7 @@ void BagRecorder::record(const PlayedSample& played, int steps, ros::Time record
     messages_.tell(snapshot_);
   }
   if (options_.tf && played.stamp_ns != last_stamp_ns_) {
-    fillTransforms(simulator_, played.stamp_ns, transforms_);
+    fillTransforms(simulator_, frames_, played.stamp_ns, transforms_);
     write("/tf", transforms_);
   }
   last_stamp_ns_ = played.stamp_ns;

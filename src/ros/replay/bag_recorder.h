@@ -77,6 +77,7 @@ class BagRecorder {
   SnapshotTaker taker_;
   SnapshotMessages messages_;
   SceneSnapshot snapshot_;
+  const FrameNames frames_;
   std::vector<geometry_msgs::WrenchStamped> wrenches_;
   CrtkMessages crtk_;
   tf2_msgs::TFMessage transforms_;

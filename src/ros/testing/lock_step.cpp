@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -17,19 +16,6 @@ namespace {
 
 constexpr Range kRate{0.1, 10000.0, "Hz"};
 constexpr std::int64_t kStart_ns = 1000000000;  // 0 is no stamp
-
-constexpr std::uint64_t kFnvOffset = 14695981039346656037U;
-constexpr std::uint64_t kFnvPrime = 1099511628211U;
-
-void mix(std::uint64_t word, std::uint64_t& digest) { digest = (digest ^ word) * kFnvPrime; }
-
-void mix(const Vector3& vector, std::uint64_t& digest) {
-  for (const double value : vector) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    mix(bits, digest);
-  }
-}
 
 SceneEnvironment plainEnvironment() {
   SceneEnvironment environment;
@@ -47,8 +33,7 @@ LockStep::LockStep(const Scene& scene, const SceneEnvironment& environment, doub
     : simulator_(scene, environment),
       player_(simulator_),
       rate_hz_(kRate.require("the rate of the joint states", rate_hz)),
-      peaks_(scene.instruments.size(), 0.0),
-      digest_(kFnvOffset) {}
+      peaks_(scene.instruments.size(), 0.0) {}
 
 void LockStep::step(const std::map<std::string, JointPositions>& joint_states) {
   const std::int64_t stamp_ns = kStart_ns + std::llround(static_cast<double>(steps_) * 1e9 / rate_hz_);
@@ -74,9 +59,8 @@ void LockStep::note(const PlayedSample& played) {
   }
   for (const int instrument : played.instruments) {
     const Wrench felt = simulator_.wrench(instrument);
-    mix(static_cast<std::uint64_t>(played.stamp_ns), digest_);
-    mix(felt.force, digest_);
-    mix(felt.torque, digest_);
+    digest_.add(&played.stamp_ns, sizeof played.stamp_ns);
+    for (const Vector3& vector : {felt.force, felt.torque}) digest_.add(vector.data(), 3 * sizeof(double));
     double& peak = peaks_[static_cast<std::size_t>(instrument)];
     peak = std::max(peak, felt.force.norm());
   }

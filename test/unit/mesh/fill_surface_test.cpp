@@ -130,6 +130,23 @@ class FillSurface : public testing::Test {
   std::string said_;
 };
 
+/// Where programs are looked for, while it lives.
+class PathOfPrograms {
+ public:
+  explicit PathOfPrograms(const std::string& path) : before_(now()) { setenv("PATH", path.c_str(), 1); }
+  ~PathOfPrograms() { setenv("PATH", before_.c_str(), 1); }
+  PathOfPrograms(const PathOfPrograms&) = delete;
+  PathOfPrograms& operator=(const PathOfPrograms&) = delete;
+
+  static std::string now() {
+    const char* path = std::getenv("PATH");
+    return path == nullptr ? "" : path;
+  }
+
+ private:
+  const std::string before_;
+};
+
 double volumeOf(const TetMesh& mesh) { return qualityOf(mesh).volume; }
 const double kBall = 4.0 / 3.0 * kPi * std::pow(0.02, 3);  // of 20 mm radius, m^3
 
@@ -268,12 +285,25 @@ TEST_F(FillSurface, LiverOfThousandsOfTriangles) {
 }
 
 TEST_F(FillSurface, WithoutGmshSaysHowToGetIt) {
-  const char* before = std::getenv("PATH");
-  const std::string path = before == nullptr ? "" : before;
-  setenv("PATH", directory_.path().c_str(), 1);
+  const PathOfPrograms path(directory_.path().string());
   const std::string message = refusalOf(ball(20.0));
-  setenv("PATH", path.c_str(), 1);
   expectContains(message, {"gmsh", "not installed", "apt-get install gmsh"});
+}
+
+// A program that exports once more while gmsh runs: neither version may be kept as the other.
+TEST_F(FillSurface, AFileThatIsWrittenToMeanwhileIsRefusedAndNotKept) {
+  const MeshDescription description = described("organ.obj", objText(ball(20.0)));
+  const std::string path = PathOfPrograms::now();
+  const std::string program =
+      directory_.write("gmsh", "#!/bin/sh\n[ \"$1\" = --version ] || echo 'v 9 9 9' >> '" + description.file +
+                                   "'\nexport PATH='" + path + "'\nexec gmsh \"$@\"\n");
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  {
+    const PathOfPrograms with_ours(directory_.path().string() + ":" + path);
+    expectContains(refusal([&] { fill(description, true); }), {"organ.obj", "written to while it was filled"});
+  }
+  EXPECT_FALSE(std::filesystem::exists(directory_.path("cache/meshes")));
+  EXPECT_NO_THROW(fill(description, true));
 }
 
 TEST(RunProgram, EndsWhatTakesTooLongAndTellsWhatIsMissing) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <variant>
 #include <vector>
@@ -103,6 +105,23 @@ TEST(MeshLabels, AreNotLookedAtUnlessAskedFor) {
   EXPECT_NO_THROW(loadBytes(damaged));
   expectRefusal([&] { load(damaged); }, {":6:", "in quotes"});
   EXPECT_NO_THROW(loadBytes(std::string(kCellData) + "rubbish"));
+}
+
+// Or each of a million elements would be compared with the ten thousand places of its plane.
+TEST(MeshLabels, PlacesOfAStructuredMeshHardlyEverComeSideBySide) {
+  constexpr int kCells = 64;
+  std::vector<double> orders;
+  for (int i = 0; i < kCells; ++i) {
+    for (int j = 0; j < kCells; ++j) {
+      for (int k = 0; k < kCells; ++k) orders.push_back(placeOrder(Vector3(i, j, k) * 1e-3));
+    }
+  }
+  std::sort(orders.begin(), orders.end());
+  constexpr double kTwiceRounding = 2e-9 * 0.11;
+  for (std::size_t first = 0, last = 0; last < orders.size(); ++last) {
+    while (orders[last] - orders[first] > kTwiceRounding) ++first;
+    ASSERT_LT(last - first, 4U) << orders[last];
+  }
 }
 
 TEST(MeshLabels, DamagedOnesAreRefused) {

@@ -1,0 +1,45 @@
+/// @file
+/// Room `core`, private: one thread beside the caller's that does jobs in the order they were given. What they leave behind may be read
+/// once wait() has returned: when it was ready is nobody's business, so that results do not depend on how fast it was.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace tissue_contact {
+
+class BackgroundWorker {
+ public:
+  /// Of a job: how many had been given with it.
+  using Ticket = std::uint64_t;
+
+  BackgroundWorker();
+  /// Ends the thread once the job that it is at is done; those that wait are dropped.
+  ~BackgroundWorker();
+  BackgroundWorker(const BackgroundWorker&) = delete;
+  BackgroundWorker& operator=(const BackgroundWorker&) = delete;
+
+  /// @param job must not throw, and what it refers to must stay until it is done.
+  Ticket start(std::function<void()> job);
+
+  /// Returns once that job, and so all before it, are done. @return whether they were not yet: for figures alone.
+  bool wait(Ticket job);
+
+ private:
+  void work();
+
+  std::mutex mutex_;
+  std::condition_variable given_;
+  std::condition_variable done_;
+  std::deque<std::function<void()>> jobs_;
+  Ticket jobs_given_ = 0;
+  Ticket jobs_done_ = 0;
+  bool ends_ = false;
+  std::thread thread_;  ///< last: it uses all of the above
+};
+
+}  // namespace tissue_contact

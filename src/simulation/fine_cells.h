@@ -1,0 +1,64 @@
+/// @file
+/// Room `simulation`, private: where the cells of a refined mesh are fine. Places that are touched in; foci around which cells are fine,
+/// and how long edges may be anywhere, out.
+///
+/// Cells are fine within the reach of a focus, and longer by kGrowth per metre beyond it.
+#pragma once
+
+#include <vector>
+
+#include "tissue_contact/core/state_archive.h"
+#include "tissue_contact/core/types.h"
+
+namespace tissue_contact {
+
+/// A place that is to be fine, in the tissue's frame T.
+struct FinePlace {
+  Vector3 p_T;    ///< at rest, m
+  double cell_m;  ///< edge of the cells there
+};
+
+class FineCells {
+ public:
+  /// Length that cells gain per length of distance beyond the reach: steeper ones err more with as many nodes (doc/accuracy.md).
+  static constexpr double kGrowth = 0.5;
+  /// Of the reach: a contact that far from a focus has as much of fine cells beyond it.
+  static constexpr double kCovered = 0.5;
+
+  /// @param reach_m how far fine cells reach beyond a place; 0: kCellsOfReach cells.
+  explicit FineCells(double reach_m) : reach_m_(reach_m) {}
+
+  double reach(double cell_m) const;
+  bool isCovered(const FinePlace& place, double share_of_reach) const;
+  double longestEdge(const Vector3& p_T) const;  ///< m
+
+  bool empty() const { return foci_.empty(); }
+  void clear();
+  /// Without the foci near to which no place is.
+  void dropIdle(const std::vector<FinePlace>& places);
+  /// With foci of places that none covers well, of cells longer by coarsening().
+  void add(const std::vector<FinePlace>& places);
+  bool anyFinerThan(double coarsening) const;
+
+  double coarsening() const { return coarsening_; }  ///< of the newest foci
+  void setCoarsening(double coarsening) { coarsening_ = coarsening; }
+
+  void carry(StateArchive& archive);
+
+ private:
+  struct Focus {
+    Vector3 p_T;
+    double asked_m;     ///< cells that a place asked for
+    double coarsening;  ///< what they are longer by
+  };
+  bool covers(const Focus& focus, const FinePlace& place, double share) const;
+
+  double reach_m_;
+  std::vector<Focus> foci_;
+  double coarsening_ = 1.0;
+};
+
+/// Refuses places that no scene has.
+void carryPlaces(StateArchive& archive, std::vector<FinePlace>& places);
+
+}  // namespace tissue_contact

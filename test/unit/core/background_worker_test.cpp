@@ -1,0 +1,71 @@
+/// @file
+/// BackgroundWorker: jobs in their order, what they leave is there once waited for, and an end that drops what has not begun.
+#include "core/background_worker.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <future>
+#include <numeric>
+#include <thread>
+#include <vector>
+
+namespace tissue_contact {
+namespace {
+
+void takeTime() { std::this_thread::sleep_for(std::chrono::milliseconds(50)); }
+
+TEST(BackgroundWorker, DoesJobsInTheirOrderBesideTheCaller) {
+  std::vector<int> done;
+  std::thread::id by;
+  BackgroundWorker worker;
+  BackgroundWorker::Ticket last = 0;
+  for (int i = 0; i < 100; ++i) {
+    last = worker.start([&done, &by, i] {
+      done.push_back(i);
+      by = std::this_thread::get_id();
+    });
+  }
+  worker.wait(last);
+  std::vector<int> expected(100);
+  std::iota(expected.begin(), expected.end(), 0);
+  EXPECT_EQ(done, expected);
+  EXPECT_NE(by, std::this_thread::get_id());
+}
+
+TEST(BackgroundWorker, WaitsForTheJobAskedFor) {
+  int first = 0;
+  int second = 0;
+  BackgroundWorker worker;
+  const auto quick = worker.start([&] { first = 1; });
+  const auto slow = worker.start([&] {
+    takeTime();
+    second = 2;
+  });
+  worker.wait(quick);
+  EXPECT_EQ(first, 1);
+  EXPECT_TRUE(worker.wait(slow)) << "it was not done yet";
+  EXPECT_EQ(second, 2);
+  EXPECT_FALSE(worker.wait(slow));
+  EXPECT_FALSE(worker.wait(quick));
+}
+
+TEST(BackgroundWorker, EndsOnceTheJobItIsAtIsDone) {
+  bool ended = false;
+  {
+    std::promise<void> begun;
+    BackgroundWorker worker;
+    worker.start([&] {
+      begun.set_value();
+      takeTime();
+      ended = true;
+    });
+    begun.get_future().wait();
+  }
+  EXPECT_TRUE(ended);
+}
+
+TEST(BackgroundWorker, EndsWithoutAnyJob) { const BackgroundWorker worker; }
+
+}  // namespace
+}  // namespace tissue_contact
