@@ -23,12 +23,12 @@
 #include "ros/bag/recorded_changes.h"
 #include "ros/conversions.h"
 #include "ros/replay/bag_recorder.h"
-#include "ros/replay/force_error_summary.h"
 #include "ros/replay/interruption.h"
 #include "ros/replay/joint_names.h"
 #include "ros/replay/manifest.h"
 #include "ros/replay/replay_batch.h"
 #include "ros/replay/replay_files.h"
+#include "ros/replay/replay_findings.h"
 #include "ros/replay/replay_progress.h"
 #include "ros/replay/replay_table.h"
 #include "ros/run_script.h"
@@ -37,9 +37,7 @@
 #include "tissue_contact/core/whole_file.h"
 #include "tissue_contact/ros/environment.h"
 #include "tissue_contact/simulation/joint_state_player.h"
-#include "tissue_contact/simulation/law_error.h"
 #include "tissue_contact/simulation/simulator.h"
-#include "tissue_contact/tissue/element_materials.h"
 
 namespace tissue_contact {
 namespace {
@@ -60,7 +58,7 @@ class Replay {
         simulator_(scene_, bagEnvironment(scene_, options.bag_file, options.urdf_file)),
         player_(simulator_),
         joint_names_(simulator_, player_),
-        force_errors_(simulator_.instruments().size()) {
+        findings_(simulator_, log, kPrefix) {
     requireModelsKept(options, simulator_);
     for (const std::string& line : simulator_.advice()) log_ << kPrefix << "advisor: " << line << "\n";
     simulator_.setStepObserver([this] { stepTaken(); });
@@ -149,7 +147,7 @@ class Replay {
     if (recorded_.isZero()) throw std::runtime_error("no joint state was recorded between --from and its --duration");
     if (player_.count(Verdict::kAccepted) == 0) {
       throw std::runtime_error("no joint state of bag '" + options_.bag_file +
-                               "' was accepted; the first was refused: " + first_refusal_);
+                               "' was accepted; the first was refused: " + findings_.firstRefusal());
     }
     if (table_) table_->finish();
     if (timing_) timing_->finish();
@@ -172,14 +170,11 @@ class Replay {
       const auto verdict = static_cast<Verdict>(v);
       content.counts.emplace_back(std::string("joint states: ") + verdictText(verdict), player_.count(verdict));
     }
+    const auto findings = findings_.counts();
     content.counts.insert(content.counts.end(), {{"steps since the last reset", simulator_.stepCount()},
                                                  {"resets", player_.resets()},
-                                                 {"gaps", player_.gaps()},
-                                                 {"jumps", jumps_},
-                                                 {"intervals not converged", not_converged_},
-                                                 {"intervals without a finite answer", discarded_},
-                                                 {"intervals with forces that no tissue bears", implausible_},
-                                                 {"intervals with pinched contacts", pinched_}});
+                                                 {"gaps", player_.gaps()}});
+    content.counts.insert(content.counts.end(), findings.begin(), findings.end());
     writeManifest(manifest_->stream(), options_, content);
     manifest_->finish();
   }
@@ -245,7 +240,7 @@ class Replay {
       if (played->interrupted) continue;
       const std::chrono::duration<double> elapsed = Clock::now() - start;
       const long steps = simulator_.stepCount() - (played->was_reset ? 0 : steps_before);
-      note(*played, steps);
+      findings_.note(*played, steps);
       if (played->verdict != Verdict::kAccepted) continue;
       played_ns_ = played->stamp_ns;
       if (!isFinite(simulator_) || !isFinite(simulator_.residuals())) {
@@ -255,7 +250,7 @@ class Replay {
       if (table_) table_->add(simulator_, *played, steps);
       if (observe_) observe_(simulator_, *played, steps);
       if (recorder_) recorder_->record(*played, static_cast<int>(steps), recorded_);
-      noteForceErrors(*played);
+      findings_.noteForceErrors(*played);
       if (timing_ && steps > 0) timing_->add(played->stamp_ns, elapsed.count(), steps);
     }
   }
@@ -281,72 +276,6 @@ class Replay {
     if (approach_.distance_m < before) approach_ns_ = stamp_ns;
   }
 
-  void note(const PlayedSample& played, long steps) {
-    if (played.verdict != Verdict::kAccepted && first_refusal_.empty()) {
-      first_refusal_ = std::string(verdictText(played.verdict)) + ": " + played.detail;
-    }
-    if (steps == 0) return;
-    const StepReport& report = simulator_.report();
-    jumps_ += static_cast<long>(report.jumped);
-    discarded_ += static_cast<long>(report.discarded);
-    not_converged_ += static_cast<long>(report.stop != StopReason::kTolerance);
-    pinched_ += static_cast<long>(report.pinched_contacts > 0);
-    noteLaw(played);
-    noteCells(played);
-    if (!report.implausible_load.found) return;
-    if (++implausible_ > 1) return;
-    log_ << kPrefix << "warning: " << stampText(played.stamp_ns) << " s: " << implausibleLoadText(simulator_) << "\n";
-  }
-
-  void noteLaw(const PlayedSample& played) {
-    const LawError& error = simulator_.report().law_error;
-    if (law_alarm_.leaves(error.relative) && ++law_alarms_ == 1) {
-      log_ << kPrefix << "warning: " << stampText(played.stamp_ns) << " s: " << lawErrorText(simulator_) << "\n";
-    }
-    if (std::abs(error.relative) > std::abs(law_error_.relative)) law_error_ = error;
-  }
-
-  /// Of a law that leaves its range in this recording.
-  void summarizeLaw() const {
-    if (law_alarms_ == 0) return;
-    const TissueDescription& tissue = scene_.tissues[static_cast<std::size_t>(law_error_.tissue)];
-    log_ << kPrefix << "beyond the range of the " << elasticModelName(tissue.material.model) << " law of tissue '"
-         << tissue.name << "' " << law_alarms_ << " times: forces likely wrong by up to " << 100.0 * law_error_.relative
-         << " %, at a strain of " << law_error_.strain << "\n";
-  }
-
-  void noteForceErrors(const PlayedSample& played) {
-    for (const int instrument : played.instruments) {
-      const auto index = static_cast<std::size_t>(instrument);
-      force_errors_[index].add(simulator_.wrench(instrument).force.norm(), simulator_.forceErrors()[index]);
-    }
-  }
-
-  void summarizeForceErrors() const {
-    for (std::size_t i = 0; i < force_errors_.size(); ++i) {
-      const std::string text = force_errors_[i].text();
-      if (!text.empty()) log_ << kPrefix << "force on '" << simulator_.instruments()[i].name() << "' " << text << "\n";
-    }
-  }
-
-  void noteCells(const PlayedSample& played) {
-    const CoarseCells& cells = simulator_.report().coarse_cells;
-    if (cells.tissue < 0) return;
-    if (++coarse_ == 1) {
-      log_ << kPrefix << "warning: " << stampText(played.stamp_ns) << " s: " << coarseCellsText(simulator_) << "\n";
-    }
-    if (cells.factor > coarsest_cells_.factor) coarsest_cells_ = cells;
-  }
-
-  /// Of cells that are not as small as the scene asks for.
-  void summarizeCells() const {
-    if (coarse_ == 0) return;
-    log_ << kPrefix << "cells of tissue '" << scene_.tissues[static_cast<std::size_t>(coarsest_cells_.tissue)].name
-         << "' up to " << coarsest_cells_.factor
-         << " times as long as its refinement asks for, to keep to nodes_at_most; such "
-         << "cells in " << coarse_ << " intervals\n";
-  }
-
   void summarize() const {
     for (const std::string& line : joint_names_.findings()) log_ << kPrefix << "warning: " << line << "\n";
     log_ << kPrefix << player_.count(Verdict::kAccepted) << " joint states accepted";
@@ -354,17 +283,14 @@ class Replay {
       const auto verdict = static_cast<Verdict>(v);
       if (player_.count(verdict) > 0) log_ << ", " << player_.count(verdict) << " " << verdictText(verdict);
     }
-    log_ << "; " << player_.resets() << " resets, " << player_.gaps() << " gaps, " << jumps_ << " jumps, "
-         << not_converged_ << " intervals not converged, " << discarded_ << " without a finite answer, " << implausible_
-         << " with forces that no tissue bears, " << pinched_ << " with pinched contacts -> " << options_.csv_file
-         << (table_ && recorder_ ? ", " : "") << options_.out_file << "\n"
+    log_ << "; " << player_.resets() << " resets, " << player_.gaps() << " gaps, " << findings_.countsText() << " -> "
+         << options_.csv_file << (table_ && recorder_ ? ", " : "") << options_.out_file << "\n"
          << kPrefix << length_s_ << " s of recording in " << wallTime() << " s\n";
-    if (!first_refusal_.empty())
-      log_ << kPrefix << "first refusal in bag '" << options_.bag_file << "': " << first_refusal_ << "\n";
+    if (!findings_.firstRefusal().empty()) {
+      log_ << kPrefix << "first refusal in bag '" << options_.bag_file << "': " << findings_.firstRefusal() << "\n";
+    }
     summarizeChanges();
-    summarizeForceErrors();
-    summarizeLaw();
-    summarizeCells();
+    findings_.summarize();
     if (!touched_) summarizeApproach();
   }
 
@@ -388,6 +314,7 @@ class Replay {
   std::optional<std::int64_t> played_ns_;  ///< stamp of the moment played last
   std::optional<ReplayTable> table_;
   JointNames joint_names_;
+  ReplayFindings findings_;
   std::optional<TimingTable> timing_;
   std::unique_ptr<BagRecorder> recorder_;
   std::optional<WholeFile> manifest_;
@@ -401,18 +328,6 @@ class Replay {
   bool touched_ = false;   ///< an instrument has, since the start
   Approach approach_;      ///< until then
   std::int64_t approach_ns_ = 0;
-  std::string first_refusal_;
-  long jumps_ = 0;
-  long discarded_ = 0;
-  long not_converged_ = 0;
-  long implausible_ = 0;
-  long pinched_ = 0;
-  std::vector<ForceErrorSummary> force_errors_;  ///< per instrument
-  LawAlarm law_alarm_;
-  long law_alarms_ = 0;  ///< how often the law left its range
-  LawError law_error_;   ///< largest
-  long coarse_ = 0;      ///< intervals with cells longer than asked for
-  CoarseCells coarsest_cells_;
 };
 
 }  // namespace

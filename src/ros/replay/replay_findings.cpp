@@ -1,0 +1,99 @@
+#include "ros/replay/replay_findings.h"
+
+#include <cmath>
+#include <ostream>
+#include <sstream>
+
+#include "tissue_contact/core/text.h"
+#include "tissue_contact/tissue/element_materials.h"
+
+namespace tissue_contact {
+
+ReplayFindings::ReplayFindings(const Simulator& simulator, std::ostream& log, std::string prefix)
+    : simulator_(simulator), log_(log), prefix_(std::move(prefix)), force_errors_(simulator.instruments().size()) {}
+
+void ReplayFindings::note(const PlayedSample& played, long steps) {
+  if (played.verdict != Verdict::kAccepted && first_refusal_.empty()) {
+    first_refusal_ = std::string(verdictText(played.verdict)) + ": " + played.detail;
+  }
+  if (steps == 0) return;
+  const StepReport& report = simulator_.report();
+  jumps_ += static_cast<long>(report.jumped);
+  discarded_ += static_cast<long>(report.discarded);
+  not_converged_ += static_cast<long>(report.stop != StopReason::kTolerance);
+  pinched_ += static_cast<long>(report.pinched_contacts > 0);
+  noteLaw(played);
+  noteCells(played);
+  if (report.implausible_load.found && ++implausible_ == 1) warn(played, implausibleLoadText(simulator_));
+}
+
+void ReplayFindings::noteLaw(const PlayedSample& played) {
+  const LawError& error = simulator_.report().law_error;
+  if (law_alarm_.leaves(error.relative) && ++law_alarms_ == 1) warn(played, lawErrorText(simulator_));
+  if (std::abs(error.relative) > std::abs(law_error_.relative)) law_error_ = error;
+}
+
+void ReplayFindings::noteCells(const PlayedSample& played) {
+  const CoarseCells& cells = simulator_.report().coarse_cells;
+  if (cells.tissue < 0) return;
+  if (++coarse_ == 1) warn(played, coarseCellsText(simulator_));
+  if (cells.factor > coarsest_cells_.factor) coarsest_cells_ = cells;
+}
+
+void ReplayFindings::warn(const PlayedSample& played, const std::string& text) {
+  log_ << prefix_ << "warning: " << stampText(played.stamp_ns) << " s: " << text << "\n";
+}
+
+void ReplayFindings::noteForceErrors(const PlayedSample& played) {
+  for (const int instrument : played.instruments) {
+    const auto index = static_cast<std::size_t>(instrument);
+    force_errors_[index].add(simulator_.wrench(instrument).force.norm(), simulator_.forceErrors()[index]);
+  }
+}
+
+std::vector<std::pair<std::string, long>> ReplayFindings::counts() const {
+  return {{"jumps", jumps_},
+          {"intervals not converged", not_converged_},
+          {"intervals without a finite answer", discarded_},
+          {"intervals with forces that no tissue bears", implausible_},
+          {"intervals with pinched contacts", pinched_}};
+}
+
+std::string ReplayFindings::countsText() const {
+  std::ostringstream text;
+  text << jumps_ << " jumps, " << not_converged_ << " intervals not converged, " << discarded_
+       << " without a finite answer, " << implausible_ << " with forces that no tissue bears, " << pinched_
+       << " with pinched contacts";
+  return text.str();
+}
+
+void ReplayFindings::summarize() const {
+  summarizeForceErrors();
+  summarizeLaw();
+  summarizeCells();
+}
+
+void ReplayFindings::summarizeForceErrors() const {
+  for (std::size_t i = 0; i < force_errors_.size(); ++i) {
+    const std::string text = force_errors_[i].text();
+    if (!text.empty()) log_ << prefix_ << "force on '" << simulator_.instruments()[i].name() << "' " << text << "\n";
+  }
+}
+
+void ReplayFindings::summarizeLaw() const {
+  if (law_alarms_ == 0) return;
+  const TissueDescription& tissue = simulator_.scene().tissues[static_cast<std::size_t>(law_error_.tissue)];
+  log_ << prefix_ << "beyond the range of the " << elasticModelName(tissue.material.model) << " law of tissue '"
+       << tissue.name << "' " << law_alarms_ << " times: forces likely wrong by up to " << 100.0 * law_error_.relative
+       << " %, at a strain of " << law_error_.strain << "\n";
+}
+
+void ReplayFindings::summarizeCells() const {
+  if (coarse_ == 0) return;
+  const auto tissue = static_cast<std::size_t>(coarsest_cells_.tissue);
+  log_ << prefix_ << "cells of tissue '" << simulator_.scene().tissues[tissue].name << "' up to "
+       << coarsest_cells_.factor << " times as long as its refinement asks for, to keep to nodes_at_most; such "
+       << "cells in " << coarse_ << " intervals\n";
+}
+
+}  // namespace tissue_contact
