@@ -73,10 +73,12 @@ class Pictures(harness.TestCase):
             source = harness.JointSource()
             harness.wait_until(lambda: os.path.exists(self.path("shown.rviz")), "RViz")
 
+            harness.wait_until(lambda: {all_of_it, tip} <= set(self.view_frames(tf)), "the views before the first joint state")
+
             stamps = (rospy.Time(1000) + rospy.Duration.from_sec(0.02) * i for i in itertools.count())
 
             def go(heights):
-                """The probe to the last of these heights, where it stays until tf, which tells no newcomer what was before, has it there."""
+                """The probe to the last of these heights, where it stays until tf has it there."""
                 for height in heights:
                     source.send(next(stamps), (0.0, 0.0, height))
                 place = 0.026 + heights[-1]  # base_pose, and the ball hangs on it
@@ -91,6 +93,9 @@ class Pictures(harness.TestCase):
             far = go([0.005 + 0.01 * i for i in range(40)])
             back = go([0.395 - 0.01 * i for i in range(40)])
             tf.close()
+            late = harness.Listener("/tf", TFMessage, connect=False)  # as RViz, when nothing moves any more
+            harness.wait_until(lambda: self.view_frames(late) == back, "the views told to who comes late")
+            late.close()
         with open(self.path("shown.rviz"), encoding="utf-8") as stream:
             views = yaml.safe_load(stream)["Visualization Manager"]["Views"]
         self.assertEqual(views["Current"]["Target Frame"], all_of_it)
