@@ -13,6 +13,8 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 
 import numpy
 import rospkg
@@ -32,6 +34,7 @@ TIP_AWAY = 0.6  # a tip that is farther from the middle, and than it was at firs
 CLOSE = 3.0  # times nearer than all: the view of one tip
 TIP = "/tip"  # ends the names of markers at tips
 VIEW = "tissue_contact_view"  # tf frames of our own: in the middle of the view, and VIEW/INSTRUMENT at each tip
+RATE_HZ = 5.0  # of the views' frames, at most
 PATIENCE_S = 10.0  # before it says what it waits for
 
 
@@ -143,17 +146,38 @@ def markers_of(node):
 
 
 class Follower:
-    """Tells tf where the views are, with every message of the node's markers."""
+    """Tells tf where the views are, by the newest markers of the node, and so to whoever comes to tf later: RViz shows nothing without.
 
-    def __init__(self, picture, node):
+    Markers are read at RATE_HZ at most: those of an organ are megabytes, and reading them takes a core from the node."""
+
+    def __init__(self, picture, node, markers):
         self._picture = picture
-        self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
-        rospy.Subscriber(node + "/markers", MarkerArray, self._take, queue_size=1)
+        self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10, latch=True)
+        self._told = None
+        self._tell(markers)
+        self._newest = None
+        self._came = threading.Event()
+        threading.Thread(target=self._run, daemon=True).start()
+        rospy.Subscriber(node + "/markers", rospy.AnyMsg, self._take, queue_size=1, buff_size=1 << 24)
 
     def _take(self, message):
-        tips = tips_of(message.markers)
+        self._newest = message._buff  # as it came, see AnyMsg
+        self._came.set()
+
+    def _run(self):
+        while True:
+            self._came.wait()
+            self._came.clear()
+            self._tell(MarkerArray().deserialize(self._newest).markers)
+            time.sleep(1.0 / RATE_HZ)
+
+    def _tell(self, markers):
+        tips = tips_of(markers)
         places = {VIEW: self._picture.follow(tips.values()), **{VIEW + "/" + name: tip for name, tip in tips.items()}}
-        self._tf.publish(TFMessage([self._transform(message.markers[0].header, *one) for one in places.items()]))
+        told = TFMessage([self._transform(markers[0].header, *one) for one in places.items()])
+        if told != self._told:  # tf complains of what it has
+            self._tf.publish(told)
+        self._told = told
 
     @staticmethod
     def _transform(header, frame, place):
@@ -189,7 +213,7 @@ def main():
     picture = Picture(markers)
     config = configuration(picture, tips_of(markers), arguments.node, follows=not arguments.write)
     if not arguments.write:
-        Follower(picture, arguments.node)  # rospy keeps it
+        Follower(picture, arguments.node, markers)  # rospy keeps it
         sys.exit(run_rviz(config, [a for a in sys.argv[1:] if ":=" in a]))
     try:
         with whole_file(arguments.write) as part:

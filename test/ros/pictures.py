@@ -4,12 +4,28 @@ watch.py."""
 import itertools
 import math
 import os
+import xml.etree.ElementTree
 
+import roslib.message
 import rospy
 import yaml
 from tf2_msgs.msg import TFMessage
 
 import harness
+
+
+NUMBERS = {"float32", "float64", "bool"} | {sign + "int" + bits for sign in ("", "u") for bits in ("8", "16", "32", "64")}
+
+
+def field_type(message_type, path):
+    """Of a field of a message, by its names; a list has [i] behind its own. KeyError: there is none."""
+    for part in path.split("/"):
+        name, bracket, _ = part.partition("[")
+        message = roslib.message.get_message_class(message_type)
+        message_type = dict(zip(message.__slots__, message._slot_types))[name]
+        if bracket:
+            message_type = message_type[:message_type.index("[")]
+    return message_type
 
 
 class Pictures(harness.TestCase):
@@ -73,10 +89,12 @@ class Pictures(harness.TestCase):
             source = harness.JointSource()
             harness.wait_until(lambda: os.path.exists(self.path("shown.rviz")), "RViz")
 
+            harness.wait_until(lambda: {all_of_it, tip} <= set(self.view_frames(tf)), "the views before the first joint state")
+
             stamps = (rospy.Time(1000) + rospy.Duration.from_sec(0.02) * i for i in itertools.count())
 
             def go(heights):
-                """The probe to the last of these heights, where it stays until tf, which tells no newcomer what was before, has it there."""
+                """The probe to the last of these heights, where it stays until tf has it there."""
                 for height in heights:
                     source.send(next(stamps), (0.0, 0.0, height))
                 place = 0.026 + heights[-1]  # base_pose, and the ball hangs on it
@@ -91,6 +109,9 @@ class Pictures(harness.TestCase):
             far = go([0.005 + 0.01 * i for i in range(40)])
             back = go([0.395 - 0.01 * i for i in range(40)])
             tf.close()
+            late = harness.Listener("/tf", TFMessage, connect=False)  # as RViz, when nothing moves any more
+            harness.wait_until(lambda: self.view_frames(late) == back, "the views told to who comes late")
+            late.close()
         with open(self.path("shown.rviz"), encoding="utf-8") as stream:
             views = yaml.safe_load(stream)["Visualization Manager"]["Views"]
         self.assertEqual(views["Current"]["Target Frame"], all_of_it)
@@ -101,6 +122,20 @@ class Pictures(harness.TestCase):
         self.assertGreater(math.dist(far[tip], near[all_of_it]), height)  # it would be out of a view that stays
         for a, b in zip(back[all_of_it], near[all_of_it]):
             self.assertAlmostEqual(a, b, 9)
+
+    def test_the_layout_of_plotjuggler_names_what_is_published(self):
+        """PlotJuggler calls a curve TOPIC/FIELD/..., with [i] behind a list."""
+        layout = xml.etree.ElementTree.parse(os.path.join(harness.PACKAGE, "config", "plotjuggler.xml"))
+        curves = [curve.get("name") for curve in layout.iter("curve")]
+        with harness.node(harness.SCENE):
+            harness.wrenches().close()  # waits for the publisher
+            published = dict(rospy.get_published_topics())
+        for part in ["wrench/force/x", "lag", "momentum_residual", "error"]:
+            self.assertTrue(any(curve.endswith("/" + part) for curve in curves), part)
+        for curve in curves:
+            topics = [topic for topic in published if curve.startswith(topic + "/")]
+            self.assertEqual(len(topics), 1, curve)
+            self.assertIn(field_type(published[topics[0]], curve[len(topics[0]) + 1:]), NUMBERS, curve)
 
     def test_watch_draws_what_comes(self):
         picture = self.path("my plots.png")

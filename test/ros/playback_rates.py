@@ -57,14 +57,14 @@ class PlaybackRates(harness.TestCase):
             clock.wait(lambda all: len(all) > 20 and len({one.clock for one in all[-20:]}) == 1, "a clock that stands still")
             clock.close()
             seen = len(wrenches.messages)
-            self.assertLess(seen, 300)
             self.assertTrue(pause(False).success)
-            got = wrenches.wait(lambda all: len(all) >= 300, "three rounds")
-        rounds = [[(w.header.stamp, harness.wrench_bits(w)) for w in got[i:i + 100]] for i in (0, 100, 200)]
+            wanted = 100 * (seen // 100 + 3)  # the round of the pause, however far it was, and two more
+            got = wrenches.wait(lambda all: len(all) >= wanted, "two rounds after the pause")[:wanted]
+        rounds = [[(w.header.stamp, harness.wrench_bits(w)) for w in got[i:i + 100]] for i in range(0, wanted, 100)]
         self.assertEqual([stamp for stamp, _ in rounds[0]], [stamp for stamp, _ in samples])
         self.assertTrue(any(any(bits) for _, bits in rounds[0]))
-        self.assertEqual(rounds[1], rounds[0])
-        self.assertEqual(rounds[2], rounds[0])
+        for later in rounds[1:]:
+            self.assertEqual(later, rounds[0])
 
     def test_simulated_time_at_any_rate(self):
         samples = harness.press(100)

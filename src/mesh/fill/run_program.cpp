@@ -69,15 +69,24 @@ std::vector<char*> pointersTo(const std::vector<std::string>& texts) {
   _exit(errno == ENOENT || errno == EACCES || errno == ENOTDIR ? kNotFound : 1);
 }
 
+const int kEndings[] = {SIGINT, SIGTERM, SIGHUP};  // what a group or a machine is told to end by
+
 /// What a child does for a ScratchFolder: leaves behind a process, of no terminal and nobody's to wait for, that removes the folder once the
-/// other end of the pipe is closed: Ctrl-C and SIGKILL run no destructor. Nothing here takes a lock or memory.
+/// other end of the pipe is closed: Ctrl-C and SIGKILL run no destructor. It keeps no directory and no file of ours in use, and
+/// nothing here takes a lock or memory.
 [[noreturn]] void removeOnceAlone(const int* ends, const char* folder) {
+  for (const int number : kEndings) std::signal(number, SIG_IGN);  // `rm` ignores them too
   close(ends[1]);
   setsid();
   if (fork() != 0) _exit(0);
-  for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_DFL);
+  constexpr int kPipe = STDERR_FILENO + 1;
+  if (dup2(ends[0], kPipe) < 0) _exit(1);
+  const int nothing = open("/dev/null", O_RDWR);
+  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nothing, standard);
+  close_range(kPipe + 1, ~0U, 0);
+  if (chdir("/") != 0) _exit(1);
   char none = 0;
-  while (read(ends[0], &none, 1) < 0 && errno == EINTR) {
+  while (read(kPipe, &none, 1) < 0 && errno == EINTR) {
   }
   execlp("rm", "rm", "-rf", "--", folder, nullptr);
   _exit(1);
@@ -127,16 +136,24 @@ ProgramEnd runProgram(const std::vector<std::string>& arguments, const std::stri
 }
 
 ScratchFolder::ScratchFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "tissue_contact_XXXXXX").string();
+  const std::filesystem::path place = std::filesystem::absolute(std::filesystem::temp_directory_path());
+  std::string pattern = (place / "tissue_contact_XXXXXX").string();
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) refuse("no pipe to another program");
   lives_ = ends[1];
+  sigset_t endings;  // wait until the child ignores them: they would leave the folder and nobody to remove it
+  sigset_t before;
+  sigemptyset(&endings);
+  for (const int number : kEndings) sigaddset(&endings, number);
+  pthread_sigmask(SIG_BLOCK, &endings, &before);
   if (mkdtemp(pattern.data()) != nullptr) path_ = pattern;
   const int error = errno;
   const pid_t child = path_.empty() ? -1 : fork();
   if (child == 0) removeOnceAlone(ends, path_.c_str());
   close(ends[0]);
-  if (child > 0) waitpid(child, nullptr, 0);
+  while (child > 0 && waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+  }
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (!path_.empty()) return;
   close(lives_);
   errno = error;

@@ -5,9 +5,13 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <set>
 #include <string>
+#include <system_error>
 #include <thread>
 
 #include "mesh/fill/run_program.h"
@@ -25,16 +29,31 @@ bool isGoneWithin(const std::string& folder, std::chrono::seconds time) {
   return !fs::exists(folder);
 }
 
-/// Makes a folder with a file in it, tells its path, and dies of the signal.
-[[noreturn]] void dieWithAFolder(int tell, int signal) {
+/// Makes a folder with a file in it, tells its path, and dies of the signal, alone or with its group.
+[[noreturn]] void dieWithAFolder(int tell, int signal, bool group) {
+  if (group) setpgid(0, 0);
   const ScratchFolder folder;
   std::ofstream(folder.path("surface.msh")) << "something";
   const std::string& path = folder.path();
   if (write(tell, path.data(), path.size()) < 0) _exit(1);
   close(tell);
   std::signal(signal, SIG_DFL);
-  std::raise(signal);
+  kill(group ? 0 : getpid(), signal);
   _exit(1);
+}
+
+/// Processes of this program in other sessions: those that wait to remove a folder.
+std::set<pid_t> processesNamedAsThis() {
+  std::set<pid_t> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator("/proc")) {
+    const pid_t process = std::atoi(entry.path().filename().c_str());
+    std::error_code gone;
+    if (process > 0 && fs::read_symlink(entry.path() / "exe", gone) == fs::read_symlink("/proc/self/exe") &&
+        getsid(process) != getsid(0)) {
+      found.insert(process);
+    }
+  }
+  return found;
 }
 
 TEST(ScratchFolder, GoesWithItsObject) {
@@ -49,23 +68,66 @@ TEST(ScratchFolder, GoesWithItsObject) {
   EXPECT_FALSE(fs::exists(path));
 }
 
+/// Of a process that dies of the signal while it uses it.
+std::string folderOfTheDead(int signal, bool group) {
+  int ends[2];
+  if (pipe(ends) != 0) return {};
+  const pid_t child = fork();
+  if (child == 0) dieWithAFolder(ends[1], signal, group);
+  close(ends[1]);
+  std::string path;
+  char some[1024];
+  // Ends when everybody has closed the pipe, so the one who removes the folder keeps nothing of ours open.
+  for (ssize_t got = 0; (got = read(ends[0], some, sizeof some)) > 0;) path.append(some, static_cast<std::size_t>(got));
+  close(ends[0]);
+  int status = 0;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal);
+  return path;
+}
+
 TEST(ScratchFolder, GoesWithItsProcess) {
   for (const int signal : {SIGINT, SIGTERM, SIGKILL}) {
     SCOPED_TRACE(signal);
-    int ends[2];
-    ASSERT_EQ(pipe(ends), 0);
-    const pid_t child = fork();
-    if (child == 0) dieWithAFolder(ends[1], signal);
-    close(ends[1]);
-    char path[1024] = {};
-    const ssize_t length = read(ends[0], path, sizeof path - 1);
-    close(ends[0]);
-    int status = 0;
-    ASSERT_EQ(waitpid(child, &status, 0), child);
-    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal);
-    ASSERT_GT(length, 0);
+    const std::string path = folderOfTheDead(signal, false);
+    ASSERT_FALSE(path.empty());
     EXPECT_TRUE(isGoneWithin(path, std::chrono::seconds(60))) << path;
   }
+}
+
+TEST(ScratchFolder, GoesWhenItsGroupIsEnded) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGKILL}) {
+    SCOPED_TRACE(signal);
+    const std::string path = folderOfTheDead(signal, true);
+    ASSERT_FALSE(path.empty());
+    EXPECT_TRUE(isGoneWithin(path, std::chrono::seconds(60))) << path;
+  }
+}
+
+/// The process that waits to remove the folder, found by what it has open: 0 if there is none.
+pid_t cleanerAfter(const std::set<pid_t>& before) {
+  for (const pid_t process : processesNamedAsThis()) {
+    if (before.count(process) == 0) return process;
+  }
+  return 0;
+}
+
+// A machine that goes down, or a service manager, signals every process, whatever its group.
+TEST(ScratchFolder, GoesWhereEveryProcessIsToldToEnd) {
+  const std::set<pid_t> before = processesNamedAsThis();
+  auto folder = std::make_unique<ScratchFolder>();
+  const std::string path = folder->path();
+  pid_t cleaner = 0;
+  while ((cleaner = cleanerAfter(before)) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) EXPECT_EQ(kill(cleaner, signal), 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(kill(cleaner, 0), 0) << "it has died";
+  EXPECT_EQ(fs::read_symlink("/proc/" + std::to_string(cleaner) + "/cwd"), "/");
+  for (const char* standard : {"0", "1", "2"}) {
+    EXPECT_EQ(fs::read_symlink("/proc/" + std::to_string(cleaner) + "/fd/" + standard), "/dev/null");
+  }
+  folder.reset();
+  EXPECT_FALSE(fs::exists(path));
 }
 
 }  // namespace
