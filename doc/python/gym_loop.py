@@ -8,7 +8,7 @@ import tissue_contact as tc
 class PressEnvironment:
     def __init__(self, scene="package://tissue_contact/config/press_drag.yaml", wanted_n=0.1):
         self.simulator, self.wanted_n = tc.Simulator(tc.load_scene(scene)), wanted_n
-        self.simulator.place("probe", [0.0, 0.0, -0.001])
+        self.simulator.place("probe", [0.0, 0.0, -0.01])
         self.start = self.simulator.save_state()
 
     def reset(self):

@@ -13,7 +13,7 @@ import tissue_contact as tc
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402: after the choice of what draws
 
-ABOVE_M = 0.001  # the tip is so far above the block at joints 0
+ABOVE_M = 0.01  # the ball is so far above the block at joints 0
 DEPTHS_M = np.arange(0.0, 0.0041, 0.00025)
 
 

@@ -33,10 +33,11 @@ const char* stopText(StopReason stop) {
 }
 
 py::object remake(const LoadedScene& loaded) {
-  const py::module_ core = py::module_::import("tissue_contact._core");
+  const py::module_ helpers = py::module_::import("tissue_contact._helpers");  // pickle knows Python's functions alone
   if (loaded.yaml)
-    return py::make_tuple(core.attr("parse_scene"), py::make_tuple(*loaded.yaml, loaded.file, loaded.settings));
-  return py::make_tuple(core.attr("load_scene"), py::make_tuple(loaded.file, loaded.settings));
+    return py::make_tuple(helpers.attr("parse_scene_again"),
+                          py::make_tuple(*loaded.yaml, loaded.file, loaded.settings));
+  return py::make_tuple(helpers.attr("load_scene_again"), py::make_tuple(loaded.file, loaded.settings));
 }
 
 void bindScene(py::module_& module) {

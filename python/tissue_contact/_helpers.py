@@ -2,6 +2,8 @@
 import json
 import logging
 
+import tissue_contact
+
 
 def package_directory(name):
     """Directory of a ROS package, "" where it is not found: what rospack finds."""
@@ -36,6 +38,16 @@ def settings(given):
             raise TypeError("set: a key must be text, not %s" % type(key))
         found.append("%s=%s" % (key, value if isinstance(value, str) else json.dumps(value, default=_number)))
     return found
+
+
+def load_scene_again(file, given):
+    """Of a pickle: a compiled function has no name that pickle could write."""
+    return tissue_contact.load_scene(file, given)
+
+
+def parse_scene_again(yaml, file, given):
+    """Of a pickle, as load_scene_again()."""
+    return tissue_contact.parse_scene(yaml, file, given)
 
 
 def say(line):
