@@ -4,8 +4,8 @@
   fit.py --scene S.yaml --measured press.csv --measured drag.bag --fit youngs_modulus_pa:1e3..1e5 --fit static:0.1..1 --fit offset_m:-5e-4..5e-4
 
 Each recording moves the tool of the scene as it was moved, from rest, and the forces on it are compared. Prints estimates with 95 % intervals,
-their correlation, the error of what was held out, and which parameters these data cannot tell: then nothing is written, and the exit code
-is 1. With --out, a folder with the fitted scene.yaml, fit.yaml, residuals.csv and residuals.png. How to measure, and how exact it is:
+their correlation, the error of predicting held-out data, and which parameters these data do not identify: then nothing is written, and the exit
+code is 1. With --out, a folder with the fitted scene.yaml, fit.yaml, residuals.csv and residuals.png. How to measure, and how exact it is:
 doc/calibration.md.
 """
 import argparse
@@ -38,7 +38,7 @@ def parse_arguments():
     parser.add_argument("--fit", required=True, action="append", metavar="KEY:LOW..HIGH[:START]",
                         help="a number of the scene, by the end of its path or all of it; thickness_m of a block; offset_m: how much deeper "
                              "along --approach the tool is than recorded")
-    parser.add_argument("--held-out", action="append", default=[], metavar="FILE", help="recording that is foretold, not fitted; "
+    parser.add_argument("--held-out", action="append", default=[], metavar="FILE", help="recording that is predicted, not fitted; "
                         "without one a fifth of every recording is")
     parser.add_argument("--finer", action="append", default=[], metavar="KEY=VALUE", help="a key of the scene with a finer mesh or a shorter "
                         "step, as --set of tissue_contact_replay has it: what was found is then corrected to that scene, for the price of a "
@@ -115,7 +115,7 @@ def fit(arguments):
     finer = finer_settings(arguments.finer)
     answer, quality, problem, costs = run.fit(setup, recordings, held_out, finer=finer)
     print("\n" + results.report(answer, problem, quality, costs))
-    if answer.untold:
+    if answer.unidentified:
         print("\nnothing was written" if arguments.out else "")
         return 1
     if arguments.out:

@@ -23,9 +23,9 @@ def _mesh(cells, growth, step_s):
     return dict(settings, **{block + "cells": cells, "step.max_step_s": step_s})
 
 
-# What the fit is corrected by (fit.py --finer), and the truth, which is finer still and in steps less than half as long: what mesh and step do to the
+# What the fit is corrected by (fit.py --finer), and the truth, which is finer still and in shorter steps: what mesh and step do to the
 # estimates is part of their error here. Fitting with the model that made the data would hide it.
-FINER = _mesh([16, 16, 9], [1.15, 1.15, 1.2], 0.005)
+FINER = _mesh([16, 16, 9], [1.15, 1.15, 1.2], 0.0025)
 TRUTH = _mesh([20, 20, 11], [1.12, 1.12, 1.15], 0.002)
 TRUTH_HZ = 500
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""fit.py: what it reads and refuses; that it finds what is there, says how well, and refuses to tell what the data cannot; what it writes.
+"""fit.py: what it reads and refuses; that it finds what is there, says how well, and refuses what the data do not identify; what it writes.
 
 usage: fit_test.py SOURCE_DIRECTORY      (in the environment of the package: PROGRAM_DIRECTORY/../../env.sh)
 """
@@ -249,11 +249,11 @@ class UncertaintyTest(unittest.TestCase):
         answer, truth = closed_form(400, 3, outliers=20)
         self.assertLess(abs(answer.values[0] / truth[0] - 1.0), 0.03)
 
-    def test_what_cannot_be_told(self):
+    def test_what_is_not_identified(self):
         answer, _ = closed_form(400, 1, alike=True)
-        self.assertEqual(len(answer.untold), 2)
-        self.assertIn("these data cannot tell phantom.material.youngs_modulus_pa from phantom.thickness_m", answer.untold[0])
-        self.assertEqual(closed_form(400, 1)[0].untold, [])
+        self.assertEqual(len(answer.unidentified), 2)
+        self.assertIn("these data cannot separate phantom.material.youngs_modulus_pa from phantom.thickness_m", answer.unidentified[0])
+        self.assertEqual(closed_form(400, 1)[0].unidentified, [])
         self.assertLess(abs(answer.correlation[0, 1] + 1.0), 0.01)
 
     def test_autocorrelation_time(self):
@@ -295,7 +295,7 @@ class CommandTest(Folder):
         for workers in ("1", "2"):
             done = self.fit(*arguments, "--workers", workers)
             self.assertEqual(done.returncode, 0, done.stdout)
-            self.assertIn("held out drag", done.stdout)
+            self.assertIn("held-out drag", done.stdout)
             with open(os.path.join(out, "residuals.csv"), "rb") as stream:
                 hashes.append(hashlib.sha256(stream.read()).hexdigest())
         self.assertEqual(hashes[0], hashes[1])
@@ -312,7 +312,7 @@ class CommandTest(Folder):
         self.assertGreater(os.path.getsize(os.path.join(out, "residuals.png")), 10000)
         self.assertEqual(len(os.listdir(out)), 4)
 
-    def test_it_refuses_to_tell_stiffness_from_thickness(self):
+    def test_it_refuses_to_separate_stiffness_from_thickness(self):
         """Under a flat tool the force is a stiffness times the depth, whatever that stiffness is made of."""
         flat = {"instruments.indenter.contact_links": [{"link": "tip", "shapes": [{"box": {"size_m": [0.014, 0.012, 0.024]}}]}],
                 "tissues.phantom.material.model": "corotational"}
@@ -325,10 +325,10 @@ class CommandTest(Folder):
         arguments = ["--fit", "youngs_modulus_pa:1e3..1e5", "--fit", "offset_m:-5e-4..5e-4", "--out", out]
         done = self.fit(*arguments, "--fit", "thickness_m:0.01..0.04", recordings=["flat"])
         self.assertEqual(done.returncode, 1, done.stdout)
-        self.assertRegex(done.stdout, r"these data cannot tell phantom\.material\.youngs_modulus_pa from phantom\.thickness_m: known to ± ")
+        self.assertRegex(done.stdout, r"these data cannot separate phantom\.material\.youngs_modulus_pa from phantom\.thickness_m: known to ± ")
         self.assertIn("nothing was written", done.stdout)
         self.assertFalse(os.path.exists(out))
-        done = self.fit(*arguments, recordings=["flat"])  # told, once the thickness is known
+        done = self.fit(*arguments, recordings=["flat"])  # identified, once the thickness is known
         self.assertEqual(done.returncode, 0, done.stdout)
 
     def test_poses_become_joints(self):
