@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Fits numbers of a scene to measured forces: stiffness, damping, friction, thickness, the height of first touch.
 
-  fit.py --scene S.yaml --measured press.csv --measured drag.bag --fit youngs_modulus_pa:1e3..1e5 --fit static:0.1..1 --fit offset_m:-5e-4..5e-4
+  fit.py --scene S.yaml --measured press.csv --measured drag.bag --fit youngs_modulus_pa:1e3..1e5 --fit kinetic --fit offset_m
 
 Each recording moves the tool of the scene as it was moved, from rest, and the forces on it are compared. Prints estimates with 95 % intervals,
 their correlation, the error of predicting held-out data, and which parameters these data do not identify: then nothing is written, and the exit
@@ -35,9 +35,9 @@ def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scene", required=True, help="scene file; what is not fitted is as it says")
     parser.add_argument("--measured", required=True, action="append", metavar="FILE", help="table (CSV) or bag; give it again for more")
-    parser.add_argument("--fit", required=True, action="append", metavar="KEY:LOW..HIGH[:START]",
+    parser.add_argument("--fit", required=True, action="append", metavar="KEY[:LOW..HIGH[:START]]",
                         help="a number of the scene, by the end of its path or all of it; thickness_m of a block; offset_m: how much deeper "
-                             "along --approach the tool is than recorded")
+                             "along --approach the tool is than recorded. Common ones have bounds of their own")
     parser.add_argument("--held-out", action="append", default=[], metavar="FILE", help="recording that is predicted, not fitted; "
                         "without one a fifth of every recording is")
     parser.add_argument("--finer", action="append", default=[], metavar="KEY=VALUE", help="a key of the scene with a finer mesh or a shorter "
@@ -106,13 +106,15 @@ def fit(arguments):
         raise FitError("--approach %g %g %g has no direction" % tuple(arguments.approach))
     keys = parameters.SceneKeys(arguments.scene)
     instrument = instrument_of(keys, arguments.instrument)
+    tool = forward.Tool(arguments.scene, instrument["name"], instrument.get("joint_names") or {})  # the scene's own reader comes first
     fitted = parameters.parse_fits(arguments.fit, keys)
-    tool = forward.Tool(arguments.scene, instrument["name"], instrument.get("joint_names") or {})
     setup = run.Setup(arguments.scene, keys, tool, fitted, numpy.array(arguments.approach) / length, forward.Workers(arguments.workers),
                       arguments.starts, arguments.seed, lambda line: print(line, flush=True))
     recordings, held_out = [[prepared(arguments, path, tool, joint_topics(instrument)) for path in paths]
                             for paths in (arguments.measured, arguments.held_out)]
     finer = finer_settings(arguments.finer)
+    for one in fitted:
+        setup.say("%s from %g to %g %s" % (one.key, one.low, one.high, one.unit))
     answer, quality, problem, costs = run.fit(setup, recordings, held_out, finer=finer)
     print("\n" + results.report(answer, problem, quality, costs))
     if answer.unidentified:
@@ -129,12 +131,10 @@ def main():
     arguments = parse_arguments()
     try:
         import scipy  # noqa: F401 (looked for, before anything else says so in its own words)
-        import tissue_contact
+        from tissue_contact import Simulator  # noqa: F401 (likewise)
         from fitting import FitError
     except ImportError as error:
         sys.exit("fit.py: %s; install python3-scipy and source scripts/env.bash" % error)
-    if not hasattr(tissue_contact, "Simulator"):
-        sys.exit("fit.py: tissue_contact was built without its simulator in Python; install pybind11-dev and python3-dev and build again")
     try:
         sys.exit(fit(arguments))
     except (FitError, ValueError) as error:

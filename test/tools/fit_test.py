@@ -4,15 +4,18 @@
 usage: fit_test.py SOURCE_DIRECTORY      (in the environment of the package: PROGRAM_DIRECTORY/../../env.sh)
 """
 import hashlib
+import math
 import os
 import subprocess
 import sys
 import tempfile
+import tracemalloc
 import unittest
+from unittest import mock
 
 import numpy
-import tissue_contact
 import yaml
+import tissue_contact
 
 SOURCE = sys.argv[1]
 for folder in (os.path.join(SOURCE, "scripts"), os.path.join(SOURCE, "benchmark", "fitting")):
@@ -21,6 +24,11 @@ for folder in (os.path.join(SOURCE, "scripts"), os.path.join(SOURCE, "benchmark"
 import phantom_study as study  # noqa: E402 (the paths come first)
 from fitting import FitError, fitted_scene, forward, measured, parameters, run, solve, uncertainty  # noqa: E402
 
+try:
+    tissue_contact.Simulator  # noqa: B018 (loads it)
+    WITHOUT = ""
+except ImportError as error:
+    WITHOUT = str(error)
 DEADLINE_S = 600.0
 E, DAMPING = "tissues.phantom.material.youngs_modulus_pa", "tissues.phantom.damping.stiffness_s"
 # A mesh on which a second of motion takes a tenth of one.
@@ -56,7 +64,7 @@ class TableTest(Folder):
         self.assertEqual(recording.measured(), [2])
         self.assertAlmostEqual(recording.peak_n(), 0.11)
         self.assertIsNone(recording.joints)
-        joints = self.read(["time_s,z,fz_n,fx_n"] + ["%d,0.5,1,2" % i for i in range(12)])
+        joints = self.read(["time_s,z,fz_n,fx_n"] + ["%d,0.5,%d,2" % (i, i) for i in range(12)])
         self.assertEqual(list(joints.joints), ["z"])
         self.assertEqual(joints.measured(), [0, 2])
 
@@ -64,7 +72,13 @@ class TableTest(Folder):
         def changed(line, text):
             return self.GOOD[:line - 1] + [text] + self.GOOD[line:]
         for lines, words in [
-                ([], ["m.csv:1", "time_s"]),
+                ([], ["m.csv is empty", "header"]),
+                (["", ""], ["m.csv:1", "there is no column time_s"]),
+                (["version https://git-lfs.github.com/spec/v1", "oid sha256:0", "size 1"], ["m.csv is a git-lfs pointer", "git lfs pull"]),
+                (["time_s,x_m,y_m,z_m,fz_n"] + ["%d,0,0,%g,%d" % (i, 3.5 * (i % 2), i) for i in range(12)],
+                 ["'z_m' spans 3.5 m", "up to 1 m", "metres"]),
+                (["time_s,x_m,y_m,z_m,fz_n"] + ["%d,0,0,0,%d" % (1000 * i, i) for i in range(12)], ["lasts 11000 s", "up to 3600 s"]),
+                (changed(5, "0.3,0,0,0.01,0." + "1" * 20000), ["m.csv:5", "more than 10000 characters"]),
                 (changed(1, "time_s,x_m,y_m,z_m,fz"), ["m.csv:1", "'fz'", "did you mean", "fz_n"]),
                 (changed(1, "time_s,x_m,y_m,fz_n,fz_n"), ["m.csv:1", "'fz_n' is there twice"]),
                 (changed(1, "time_s,x_m,y_m,fx_n,fz_n"), ["m.csv:1", "z_m", "all are needed"]),
@@ -75,18 +89,31 @@ class TableTest(Folder):
                 (changed(5, "0.3,0,0,35.2,0.1"), ["m.csv:5", "'z_m' is '35.2'", "metres"]),
                 (changed(5, "0.3,0,0,0.01,nan"), ["m.csv:5", "'fz_n' is 'nan'", "newtons"]),
                 (changed(5, "0.3,0,0,0.01,1e400"), ["m.csv:5", "'fz_n'"]),
-                (changed(5, "0.1,0,0,0.01,0.1"), ["m.csv:5", "'time_s' is 0.1, not after"]),
+                (changed(5, "0.1,0,0,0.01,0.1"), ["m.csv:5", "'time_s' is 0.1, not after 0.2", "ascend"]),
                 (changed(5, "0.3,0,0,0.01"), ["m.csv:5", "4 values under 5 columns"]),
                 (self.GOOD[:6], ["5 rows", "10 or more"]),
-                (["time_s,x_m,y_m,z_m,fz_n"] + ["%d,0,0,0,0" % i for i in range(12)], ["every force is 0"]),
+                (["time_s,x_m,y_m,z_m,fz_n"] + ["%d,0,0,0,0" % i for i in range(12)], ["the force is the same in every row (0 N)"]),
                 (["time_s,x_m,y_m,z_m,qx,qy,qz,qw,fz_n"] + ["%d,0,0,0,0,0,0,%g,1" % (i, 0.9 if i == 7 else 1) for i in range(12)],
                  ["row 8", "0.9", "norm"])]:
             with self.subTest(words=words):
                 self.refused(words, self.read, lines)
-        self.refused(["cannot be read"], measured.read, self.folder, [], [], "")
+        for path, why in [(self.folder, "not a file"), ("/dev/zero", "not a file"), (os.path.join(self.folder, "none"), "No such file")]:
+            self.refused([path + " cannot be read: ", why], measured.read, path, [], [], "")
         with open(os.path.join(self.folder, "b.csv"), "wb") as stream:
             stream.write(b"time_s,\xff\xfe\n")
         self.refused(["cannot be read as a table"], measured.read, os.path.join(self.folder, "b.csv"), [], [], "")
+
+    def test_a_huge_table_is_refused_with_little_memory(self):
+        path = os.path.join(self.folder, "huge.csv")
+        with open(path, "wb") as stream:
+            stream.write(b"time_s,z,fz_n\n" + 8 * b"1")
+            stream.truncate(4000000000)  # a sparse file: one line of four gigabytes
+        with mock.patch.object(measured, "MOST_ROWS", 100):
+            self.refused(["m.csv:102", "more than 100 rows"], self.read, ["time_s,x_m,y_m,z_m,fz_n"] + ["%d,0,0,0,%d" % (i, i) for i in range(200)])
+        tracemalloc.start()
+        self.addCleanup(tracemalloc.stop)
+        self.refused(["huge.csv:2", "more than 10000 characters"], measured.read, path, ["z"], [], "")
+        self.assertLess(tracemalloc.get_traced_memory()[1], 5e6)
 
     def test_thin_smooth_tare(self):
         recording = self.read(["time_s,x_m,y_m,z_m,fz_n"] + ["%.3f,0,0,%.9f,%g" % (0.002 * i, 1e-4 * (0.002 * i) ** 2, 3 + i % 2) for i in range(500)])
@@ -101,7 +128,7 @@ class TableTest(Folder):
 
 
 class BagTest(Folder):
-    def bag(self, states=200, force_type=None, stamps=1.0):
+    def bag(self, states=200, force_type=None, stamps=1.0, force=lambda i: 0.02 * i):
         import genpy
         import rosbag
         from geometry_msgs.msg import WrenchStamped
@@ -112,7 +139,7 @@ class BagTest(Folder):
                 state = JointState(name=["z"], position=[1e-5 * i])
                 wrench = WrenchStamped() if force_type is None else JointState(name=["z"], position=[0])
                 if force_type is None:
-                    wrench.wrench.force.z = 0.02 * i
+                    wrench.wrench.force.z = force(i)
                 for topic, message, at in (("/js", state, 10 + stamps * 0.01 * i), ("/force_sensor", wrench, 10.005 + 0.01 * i)):
                     message.header.stamp = genpy.Time.from_sec(at)
                     bag.write(topic, message, genpy.Time.from_sec(10 + i))
@@ -132,6 +159,9 @@ class BagTest(Folder):
         self.refused(["/force_sensor has sensor_msgs/JointState; geometry_msgs/WrenchStamped is needed"], self.read, self.bag(force_type="js"))
         self.refused(["is not after", "header.stamp"], self.read, self.bag(stamps=0.0))
         self.refused(["10 to"], self.read, self.bag(5))
+        self.refused(["no joint_state_topics"], measured.read, self.bag(), ["z"], [], "/force_sensor")
+        self.refused(["the force is the same in every row"], self.read, self.bag(force=lambda i: 3.0))
+        self.refused(["on /force_sensor a force is nan N; from -1000 to 1000 N"], self.read, self.bag(force=lambda i: math.nan if i == 9 else 1.0))
         with open(self.bag(), "rb") as stream:
             content = stream.read()
         with open(os.path.join(self.folder, "cut.bag"), "wb") as stream:
@@ -155,8 +185,15 @@ class ParameterTest(Folder):
         self.assertEqual(parameters.parse_fit("tissues.phantom.damping.mass_per_s:0..10", self.keys).start, 5.0)  # left out in the file
         self.assertEqual(parameters.parse_fit("thickness_m:0.01..0.04", self.keys).start, 0.018)
 
+    def test_bounds_that_are_left_out(self):
+        for name, low, high, start in [("static", 0.02, 2.0, 0.5), ("youngs_modulus_pa", 3e2, 3e5, 1e4), ("thickness_m", 0.0072, 0.045, 0.018),
+                                       ("offset_m", -1e-3, 1e-3, 0.0)]:
+            found = parameters.parse_fit(name, self.keys)
+            numpy.testing.assert_allclose([found.low, found.high, found.start], [low, high, start], atol=1e-12)
+        self.refused(["density_kg_per_m3 has no bounds", "KEY:LOW..HIGH", "static"], parameters.parse_fit, "density_kg_per_m3", self.keys)
+
     def test_refused(self):
-        for text, words in [("youngs_modulus_pa", ["KEY:LOW..HIGH"]), ("static:1..0.5", ["LOW below HIGH"]), ("static:a..b", ["KEY:LOW..HIGH"]),
+        for text, words in [("youngs_modulus_pa:", ["KEY:LOW..HIGH"]), ("static:1..0.5", ["LOW below HIGH"]), ("static:a..b", ["KEY:LOW..HIGH"]),
                             ("static:0..inf", ["KEY:LOW..HIGH"]), ("static:0.1..1:2", ["the start 2", "0.1 to 1"]),
                             ("youngs_modulus:1..2", ["no such number", "youngs_modulus_pa"]), ("growth:1..2", ["several keys", "grading.x.growth"])]:
             with self.subTest(text=text):
@@ -266,7 +303,7 @@ class UncertaintyTest(unittest.TestCase):
         self.assertAlmostEqual(uncertainty.autocorrelation_time(numpy.array(slow)), (1 + 0.8) / (1 - 0.8), delta=1.5)
 
 
-@unittest.skipUnless(hasattr(tissue_contact, "Simulator"), "built without the simulator in Python")
+@unittest.skipIf(WITHOUT, WITHOUT)
 class CommandTest(Folder):
     """With the simulator, on a coarse mesh: data of a finer step and other noise, by the command that users type."""
 
