@@ -104,9 +104,10 @@ def fit(arguments):
     length = math.sqrt(sum(x * x for x in arguments.approach))
     if not length > 1e-6:
         raise FitError("--approach %g %g %g has no direction" % tuple(arguments.approach))
+    forward.load_scene(arguments.scene)  # its own reader comes first: it bounds what it reads, and says what is wrong
     keys = parameters.SceneKeys(arguments.scene)
     instrument = instrument_of(keys, arguments.instrument)
-    tool = forward.Tool(arguments.scene, instrument["name"], instrument.get("joint_names") or {})  # the scene's own reader comes first
+    tool = forward.Tool(arguments.scene, instrument["name"], instrument.get("joint_names") or {})
     fitted = parameters.parse_fits(arguments.fit, keys)
     setup = run.Setup(arguments.scene, keys, tool, fitted, numpy.array(arguments.approach) / length, forward.Workers(arguments.workers),
                       arguments.starts, arguments.seed, lambda line: print(line, flush=True))
@@ -122,7 +123,7 @@ def fit(arguments):
         return 1
     if arguments.out:
         names = results.write(arguments.out, setup, finer, answer, problem, quality, "fit.py " + shlex.join(sys.argv[1:]),
-                              [arguments.scene] + arguments.measured + arguments.held_out, whole_file, forward.tissue_contact.load_scene)
+                              [arguments.scene] + arguments.measured + arguments.held_out, whole_file)
         print("\nwritten: " + ", ".join(names))
     return 0
 

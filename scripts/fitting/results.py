@@ -7,8 +7,9 @@ import os
 import numpy
 import yaml
 
-from fitting import FitError, uncertainty
+from fitting import uncertainty
 from fitting.fitted_scene import fitted_text
+from fitting.forward import load_scene
 from fitting.parameters import OFFSET
 
 MOST_DRAWN = 8
@@ -112,7 +113,7 @@ def _write_residuals(path, answer, problem):
                                ["%.6g" % one for one in fitted])
 
 
-def write(folder, setup, finer, answer, problem, held_out, made_by, inputs, whole_file, check_scene):
+def write(folder, setup, finer, answer, problem, held_out, made_by, inputs, whole_file):
     """All of them or none: they take their names when each is written."""
     os.makedirs(folder, exist_ok=True)
     settings = dict(setup.settings(answer.values), **finer)
@@ -126,10 +127,7 @@ def write(folder, setup, finer, answer, problem, held_out, made_by, inputs, whol
         scene, numbers, residuals, picture = [stack.enter_context(whole_file(name, inputs)) for name in names]
         with open(scene, "w", encoding="utf-8") as stream:
             stream.write(text)
-        try:
-            check_scene(scene)
-        except (ValueError, RuntimeError) as error:
-            raise FitError("the fitted scene would be refused: %s" % error) from error
+        load_scene(scene)
         with open(numbers, "w", encoding="utf-8") as stream:
             yaml.safe_dump(figures(answer, problem, held_out, made_by), stream, sort_keys=False)
         _write_residuals(residuals, answer, problem)

@@ -65,6 +65,13 @@ def hold_out_blocks(runs):
         run.fitted = block % HELD_OUT_OF != HELD_OUT_OF // 2
 
 
+def _require_contact(runs, forces):
+    for run, (force, _) in zip(runs, forces):
+        if not numpy.abs(force).max() > 0.0:
+            raise FitError("%s: up to %.3g N were measured, but the tool of the scene never touches: are its positions those of the tip in the "
+                           "scene's world, in metres, or its joints as the URDF has them?" % (run.recording.name, run.recording.peak_n()))
+
+
 def fit(setup, recordings, held_out=(), cross_check=True, finer=None):
     """(Answer, [HeldOut], problem, costs of the descents). Without recordings that are held out, blocks of all are, and the answer
     is then refined on everything. finer: settings of a finer mesh or step; the answer is then that of the scene with them."""
@@ -77,13 +84,15 @@ def fit(setup, recordings, held_out=(), cross_check=True, finer=None):
         hold_out_blocks(runs)
     problem = setup.problem(runs)
     point, costs = solve.search(problem, setup.starts, setup.seed)
-    point = solve.refine(problem, point)
+    _require_contact(runs, problem.forces([point])[0])
+    tolerance = solve.FIRST_TOLERANCE if finer else solve.TOLERANCE  # of a point that is corrected anyway
+    point = solve.refine(problem, point, tolerance)
     quality = []
     if by_blocks:
         for run, (force, _) in zip(runs, problem.forces([point])[0]):
             quality.append(prediction_error(run, force, ~run.fitted))
             run.fitted = numpy.ones(len(run.fitted), bool)
-        point = solve.refine(problem, point)
+        point = solve.refine(problem, point, tolerance)
     before = point
     if finer:
         coarse, problem = problem, setup.problem(runs, finer)

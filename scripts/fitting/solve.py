@@ -129,10 +129,10 @@ def _apart(points, order):
     return [order[0]] + rest[:1]
 
 
-def refine(problem, point):
+def refine(problem, point, tolerance=TOLERANCE):
     """From a point near the answer: scales from its residuals, then robust least squares."""
     set_scales(problem, point)
-    found = _descend(problem, point, "huber", "refinement", TOLERANCE)
+    found = _descend(problem, point, "huber", "refinement", tolerance)
     point = problem.in_order(found.x)
     set_scales(problem, point)
     problem.tell("done", point)

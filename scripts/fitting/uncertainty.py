@@ -36,7 +36,7 @@ class Answer:
     correlation: numpy.ndarray
     singular: numpy.ndarray     # of the Jacobian per part of the way, weighted forces
     shares: numpy.ndarray       # runs x parameters: of what is known about it
-    untold: list                # sentences; empty: all are identified
+    unidentified: list          # sentences; empty: all are identified
 
     def interval(self, i):
         parameter = self.parameters[i]

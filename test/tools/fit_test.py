@@ -385,6 +385,16 @@ class CommandTest(Folder):
         name = parameters.SceneKeys(arm).instruments()[0]["name"]
         self.refused(["poses of the tip", "give its joints' columns instead"], forward.Tool(arm, name, {}).motion, recording)
 
+    def test_a_recording_in_another_frame_is_refused(self):
+        with open(os.path.join(self.folder, "press.csv"), encoding="utf-8") as stream:
+            lines = [line.split(",") for line in stream]
+        for line in lines[1:]:
+            line[3] = "%g" % (float(line[3]) + 0.1)
+        self.write("high.csv", "".join(map(",".join, lines)))
+        done = self.fit("--fit", "youngs_modulus_pa", recordings=["high"])
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertRegex(done.stdout, r"fit\.py: high: up to 0\.\d+ N were measured, but the tool of the scene never touches: .* in metres")
+
     def test_refused(self):
         for arguments, words in [(["--fit", "youngs_modulus_pa:0.1..0.5"], ["youngs_modulus_pa", "0.223607", "it must be a number >= 1"]),
                                  (["--fit", "statc:0.1..1"], ["no such number"]),
