@@ -22,7 +22,7 @@ for folder in (os.path.join(SOURCE, "scripts"), os.path.join(SOURCE, "benchmark"
     sys.path.insert(0, folder)
 
 import phantom_study as study  # noqa: E402 (the paths come first)
-from fitting import FitError, fitted_scene, forward, measured, parameters, run, solve, uncertainty  # noqa: E402
+from fitting import FitError, fitted_scene, forward, measured, parameters, solve, uncertainty  # noqa: E402
 
 try:
     tissue_contact.Simulator  # noqa: B018 (loads it)
@@ -315,12 +315,28 @@ class CommandTest(Folder):
         for name, motion in (("press", study.press()), ("swing", study.swing(cycles=3)), ("drag", study.drag())):
             force = study.true_forces(self.truth, motion, self.scene)
             recording = study.record(name, motion, force, study.Noise(), numpy.array([0.0, 0.0, 1e-4]), generator)
-            study.write_table(os.path.join(self.folder, name + ".csv"), measured.thin(recording, 250.0))
+            write = self.write_bag if name == "swing" else study.write_table
+            write(os.path.join(self.folder, name + (".bag" if name == "swing" else ".csv")), measured.thin(recording, 250.0))
 
-    def fit(self, *arguments, recordings=("press", "swing", "drag")):
+    @staticmethod
+    def write_bag(path, recording):
+        """Poses as joint states of urdf/indenter.urdf, forces as a sensor sends them."""
+        import genpy
+        import rosbag
+        from geometry_msgs.msg import WrenchStamped
+        from sensor_msgs.msg import JointState
+        with rosbag.Bag(path, "w") as bag:
+            for time, position, force in zip(recording.times_s, recording.positions_m, recording.force_n):
+                state, wrench = JointState(name=["x", "y", "z"], position=list(position)), WrenchStamped()
+                wrench.wrench.force.x, wrench.wrench.force.y, wrench.wrench.force.z = force
+                for topic, message in (("/indenter/joint_states", state), ("/force_sensor", wrench)):
+                    message.header.stamp = genpy.Time.from_sec(10.0 + time)
+                    bag.write(topic, message, message.header.stamp)
+
+    def fit(self, *arguments, recordings=("press.csv", "swing.bag", "drag.csv")):
         command = [sys.executable, os.path.join(SOURCE, "scripts", "fit.py"), "--scene", self.scene]
         for name in recordings:
-            command += ["--measured", os.path.join(self.folder, name + ".csv")]
+            command += ["--measured", os.path.join(self.folder, name)]
         return subprocess.run(command + ["--smooth", "0.06", "--rate", "50", "--starts", "0"] + list(arguments), stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, timeout=DEADLINE_S, check=False)
 
@@ -360,12 +376,12 @@ class CommandTest(Folder):
         study.write_table(os.path.join(self.folder, "flat.csv"), measured.thin(recording, 250.0))
         out = os.path.join(self.folder, "out")
         arguments = ["--fit", "youngs_modulus_pa:1e3..1e5", "--fit", "offset_m:-5e-4..5e-4", "--out", out]
-        done = self.fit(*arguments, "--fit", "thickness_m:0.01..0.04", recordings=["flat"])
+        done = self.fit(*arguments, "--fit", "thickness_m:0.01..0.04", recordings=["flat.csv"])
         self.assertEqual(done.returncode, 1, done.stdout)
         self.assertRegex(done.stdout, r"these data cannot separate phantom\.material\.youngs_modulus_pa from phantom\.thickness_m: known to ± ")
         self.assertIn("nothing was written", done.stdout)
         self.assertFalse(os.path.exists(out))
-        done = self.fit(*arguments, recordings=["flat"])  # identified, once the thickness is known
+        done = self.fit(*arguments, recordings=["flat.csv"])  # identified, once the thickness is known
         self.assertEqual(done.returncode, 0, done.stdout)
 
     def test_poses_become_joints(self):
@@ -391,7 +407,7 @@ class CommandTest(Folder):
         for line in lines[1:]:
             line[3] = "%g" % (float(line[3]) + 0.1)
         self.write("high.csv", "".join(map(",".join, lines)))
-        done = self.fit("--fit", "youngs_modulus_pa", recordings=["high"])
+        done = self.fit("--fit", "youngs_modulus_pa", recordings=["high.csv"])
         self.assertEqual(done.returncode, 1, done.stdout)
         self.assertRegex(done.stdout, r"fit\.py: high: up to 0\.\d+ N were measured, but the tool of the scene never touches: .* in metres")
 
@@ -402,7 +418,7 @@ class CommandTest(Folder):
                                  (["--fit", "static:0.1..1", "--approach", "0", "0", "0"], ["no direction"]),
                                  (["--fit", "static:0.1..1", "--measured", "none.csv"], ["none.csv cannot be read"])]:
             with self.subTest(arguments=arguments):
-                done = self.fit(*arguments, recordings=["press"])
+                done = self.fit(*arguments, recordings=["press.csv"])
                 self.assertEqual(done.returncode, 1, done.stdout)
                 self.assertNotIn("Traceback", done.stdout)
                 for word in words:
