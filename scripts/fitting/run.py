@@ -65,13 +65,6 @@ def hold_out_blocks(runs):
         run.fitted = block % HELD_OUT_OF != HELD_OUT_OF // 2
 
 
-def _require_contact(runs, forces):
-    for run, (force, _) in zip(runs, forces):
-        if not numpy.abs(force).max() > 0.0:
-            raise FitError("%s: up to %.3g N were measured, but the tool of the scene never touches: are its positions those of the tip in the "
-                           "scene's world, in metres, or its joints as the URDF has them?" % (run.recording.name, run.recording.peak_n()))
-
-
 def fit(setup, recordings, held_out=(), cross_check=True, finer=None):
     """(Answer, [HeldOut], problem, costs of the descents). Without recordings that are held out, blocks of all are, and the answer
     is then refined on everything. finer: settings of a finer mesh or step; the answer is then that of the scene with them."""
@@ -84,7 +77,6 @@ def fit(setup, recordings, held_out=(), cross_check=True, finer=None):
         hold_out_blocks(runs)
     problem = setup.problem(runs)
     point, costs = solve.search(problem, setup.starts, setup.seed)
-    _require_contact(runs, problem.forces([point])[0])
     tolerance = solve.FIRST_TOLERANCE if finer else solve.TOLERANCE  # of a point that is corrected anyway
     point = solve.refine(problem, point, tolerance)
     quality = []

@@ -101,13 +101,23 @@ def starts(problem, count, seed):
     return [numpy.clip(own, 0.0, 1.0)] + list(cube)
 
 
+def _require_contact(problem, point):
+    for run, (force, _) in zip(problem.runs, problem.forces([point])[0]):
+        if not numpy.abs(force).max() > 0.0:
+            raise FitError("%s: up to %.3g N were measured, but the tool of the scene never touches: are its positions those of the tip in the "
+                           "scene's world, in metres, or its joints as the URDF has them?" % (run.recording.name, run.recording.peak_n()))
+
+
 def _descend(problem, point, loss, name, tolerance):
     def jacobian(at):
         problem.tell(name, at)
         return problem.jacobian(at, both_sides=tolerance <= TOLERANCE)
 
+    point = numpy.clip(point, 1e-6, 1.0 - 1e-6)
+    if not problem.jacobian(point, both_sides=tolerance <= TOLERANCE).any():  # nothing to go by, on which SciPy divides by 0
+        return optimize.OptimizeResult(x=point, cost=0.5 * float(problem.at(point) @ problem.at(point)))
     try:
-        return optimize.least_squares(problem.at, numpy.clip(point, 1e-6, 1.0 - 1e-6), jacobian, bounds=(0.0, 1.0), loss=loss, f_scale=HUBER,
+        return optimize.least_squares(problem.at, point, jacobian, bounds=(0.0, 1.0), loss=loss, f_scale=HUBER,
                                        ftol=tolerance, xtol=tolerance, gtol=None, max_nfev=MOST_ITERATIONS)
     except ValueError as error:  # a residual that is not finite
         raise FitError("the fit cannot go on: %s" % error) from error
@@ -119,6 +129,7 @@ def search(problem, count, seed):
     costs = [float(numpy.abs(problem.residual(forces)).sum()) for forces in problem.forces(points)]
     order = numpy.argsort(costs, kind="stable")
     problem.tell("best of %d starts" % len(points), points[order[0]])
+    _require_contact(problem, points[order[0]])
     tried = [_descend(problem, points[i], "soft_l1", "descent", FIRST_TOLERANCE) for i in _apart(points, order)]
     return min(tried, key=lambda found: found.cost).x, [found.cost for found in tried]
 

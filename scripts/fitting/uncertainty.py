@@ -98,7 +98,7 @@ def assess(problem, point, correction=0.0):
         information[run] += (jacobian[rows] ** 2).sum(axis=0)
         independent += len(clipped) / time
     # Directions in which nothing is known become very long ones, not none.
-    least = FLAT * max(numpy.linalg.norm(curvature, 2), 1e-300) * numpy.eye(len(point))
+    least = FLAT * max(numpy.linalg.norm(curvature, 2), 1e-100) * numpy.eye(len(point))
     inverse, meat = numpy.linalg.inv(curvature + least), meat + least
     freedom = max(independent - len(point), 1.0)
     meat *= independent / freedom  # the fit has taken its share of the residuals

@@ -11,6 +11,7 @@ import sys
 import tempfile
 import tracemalloc
 import unittest
+import warnings
 from unittest import mock
 
 import numpy
@@ -232,21 +233,23 @@ class FittedSceneTest(Folder):
         self.assertEqual([tissue["material"]["youngs_modulus_pa"] for tissue in got["tissues"]], [1, 2.0])
 
 
-def closed_form(count, seed, noise=0.05, correlated=False, alike=False, outliers=0):
-    """A press whose force is E (d + offset)^1.5, or with `alike` E t: nothing tells E from t."""
+def closed_form(count, seed, noise=0.05, correlated=False, alike=False, constant=False, outliers=0):
+    """A press whose force is E (d + offset)^1.5, or with `alike` E t: nothing separates E from t; or with `constant` whatever they are."""
     generator = numpy.random.default_rng(seed)
     times = numpy.linspace(0.0, 1.0, count)
     depth = 2.0 * numpy.sin(numpy.pi * times)
     keys = parameters.SceneKeys(study.SCENE)
     texts = ["youngs_modulus_pa:1e3..1e5", "thickness_m:0.005..0.05" if alike else "offset_m:-5e-4..5e-4"]
 
+    truth = [7000.0, 0.02 if alike else 1e-4]
+
     def forces(values, run_):
+        values = truth if constant else values
         size = values[0] * numpy.maximum(depth + (0.0 if alike else 1e3 * values[1]), 0.0) ** 1.5 * (values[1] if alike else 1.0)
         force = numpy.zeros((count, 3))
         force[:, 2] = size
         return force, numpy.zeros(count)
 
-    truth = [7000.0, 0.02 if alike else 1e-4]
     white = generator.standard_normal(count)
     if correlated:
         for i in range(1, count):
@@ -292,6 +295,12 @@ class UncertaintyTest(unittest.TestCase):
         self.assertIn("these data cannot separate phantom.material.youngs_modulus_pa from phantom.thickness_m", answer.unidentified[0])
         self.assertEqual(closed_form(400, 1)[0].unidentified, [])
         self.assertLess(abs(answer.correlation[0, 1] + 1.0), 0.01)
+
+    def test_what_the_forces_do_not_depend_on(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            answer = closed_form(100, 1, constant=True)[0]
+        self.assertEqual(["hardly depend on it" in sentence for sentence in answer.unidentified], [True, True])
 
     def test_autocorrelation_time(self):
         generator = numpy.random.default_rng(1)
