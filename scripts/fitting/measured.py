@@ -85,7 +85,7 @@ def _require_columns(path, names, joint_names):
     known = ("time_s",) + POSITION + QUATERNION + FORCE + tuple(joint_names)
     for name in names:
         if name not in known:
-            near = difflib.get_close_matches(name, known, 1)
+            near = difflib.get_close_matches(name.lower(), known, 1)
             raise FitError("%s:1: column '%s' is not known%s; allowed are %s" %
                            (path, name, "; did you mean '%s'?" % near[0] if near else "", ", ".join(known)))
         if names.count(name) > 1:
