@@ -51,7 +51,8 @@ def parse_arguments():
     parser.add_argument("--approach", type=number(-1e6, 1e6), nargs=3, default=[0.0, 0.0, -1.0], metavar=("X", "Y", "Z"),
                         help="direction of the tool towards the tissue, in the world; default: 0 0 -1")
     parser.add_argument("--tare", type=number(0.0, 1e4), default=0.0, metavar="S", help="take off the mean force of the first S seconds")
-    parser.add_argument("--smooth", type=number(0.0, 1e3), default=0.0, metavar="S", help="smooth the motion over S seconds")
+    parser.add_argument("--smooth", action="append", default=[], metavar="[RECORDING=]S",
+                        help="smooth the motion over S seconds: of all recordings, or of one by its file's name without .csv or .bag")
     parser.add_argument("--rate", type=number(0.0, 1e4), default=0.0, metavar="HZ", help="thin recordings to this rate by means; default: as recorded")
     parser.add_argument("--starts", type=whole(0, 1000), default=8, help="points of a Latin hypercube tried besides the scene's; default: %(default)s")
     parser.add_argument("--seed", type=whole(0, 2 ** 31), default=1, help="of the hypercube; default: %(default)s")
@@ -73,10 +74,30 @@ def joint_topics(instrument):
     return [topic["topic"] if isinstance(topic, dict) else topic for topic in instrument.get("joint_state_topics", [])]
 
 
+def smoothing(arguments):
+    """{recording: seconds}, with None for those that are not named."""
+    from fitting import FitError, measured
+    windows = {None: 0.0}
+    known = [measured.name_of(path) for path in arguments.measured + arguments.held_out]
+    for text in arguments.smooth:
+        name, equals, seconds = text.rpartition("=")
+        try:
+            windows[name if equals else None] = float(seconds)
+        except ValueError:
+            seconds = "nan"
+        if not 0.0 <= float(seconds) <= 1e3:
+            raise FitError("--smooth '%s' is not S or RECORDING=S with S from 0 to 1000 s" % text)
+        if equals and name not in known:
+            raise FitError("--smooth '%s': there is no recording '%s'; given are %s" % (text, name, ", ".join(known)))
+    return windows
+
+
 def prepared(arguments, path, tool, topics):
     from fitting import measured
+    windows = smoothing(arguments)
     recording = measured.read(path, tool.recorded_names(), topics, arguments.force_topic)
-    recording = measured.thin(measured.smooth(measured.tare(recording, arguments.tare), arguments.smooth), arguments.rate)
+    recording = measured.smooth(measured.tare(recording, arguments.tare), windows.get(recording.name, windows[None]))
+    recording = measured.thin(recording, arguments.rate)
     if arguments.force_on == "tissue":
         recording.force_n = -recording.force_n
     if arguments.axes == "tip":

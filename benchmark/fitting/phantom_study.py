@@ -16,6 +16,7 @@ TOOL = "indenter"
 RATE_HZ = 500
 ROUNDING_S = 0.06  # of corners of the motion: an arm has mass
 BALL_M = 0.012
+SMOOTH_S = {"press": 0.2, "drag": 0.2}  # slow: what trembles there is noise, which would tell the fit that there is no damping
 
 def _mesh(cells, growth, step_s):
     block = "tissues.phantom.block."
@@ -102,9 +103,9 @@ def record(name, motion, force, noise, offset_m, generator):
         positions_m=positions + offset_m + noise.pose_m * generator.standard_normal(positions.shape))
 
 
-def as_fit_sees(recording, smooth_s=0.06, rate_hz=100.0):
-    """As fit.py --smooth 0.06 --rate 100."""
-    return measured.thin(measured.smooth(recording, smooth_s), rate_hz)
+def as_fit_sees(recording, rate_hz=100.0):
+    """As fit.py --smooth 0.06 --smooth press=0.2 --smooth drag=0.2 --rate 100."""
+    return measured.thin(measured.smooth(recording, SMOOTH_S.get(recording.name, 0.06)), rate_hz)
 
 
 def setup(fits, workers, scene=SCENE, **more):

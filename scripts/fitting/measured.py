@@ -41,6 +41,10 @@ class Recording:
         return float(numpy.sqrt((self.force_n[:, self.measured()] ** 2).sum(axis=1)).max())
 
 
+def name_of(path):
+    return os.path.splitext(os.path.basename(path))[0]
+
+
 def read(path, joint_names, joint_topics, force_topic):
     """joint_names: as recorded; topics: of a bag."""
     is_bag = _beginning(path).startswith(b"#ROSBAG V")
@@ -175,7 +179,7 @@ def _recording(path, columns, joints):
     _require_unit_quaternions(path, columns)
     unmeasured = numpy.full(len(columns["time_s"]), numpy.nan)
     return Recording(
-        name=os.path.splitext(os.path.basename(path))[0], times_s=columns["time_s"],
+        name=name_of(path), times_s=columns["time_s"],
         force_n=numpy.stack([columns.get(name, unmeasured) for name in FORCE], axis=1),
         positions_m=None if joints else numpy.stack([columns[name] for name in POSITION], axis=1),
         quaternions=numpy.stack([columns[name] for name in QUATERNION], axis=1) if QUATERNION[0] in columns else None,
@@ -215,7 +219,7 @@ def _read_bag(path, joint_names, joint_topics, force_topic):
         raise FitError("%s: %d joint states while forces were recorded; %d to %d are needed" % (path, len(times), FEWEST_ROWS, MOST_ROWS))
     start = times[0]
     return Recording(
-        name=os.path.splitext(os.path.basename(path))[0], times_s=times - start,
+        name=name_of(path), times_s=times - start,
         force_n=numpy.stack([numpy.interp(times, force_times, forces[:, axis]) for axis in range(3)], axis=1),
         joints=_joints_at(path, times, states, joint_names))
 

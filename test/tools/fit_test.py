@@ -209,7 +209,7 @@ class CommandTest(Folder):
         command = [sys.executable, os.path.join(SOURCE, "scripts", "fit.py"), "--scene", self.scene]
         for name in recordings:
             command += ["--measured", os.path.join(self.folder, name)]
-        return subprocess.run(command + ["--smooth", "0.06", "--rate", "50", "--starts", "0"] + list(arguments), stdin=subprocess.DEVNULL,
+        return subprocess.run(command + ["--smooth", "0.06", "--smooth", "press=0.2", "--rate", "50", "--starts", "0"] + list(arguments), stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, timeout=DEADLINE_S, check=False)
 
     def test_it_finds_what_is_there_and_writes_it(self):
@@ -288,6 +288,8 @@ class CommandTest(Folder):
                                  (["--fit", "statc:0.1..1"], ["no such number"]),
                                  (["--fit", "static:0.1..1", "--instrument", "arm"], ["--instrument arm", "indenter"]),
                                  (["--fit", "static:0.1..1", "--approach", "0", "0", "0"], ["no direction"]),
+                                 (["--fit", "static:0.1..1", "--smooth", "drag=0.2"], ["no recording 'drag'", "given are press"]),
+                                 (["--fit", "static:0.1..1", "--smooth", "press=x"], ["'press=x' is not S or RECORDING=S"]),
                                  (["--fit", "static:0.1..1", "--measured", "none.csv"], ["none.csv cannot be read"])]:
             with self.subTest(arguments=arguments):
                 done = self.fit(*arguments, recordings=["press.csv"])
