@@ -82,13 +82,14 @@ def smoothing(arguments):
     for text in arguments.smooth:
         name, equals, seconds = text.rpartition("=")
         try:
-            windows[name if equals else None] = float(seconds)
+            window = float(seconds)
         except ValueError:
-            seconds = "nan"
-        if not 0.0 <= float(seconds) <= 1e3:
+            window = math.nan
+        if not 0.0 <= window <= 1e3:
             raise FitError("--smooth '%s' is not S or RECORDING=S with S from 0 to 1000 s" % text)
         if equals and name not in known:
             raise FitError("--smooth '%s': there is no recording '%s'; given are %s" % (text, name, ", ".join(known)))
+        windows[name if equals else None] = window
     return windows
 
 
