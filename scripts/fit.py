@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Fits numbers of a scene to measured forces: stiffness, damping, friction, thickness, the height of first touch.
 
-  fit.py --scene S.yaml --measured press.csv --measured drag.bag --fit youngs_modulus_pa:1e3..1e5 --fit static:0.1..1 --fit offset_m:-5e-4..5e-4
+  fit.py --scene S.yaml --measured press.csv --measured drag.bag --fit youngs_modulus_pa:1e3..1e5 --fit kinetic --fit offset_m
 
 Each recording moves the tool of the scene as it was moved, from rest, and the forces on it are compared. Prints estimates with 95 % intervals,
-their correlation, the error of what was held out, and which parameters these data cannot tell: then nothing is written, and the exit code
-is 1. With --out, a folder with the fitted scene.yaml, fit.yaml, residuals.csv and residuals.png. How to measure, and how exact it is:
+their correlation, the error of predicting held-out data, and which parameters these data do not identify: then nothing is written, and the exit
+code is 1. With --out, a folder with the fitted scene.yaml, fit.yaml, residuals.csv and residuals.png. How to measure, and how exact it is:
 doc/calibration.md.
 """
 import argparse
@@ -35,10 +35,10 @@ def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scene", required=True, help="scene file; what is not fitted is as it says")
     parser.add_argument("--measured", required=True, action="append", metavar="FILE", help="table (CSV) or bag; give it again for more")
-    parser.add_argument("--fit", required=True, action="append", metavar="KEY:LOW..HIGH[:START]",
+    parser.add_argument("--fit", required=True, action="append", metavar="KEY[:LOW..HIGH[:START]]",
                         help="a number of the scene, by the end of its path or all of it; thickness_m of a block; offset_m: how much deeper "
-                             "along --approach the tool is than recorded")
-    parser.add_argument("--held-out", action="append", default=[], metavar="FILE", help="recording that is foretold, not fitted; "
+                             "along --approach the tool is than recorded. Common ones have bounds of their own")
+    parser.add_argument("--held-out", action="append", default=[], metavar="FILE", help="recording that is predicted, not fitted; "
                         "without one a fifth of every recording is")
     parser.add_argument("--finer", action="append", default=[], metavar="KEY=VALUE", help="a key of the scene with a finer mesh or a shorter "
                         "step, as --set of tissue_contact_replay has it: what was found is then corrected to that scene, for the price of a "
@@ -51,7 +51,8 @@ def parse_arguments():
     parser.add_argument("--approach", type=number(-1e6, 1e6), nargs=3, default=[0.0, 0.0, -1.0], metavar=("X", "Y", "Z"),
                         help="direction of the tool towards the tissue, in the world; default: 0 0 -1")
     parser.add_argument("--tare", type=number(0.0, 1e4), default=0.0, metavar="S", help="take off the mean force of the first S seconds")
-    parser.add_argument("--smooth", type=number(0.0, 1e3), default=0.0, metavar="S", help="smooth the motion over S seconds")
+    parser.add_argument("--smooth", action="append", default=[], metavar="[RECORDING=]S",
+                        help="smooth the motion over S seconds: of all recordings, or of one by its file's name without .csv or .bag")
     parser.add_argument("--rate", type=number(0.0, 1e4), default=0.0, metavar="HZ", help="thin recordings to this rate by means; default: as recorded")
     parser.add_argument("--starts", type=whole(0, 1000), default=8, help="points of a Latin hypercube tried besides the scene's; default: %(default)s")
     parser.add_argument("--seed", type=whole(0, 2 ** 31), default=1, help="of the hypercube; default: %(default)s")
@@ -73,10 +74,31 @@ def joint_topics(instrument):
     return [topic["topic"] if isinstance(topic, dict) else topic for topic in instrument.get("joint_state_topics", [])]
 
 
+def smoothing(arguments):
+    """{recording: seconds}, with None for those that are not named."""
+    from fitting import FitError, measured
+    windows = {None: 0.0}
+    known = [measured.name_of(path) for path in arguments.measured + arguments.held_out]
+    for text in arguments.smooth:
+        name, equals, seconds = text.rpartition("=")
+        try:
+            window = float(seconds)
+        except ValueError:
+            window = math.nan
+        if not 0.0 <= window <= 1e3:
+            raise FitError("--smooth '%s' is not S or RECORDING=S with S from 0 to 1000 s" % text)
+        if equals and name not in known:
+            raise FitError("--smooth '%s': there is no recording '%s'; given are %s" % (text, name, ", ".join(known)))
+        windows[name if equals else None] = window
+    return windows
+
+
 def prepared(arguments, path, tool, topics):
     from fitting import measured
+    windows = smoothing(arguments)
     recording = measured.read(path, tool.recorded_names(), topics, arguments.force_topic)
-    recording = measured.thin(measured.smooth(measured.tare(recording, arguments.tare), arguments.smooth), arguments.rate)
+    recording = measured.smooth(measured.tare(recording, arguments.tare), windows.get(recording.name, windows[None]))
+    recording = measured.thin(recording, arguments.rate)
     if arguments.force_on == "tissue":
         recording.force_n = -recording.force_n
     if arguments.axes == "tip":
@@ -104,23 +126,26 @@ def fit(arguments):
     length = math.sqrt(sum(x * x for x in arguments.approach))
     if not length > 1e-6:
         raise FitError("--approach %g %g %g has no direction" % tuple(arguments.approach))
+    forward.load_scene(arguments.scene)  # its own reader comes first: it bounds what it reads, and says what is wrong
     keys = parameters.SceneKeys(arguments.scene)
     instrument = instrument_of(keys, arguments.instrument)
-    fitted = parameters.parse_fits(arguments.fit, keys)
     tool = forward.Tool(arguments.scene, instrument["name"], instrument.get("joint_names") or {})
+    fitted = parameters.parse_fits(arguments.fit, keys)
     setup = run.Setup(arguments.scene, keys, tool, fitted, numpy.array(arguments.approach) / length, forward.Workers(arguments.workers),
                       arguments.starts, arguments.seed, lambda line: print(line, flush=True))
     recordings, held_out = [[prepared(arguments, path, tool, joint_topics(instrument)) for path in paths]
                             for paths in (arguments.measured, arguments.held_out)]
     finer = finer_settings(arguments.finer)
+    for one in fitted:
+        setup.say("%s from %g to %g %s" % (one.key, one.low, one.high, one.unit))
     answer, quality, problem, costs = run.fit(setup, recordings, held_out, finer=finer)
     print("\n" + results.report(answer, problem, quality, costs))
-    if answer.untold:
+    if answer.unidentified:
         print("\nnothing was written" if arguments.out else "")
         return 1
     if arguments.out:
         names = results.write(arguments.out, setup, finer, answer, problem, quality, "fit.py " + shlex.join(sys.argv[1:]),
-                              [arguments.scene] + arguments.measured + arguments.held_out, whole_file, forward.tissue_contact.load_scene)
+                              [arguments.scene] + arguments.measured + arguments.held_out, whole_file)
         print("\nwritten: " + ", ".join(names))
     return 0
 
@@ -129,12 +154,10 @@ def main():
     arguments = parse_arguments()
     try:
         import scipy  # noqa: F401 (looked for, before anything else says so in its own words)
-        import tissue_contact
+        from tissue_contact import Simulator  # noqa: F401 (likewise)
         from fitting import FitError
     except ImportError as error:
         sys.exit("fit.py: %s; install python3-scipy and source scripts/env.bash" % error)
-    if not hasattr(tissue_contact, "Simulator"):
-        sys.exit("fit.py: tissue_contact was built without its simulator in Python; install pybind11-dev and python3-dev and build again")
     try:
         sys.exit(fit(arguments))
     except (FitError, ValueError) as error:

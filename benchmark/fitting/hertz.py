@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Fit on a shallow press, foretell a deep one: a ball of 3.5 mm presses 2 mm and 3 mm deep at many points of a layered phantom whose stiffness and
-soft layer vary from point to point. Each point's modulus and height of touch are fitted to the first press; the second is foretold.
+"""Fit on a shallow press, predict a deep one: a ball of 3.5 mm presses 2 mm and 3 mm deep at many points of a layered phantom whose stiffness and
+soft layer vary from point to point. Each point's modulus and height of touch are fitted to the first press; the second is predicted.
 doc/calibration.md has its figures.
 
   benchmark/fitting/hertz.py --points 300
@@ -87,20 +87,20 @@ def point(seed, true_curves, fit_curves, fitted):
     problem = solve.Problem(runs[:1], fitted, lambda values, one: curve.at(values[0], one.motion + values[1]), forward.Workers(1), lambda line: None)
     answer = uncertainty.assess(problem, solve.refine(problem, solve.search(problem, 4, seed)[0]))
     # The prediction is compared with the true force, whose own noise is not the model's.
-    stranger, foretold = runs[1], curve.at(answer.values[0], runs[1].motion + answer.values[1])[0]
+    deep, predicted = runs[1], curve.at(answer.values[0], runs[1].motion + answer.values[1])[0]
     quiet = numpy.stack([study.measured.thin(study.measured.Recording("", press(3.0)[0], true_n[1], press(3.0)[1]), 100.0).force_n[:, 2]] * 3, axis=1)
-    stranger.recording.force_n[:, 2] = quiet[:, 2]
-    over = run.foretold(stranger, foretold, numpy.arange(len(foretold)) > 0)
+    deep.recording.force_n[:, 2] = quiet[:, 2]
+    over = run.prediction_error(deep, predicted, numpy.arange(len(predicted)) > 0)
     pressed = quiet[:, 2] >= 0.98 * quiet[:, 2].max()
     return [seed, modulus, layer_m, answer.values[0], *answer.interval(0), answer.values[1], offset_m[2], quiet[:, 2].max(),
-            float(numpy.median(foretold[pressed, 2] / quiet[pressed, 2]) - 1.0), over.median]
+            float(numpy.median(predicted[pressed, 2] / quiet[pressed, 2]) - 1.0), over.median]
 
 
 def tell(table):
     deepest, over, error = numpy.abs(table[:, 9]), table[:, 10], numpy.abs(table[:, 3] / table[:, 1] - 1.0)
     print("%d points, modulus %.0f to %.0f Pa, soft layer %.1f to %.1f mm, %.2f to %.2f N at 3 mm" % (
         len(table), table[:, 1].min(), table[:, 1].max(), 1e3 * table[:, 2].min(), 1e3 * table[:, 2].max(), table[:, 8].min(), table[:, 8].max()))
-    print("force at 3 mm foretold: median error %.2f %%, nine of ten within %.2f %%, largest %.2f %%" % (
+    print("force at 3 mm predicted: median error %.2f %%, nine of ten within %.2f %%, largest %.2f %%" % (
         tuple(100.0 * x for x in (numpy.median(deepest), numpy.quantile(deepest, 0.9), deepest.max()))))
     print("over the press to 3 mm: median of the points' median errors %.2f %%" % (100.0 * numpy.median(over)))
     print("modulus: median error %.2f %%, inside the 95 %% interval %d of %d" % (

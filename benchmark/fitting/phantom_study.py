@@ -16,6 +16,7 @@ TOOL = "indenter"
 RATE_HZ = 500
 ROUNDING_S = 0.06  # of corners of the motion: an arm has mass
 BALL_M = 0.012
+SMOOTH_S = {"press": 0.2, "drag": 0.2}  # slow: what trembles there is noise, which would tell the fit that there is no damping
 
 def _mesh(cells, growth, step_s):
     block = "tissues.phantom.block."
@@ -23,9 +24,9 @@ def _mesh(cells, growth, step_s):
     return dict(settings, **{block + "cells": cells, "step.max_step_s": step_s})
 
 
-# What the fit is corrected by (fit.py --finer), and the truth, which is finer still and in steps less than half as long: what mesh and step do to the
+# What the fit is corrected by (fit.py --finer), and the truth, which is finer still and in shorter steps: what mesh and step do to the
 # estimates is part of their error here. Fitting with the model that made the data would hide it.
-FINER = _mesh([16, 16, 9], [1.15, 1.15, 1.2], 0.005)
+FINER = _mesh([16, 16, 9], [1.15, 1.15, 1.2], 0.0025)
 TRUTH = _mesh([20, 20, 11], [1.12, 1.12, 1.15], 0.002)
 TRUTH_HZ = 500
 
@@ -102,9 +103,9 @@ def record(name, motion, force, noise, offset_m, generator):
         positions_m=positions + offset_m + noise.pose_m * generator.standard_normal(positions.shape))
 
 
-def as_fit_sees(recording, smooth_s=0.06, rate_hz=100.0):
-    """As fit.py --smooth 0.06 --rate 100."""
-    return measured.thin(measured.smooth(recording, smooth_s), rate_hz)
+def as_fit_sees(recording, rate_hz=100.0):
+    """As fit.py --smooth 0.06 --smooth press=0.2 --smooth drag=0.2 --rate 100."""
+    return measured.thin(measured.smooth(recording, SMOOTH_S.get(recording.name, 0.06)), rate_hz)
 
 
 def setup(fits, workers, scene=SCENE, **more):

@@ -47,7 +47,7 @@ def trial(seed, noise, arguments, workers):
     setup = study.setup(FITS, workers, starts=0, seed=seed, say=print if arguments.verbose else lambda line: None)
     finer = {} if arguments.same_mesh else study.FINER
     answer, _, problem, _ = run.fit(setup, [study.as_fit_sees(one) for one in raw], cross_check=False, finer=finer)
-    for sentence in answer.untold:
+    for sentence in answer.unidentified:
         print("trial %d: %s" % (seed, sentence))
     true_values = [truth["youngs_modulus_pa"], truth["stiffness_s"], truth["kinetic"], offset_m[2]]
     for i, (name, true) in enumerate(zip(NAMES, true_values)):

@@ -4,7 +4,7 @@
   parameters.py    --fit KEY:LOW..HIGH -> a number between 0 and 1, and the scene keys it sets
   forward.py       a scene and a recording's motion -> forces, many in parallel
   solve.py         starts, robust least squares
-  uncertainty.py   intervals, correlation, and what the data cannot tell
+  uncertainty.py   intervals, correlation, and what the data do not identify
   results.py       report, picture, fitted scene
 
 They use NumPy, SciPy and the module tissue_contact; measured.py uses rosbag for bags.

@@ -107,7 +107,7 @@ def fitted_text(scene, settings, to_folder, heading):
         _set_in_tree(wanted, path, value)
         start, end, new = _edit(yaml.compose(text, yaml.SafeLoader), path, value)
         text = text[:start] + new + text[end:]
-    if yaml.safe_load(text) != wanted:  # anchors, and whatever else was not foreseen: right numbers go before comments
+    if yaml.safe_load(text) != wanted:  # anchors, and whatever else is shared: right numbers go before comments
         text = yaml.safe_dump(wanted, sort_keys=False)
         if yaml.safe_load(text) != wanted:
             raise FitError("%s cannot be written with the fitted numbers" % scene)

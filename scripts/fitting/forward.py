@@ -1,7 +1,6 @@
 """The scene's forces on the tool for a measured motion. Runs are independent, so that many go on at once: the core lets go of
 Python's lock while it steps, and the same run gives the same bits whatever runs beside it."""
 import concurrent.futures
-
 import math
 
 import numpy
@@ -22,13 +21,20 @@ def rotation(quaternion):
                         [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
 
 
+def load_scene(path, settings=None):
+    try:
+        return tissue_contact.load_scene(path, set=settings or {})
+    except (ValueError, RuntimeError) as error:
+        raise FitError("the scene: %s" % error) from error
+
+
 class Tool:
     """One instrument of a scene: its joints from what was recorded."""
 
     def __init__(self, scene_path, name, renamed):
         """renamed: recorded joint name -> joint of the URDF."""
         self.name, self._renamed = name, renamed
-        self._simulator = tissue_contact.Simulator(tissue_contact.load_scene(scene_path))
+        self._simulator = tissue_contact.Simulator(load_scene(scene_path))
         self.joint_names = list(self._simulator.joint_names(name))
 
     def recorded_names(self):

@@ -1,9 +1,11 @@
 """Measured motion of a tool with measured forces, from a table (CSV) or a bag."""
+import array
 import csv
 import dataclasses
 import difflib
 import math
 import os
+import stat
 
 import numpy
 from scipy.signal import savgol_filter
@@ -14,8 +16,10 @@ POSITION = ("x_m", "y_m", "z_m")
 QUATERNION = ("qx", "qy", "qz", "qw")
 FORCE = ("fx_n", "fy_n", "fz_n")
 MOST_ROWS = 1000000
+LONGEST_LINE = 10000
 FEWEST_ROWS = 10
-FARTHEST_M, LARGEST_N, LARGEST_JOINT, LONGEST_S = 10.0, 1000.0, 1000.0, 1.0e10
+FARTHEST_M, LARGEST_N, LARGEST_JOINT, LATEST_S = 10.0, 1000.0, 1000.0, 1.0e10
+WIDEST_M, LONGEST_S = 1.0, 3600.0  # of a recording
 NORM_WITHIN = 0.01
 
 
@@ -37,17 +41,47 @@ class Recording:
         return float(numpy.sqrt((self.force_n[:, self.measured()] ** 2).sum(axis=1)).max())
 
 
+def name_of(path):
+    return os.path.splitext(os.path.basename(path))[0]
+
+
 def read(path, joint_names, joint_topics, force_topic):
     """joint_names: as recorded; topics: of a bag."""
+    is_bag = _beginning(path).startswith(b"#ROSBAG V")
+    recording = _read_bag(path, joint_names, joint_topics, force_topic) if is_bag else _read_table(path, joint_names)
+    _require_plausible(path, recording)
+    return recording
+
+
+def _beginning(path):
+    """Of a file that may be read whole."""
     try:
+        if not stat.S_ISREG(os.stat(path).st_mode):  # a FIFO would wait for ever, a device might not end
+            raise FitError("%s cannot be read: it is not a file" % path)
         with open(path, "rb") as stream:
-            is_bag = stream.read(9) == b"#ROSBAG V"
+            beginning = stream.read(100)
     except OSError as error:
         raise FitError("%s cannot be read: %s" % (path, error.strerror)) from error
-    recording = _read_bag(path, joint_names, joint_topics, force_topic) if is_bag else _read_table(path, joint_names)
-    if not recording.peak_n() > 0.0:
-        raise FitError("%s: every force is 0; nothing can be fitted to it" % path)
-    return recording
+    if not beginning:
+        raise FitError("%s is empty; a table (CSV) with a header or a bag is needed" % path)
+    if beginning.startswith(b"version https://git-lfs"):
+        raise FitError("%s is a git-lfs pointer, not the data itself; fetch it with: git lfs pull" % path)
+    return beginning
+
+
+def _require_plausible(path, recording):
+    force = recording.force_n[:, recording.measured()]
+    if not numpy.ptp(force, axis=0).max() > 0.0:
+        raise FitError("%s: the force is the same in every row (%s N); nothing can be fitted to it: is the sensor connected?" %
+                       (path, ", ".join("%g" % one for one in force[0])))
+    duration = recording.times_s[-1] - recording.times_s[0]
+    if not duration <= LONGEST_S:
+        raise FitError("%s: it lasts %g s; up to %g s are allowed: cut it to the contact; times are in seconds" % (path, duration, LONGEST_S))
+    if recording.positions_m is not None:
+        span = numpy.ptp(recording.positions_m, axis=0)
+        if not span.max() <= WIDEST_M:
+            raise FitError("%s: column '%s' spans %g m; up to %g m are allowed: positions are in metres; cut it to the contact" %
+                           (path, POSITION[int(span.argmax())], span.max(), WIDEST_M))
 
 
 def _require_columns(path, names, joint_names):
@@ -55,7 +89,7 @@ def _require_columns(path, names, joint_names):
     known = ("time_s",) + POSITION + QUATERNION + FORCE + tuple(joint_names)
     for name in names:
         if name not in known:
-            near = difflib.get_close_matches(name, known, 1)
+            near = difflib.get_close_matches(name.lower(), known, 1)
             raise FitError("%s:1: column '%s' is not known%s; allowed are %s" %
                            (path, name, "; did you mean '%s'?" % near[0] if near else "", ", ".join(known)))
         if names.count(name) > 1:
@@ -83,7 +117,7 @@ def _largest(name):
         return LARGEST_N, "N; forces are in newtons"
     if name in QUATERNION:
         return 1.0 + NORM_WITHIN, "for a part of a unit quaternion"
-    return (LONGEST_S, "s") if name == "time_s" else (LARGEST_JOINT, "rad or m")
+    return (LATEST_S, "s") if name == "time_s" else (LARGEST_JOINT, "rad or m")
 
 
 def _number(path, line, name, text):
@@ -98,11 +132,21 @@ def _number(path, line, name, text):
     return value
 
 
+def _lines(path, stream):
+    """Of text, none so long that it fills the memory."""
+    number = 0
+    while line := stream.readline(LONGEST_LINE + 1):
+        number += 1
+        if len(line) > LONGEST_LINE:
+            raise FitError("%s:%d: a line of more than %d characters; is it a table (CSV)?" % (path, number, LONGEST_LINE))
+        yield line
+
+
 def _rows(path):
     """(line number, fields) of the lines that are not empty."""
     try:
-        with open(path, newline="", encoding="utf-8") as stream:
-            for row in (reader := csv.reader(stream)):
+        with open(path, newline="", encoding="utf-8-sig") as stream:  # spreadsheets put a mark first
+            for row in (reader := csv.reader(_lines(path, stream))):
                 if row:
                     yield reader.line_num, row
     except (OSError, UnicodeDecodeError, csv.Error) as error:
@@ -114,23 +158,29 @@ def _read_table(path, joint_names):
     _, names = next(rows, (0, []))
     names = [name.strip() for name in names]
     joints = _require_columns(path, names, joint_names)
-    values, time_at = [], names.index("time_s")
+    values, before, time_at = array.array("d"), -math.inf, names.index("time_s")  # a tenth of the memory of lists
     for line, row in rows:
         if len(row) != len(names):
             raise FitError("%s:%d: %d values under %d columns" % (path, line, len(row), len(names)))
-        if len(values) >= MOST_ROWS:
+        if len(values) >= MOST_ROWS * len(names):
             raise FitError("%s:%d: more than %d rows; cut it, or thin it out" % (path, line, MOST_ROWS))
-        values.append([_number(path, line, name, text) for name, text in zip(names, row)])
-        if len(values) > 1 and not values[-1][time_at] > values[-2][time_at]:
-            raise FitError("%s:%d: column 'time_s' is %s, not after %g of the row before" %
-                           (path, line, row[time_at], values[-2][time_at]))
-    if len(values) < FEWEST_ROWS:
-        raise FitError("%s: %d rows; %d or more are needed" % (path, len(values), FEWEST_ROWS))
-    columns = dict(zip(names, numpy.array(values).T))
+        values.extend(_number(path, line, name, text) for name, text in zip(names, row))
+        now = values[time_at - len(names)]
+        if not now > before:
+            raise FitError("%s:%d: column 'time_s' is %s, not after %.9g of the row before; times must ascend" % (path, line, row[time_at], before))
+        before = now
+    count = len(values) // len(names)
+    if count < FEWEST_ROWS:
+        raise FitError("%s: %d rows; %d or more are needed" % (path, count, FEWEST_ROWS))
+    return _recording(path, dict(zip(names, numpy.array(values).reshape(count, len(names)).T)), joints)
+
+
+def _recording(path, columns, joints):
     _require_unit_quaternions(path, columns)
+    unmeasured = numpy.full(len(columns["time_s"]), numpy.nan)
     return Recording(
-        name=os.path.splitext(os.path.basename(path))[0], times_s=columns["time_s"],
-        force_n=numpy.stack([columns.get(name, numpy.full(len(values), numpy.nan)) for name in FORCE], axis=1),
+        name=name_of(path), times_s=columns["time_s"],
+        force_n=numpy.stack([columns.get(name, unmeasured) for name in FORCE], axis=1),
         positions_m=None if joints else numpy.stack([columns[name] for name in POSITION], axis=1),
         quaternions=numpy.stack([columns[name] for name in QUATERNION], axis=1) if QUATERNION[0] in columns else None,
         joints={name: columns[name] for name in joints} or None)
@@ -148,7 +198,9 @@ def _require_unit_quaternions(path, columns):
 def _read_bag(path, joint_names, joint_topics, force_topic):
     """Joint states and wrenches by their stamps; the samples are the joint states of the first topic, and the force there is linear
     between wrenches."""
-    states, wrenches, topics = _bag_messages(path, joint_topics, force_topic)
+    if not joint_topics:
+        raise FitError("%s: the scene's instrument has no joint_state_topics; add the bag's topic of joint states" % path)
+    states, wrenches, topics = _bag_messages(path, joint_names, joint_topics, force_topic)
     for topic in list(joint_topics[:1]) + [force_topic]:
         if not (wrenches if topic == force_topic else states.get(topic)):
             raise FitError("%s has no messages on %s; its topics are: %s" % (path, topic, ", ".join(topics)))
@@ -160,35 +212,44 @@ def _read_bag(path, joint_names, joint_topics, force_topic):
                            (path, topic, times[at + 1], times[at]))
     force_times, forces = numpy.array([w[0] for w in wrenches]), numpy.array([w[1] for w in wrenches])
     if not (numpy.abs(forces) <= LARGEST_N).all():
-        raise FitError("%s: a force on %s is not from %g to %g N" % (path, force_topic, -LARGEST_N, LARGEST_N))
+        raise FitError("%s: on %s a force is %g N; from %g to %g N are allowed" % (path, force_topic, _worst(forces, LARGEST_N), -LARGEST_N, LARGEST_N))
     times = numpy.array([state[0] for state in states[joint_topics[0]]])
     times = times[(times >= force_times[0]) & (times <= force_times[-1])]
     if not FEWEST_ROWS <= len(times) <= MOST_ROWS:
         raise FitError("%s: %d joint states while forces were recorded; %d to %d are needed" % (path, len(times), FEWEST_ROWS, MOST_ROWS))
     start = times[0]
     return Recording(
-        name=os.path.splitext(os.path.basename(path))[0], times_s=times - start,
+        name=name_of(path), times_s=times - start,
         force_n=numpy.stack([numpy.interp(times, force_times, forces[:, axis]) for axis in range(3)], axis=1),
         joints=_joints_at(path, times, states, joint_names))
 
 
-def _bag_messages(path, joint_topics, force_topic):
+def _worst(values, largest):
+    """The first that is not a number of a magnitude up to `largest`."""
+    return values[~(numpy.abs(values) <= largest)].flat[0]
+
+
+def _bag_messages(path, joint_names, joint_topics, force_topic):
     """({joint topic: [(stamp (s), {joint: position})]}, [(stamp (s), force)], all topics)."""
     import rosbag  # here, since tables need no ROS
     states, wrenches = {}, []
     try:
         with rosbag.Bag(path) as bag:
-            topics = {topic: info.msg_type for topic, info in bag.get_type_and_topic_info().topics.items()}
+            info = bag.get_type_and_topic_info().topics
+            topics = {topic: one.msg_type for topic, one in info.items()}
             for topic, kind in [(topic, "sensor_msgs/JointState") for topic in joint_topics] + [(force_topic, "geometry_msgs/WrenchStamped")]:
                 if topics.get(topic, kind) != kind:
                     raise FitError("%s: %s has %s; %s is needed" % (path, topic, topics[topic], kind))
+                if topic in info and info[topic].message_count > MOST_ROWS:
+                    raise FitError("%s: %s has %d messages; up to %d are allowed; cut the bag with rosbag filter" %
+                                   (path, topic, info[topic].message_count, MOST_ROWS))
             for topic, message, _ in bag.read_messages(list(joint_topics) + [force_topic]):
                 stamp = message.header.stamp.to_sec()
                 if topic == force_topic:
                     force = message.wrench.force
                     wrenches.append((stamp, (force.x, force.y, force.z)))
                 else:
-                    states.setdefault(topic, []).append((stamp, dict(zip(message.name, message.position))))
+                    states.setdefault(topic, []).append((stamp, {name: at for name, at in zip(message.name, message.position) if name in joint_names}))
     except FitError:
         raise
     except Exception as error:  # rosbag raises what its parts raise
@@ -205,7 +266,8 @@ def _joints_at(path, times, states, joint_names):
                 at, positions = numpy.array(samples).T
                 joints[name] = numpy.interp(times, at, positions)
                 if not (numpy.abs(joints[name]) <= LARGEST_JOINT).all():
-                    raise FitError("%s: joint '%s' on %s is not from %g to %g rad or m" % (path, name, topic, -LARGEST_JOINT, LARGEST_JOINT))
+                    raise FitError("%s: on %s joint '%s' is %g; from %g to %g rad or m are allowed" %
+                                   (path, topic, name, _worst(joints[name], LARGEST_JOINT), -LARGEST_JOINT, LARGEST_JOINT))
     if not joints:
         raise FitError("%s: no joint state names a joint of the scene; those are: %s" % (path, ", ".join(joint_names)))
     return joints

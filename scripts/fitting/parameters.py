@@ -1,4 +1,4 @@
-"""What is fitted: --fit KEY:LOW..HIGH, where KEY is a key of the scene by its path or by an end of it that no other key has."""
+"""What is fitted: --fit KEY[:LOW..HIGH], where KEY is a key of the scene by its path or by an end of it that no other key has."""
 import dataclasses
 import math
 import re
@@ -11,6 +11,9 @@ UNITS = (("_n_per_m", "N/m"), ("_pa_per_m", "Pa/m"), ("_m_per_s", "m/s"), ("_kg_
          ("_n_m", "N m"), ("_rad", "rad"), ("_m", "m"), ("_s", "s"))
 OFFSET = "offset_m"
 THICKNESS = "thickness_m"
+TYPICAL = {  # bounds of a key that --fit gives none; of a thickness, of the scene's
+    "youngs_modulus_pa": (3e2, 3e5), "poissons_ratio": (0.3, 0.49), "stiffness_s": (1e-3, 1e-1), "static": (0.02, 2.0), "kinetic": (0.02, 2.0),
+    OFFSET: (-1e-3, 1e-3), THICKNESS: (0.4, 2.5)}
 LOG_FROM_RATIO = 5.0  # bounds this far apart are of a number known by its order of magnitude
 
 
@@ -158,7 +161,9 @@ def _numbers(node, path):
 
 
 def parse_fit(text, keys):
-    """A Parameter of "KEY:LOW..HIGH" or "KEY:LOW..HIGH:START"."""
+    """A Parameter of "KEY", "KEY:LOW..HIGH" or "KEY:LOW..HIGH:START"."""
+    if ":" not in text:
+        return _with_typical_bounds(text, keys)
     match = re.fullmatch(r"([^:\s]+):([^:.]*(?:\.[^:.]+)?)\.\.([^:]+)(?::([^:]+))?", text)
     try:
         numbers = [float(group) if group else None for group in match.groups()[1:]]
@@ -175,6 +180,16 @@ def parse_fit(text, keys):
     inside = in_scene is not None and low <= in_scene <= high
     parameter.start = start if start is not None else in_scene if inside else parameter.value(0.5)
     return parameter
+
+
+def _with_typical_bounds(name, keys):
+    key, in_scene = keys.resolve(name)
+    last = key.rsplit(".", 1)[-1]
+    if last not in TYPICAL:
+        raise FitError("--fit %s has no bounds: give it as KEY:LOW..HIGH, such as youngs_modulus_pa:1e3..1e5; only %s may go without" %
+                       (name, ", ".join(TYPICAL)))
+    scale = float(in_scene) if last == THICKNESS else 1.0
+    return parse_fit("%s:%r..%r" % ((key,) + tuple(scale * bound for bound in TYPICAL[last])), keys)
 
 
 def parse_fits(texts, keys):

@@ -7,8 +7,9 @@ import os
 import numpy
 import yaml
 
-from fitting import FitError, uncertainty
+from fitting import uncertainty
 from fitting.fitted_scene import fitted_text
+from fitting.forward import load_scene
 from fitting.parameters import OFFSET
 
 MOST_DRAWN = 8
@@ -18,8 +19,8 @@ def _estimates(answer):
     yield "%-52s %12s %10s %26s %16s %16s" % ("parameter", "value", "unit", "95 % interval", "of it noise ±", "mesh, step ±")
     for i, parameter in enumerate(answer.parameters):
         slope = parameter.slope(answer.point[i])
-        told = numpy.isfinite(answer.half[i]) and answer.half[i] < 5.0
-        between = "%.5g .. %.5g" % answer.interval(i) if told else "not told"
+        bounded = numpy.isfinite(answer.half[i]) and answer.half[i] < 5.0
+        between = "%.5g .. %.5g" % answer.interval(i) if bounded else "not identified"
         yield "%-52s %12.5g %10s %26s %16.3g %16.3g" % (parameter.key, answer.values[i], parameter.unit, between,
                                                       slope * answer.noise_half[i], slope * answer.model_half[i])
 
@@ -43,7 +44,7 @@ def _quality(problem, answer, held_out):
         rms, peak = float(numpy.sqrt((wrong ** 2).sum(axis=1).mean())), run.recording.peak_n()
         yield "fitted   %-20s RMS error %.3g N, %.1f %% of its peak force" % (run.recording.name, rms, 100.0 * rms / peak)
     for one in held_out:
-        yield "held out %-20s RMS error %.3g N, %.1f %% of the RMS force; median %.1f %% of the force; %d samples" % (
+        yield "held-out %-20s RMS error %.3g N, %.1f %% of the RMS force; median %.1f %% of the force; %d samples" % (
             one.name, one.rms_n, 100.0 * one.share, 100.0 * one.median, one.samples)
 
 
@@ -55,8 +56,8 @@ def _descents(costs):
 
 def report(answer, problem, held_out, costs):
     parts = [_estimates(answer), _correlations(answer), _shares(answer, problem), _quality(problem, answer, held_out),
-             ["singular values of the weighed Jacobian: " + ", ".join("%.3g" % one for one in answer.singular)],
-             list(uncertainty.at_bounds(answer)) + list(_descents(costs)) + answer.untold]
+             ["singular values of the weighted Jacobian: " + ", ".join("%.3g" % one for one in answer.singular)],
+             list(uncertainty.at_bounds(answer)) + list(_descents(costs)) + answer.unidentified]
     return "\n\n".join("\n".join(part) for part in map(list, parts) if part)
 
 
@@ -71,7 +72,7 @@ def figures(answer, problem, held_out, made_by):
                        for i, parameter in enumerate(answer.parameters)],
         "correlation": [[round(float(one), 4) for one in row] for row in answer.correlation],
         "singular_values": [float(one) for one in answer.singular],
-        "spread_n": {run.recording.name: float(run.spread_n) for run in problem.runs},
+        "scale_n": {run.recording.name: float(run.scale_n) for run in problem.runs},
         "held_out": [{"recording": one.name, "rms_n": one.rms_n, "share_of_rms_force": one.share, "median_share": one.median,
                       "samples": one.samples} for one in held_out],
         "evaluations": problem.evaluations,
@@ -92,11 +93,11 @@ def draw(path, answer, problem):
             axes[0, column].plot(times, recording.force_n[:, axis], ".", ms=2, color=colour, alpha=0.5, label="%s measured" % "xyz"[axis])
             axes[0, column].plot(times[1:], force[1:, axis], "-", lw=1.2, color=colour, label="%s fitted" % "xyz"[axis])
             axes[1, column].plot(times[1:], (force - recording.force_n)[1:, axis], ".", ms=2, color=colour)
-        axes[1, column].axhspan(-2.0 * run.spread_n, 2.0 * run.spread_n, color="0.9", zorder=0)
+        axes[1, column].axhspan(-2.0 * run.scale_n, 2.0 * run.scale_n, color="0.9", zorder=0)
         axes[0, column].set_title(recording.name)
         axes[1, column].set_xlabel("time (s)")
     axes[0, 0].set_ylabel("force on the tool (N)")
-    axes[1, 0].set_ylabel("fitted - measured (N)\ngrey: two spreads")
+    axes[1, 0].set_ylabel("fitted - measured (N)\ngrey: 2 standard deviations")
     axes[0, 0].legend(fontsize=7)
     figure.savefig(path, dpi=110, format="png")
     pyplot.close(figure)
@@ -112,7 +113,7 @@ def _write_residuals(path, answer, problem):
                                ["%.6g" % one for one in fitted])
 
 
-def write(folder, setup, finer, answer, problem, held_out, made_by, inputs, whole_file, check_scene):
+def write(folder, setup, finer, answer, problem, held_out, made_by, inputs, whole_file):
     """All of them or none: they take their names when each is written."""
     os.makedirs(folder, exist_ok=True)
     settings = dict(setup.settings(answer.values), **finer)
@@ -126,10 +127,7 @@ def write(folder, setup, finer, answer, problem, held_out, made_by, inputs, whol
         scene, numbers, residuals, picture = [stack.enter_context(whole_file(name, inputs)) for name in names]
         with open(scene, "w", encoding="utf-8") as stream:
             stream.write(text)
-        try:
-            check_scene(scene)
-        except (ValueError, RuntimeError) as error:
-            raise FitError("the fitted scene would be refused: %s" % error) from error
+        load_scene(scene)
         with open(numbers, "w", encoding="utf-8") as stream:
             yaml.safe_dump(figures(answer, problem, held_out, made_by), stream, sort_keys=False)
         _write_residuals(residuals, answer, problem)

@@ -1,4 +1,4 @@
-"""A whole fit: from a scene, recordings and parameters to an Answer and to how well it foretells what it was not fitted to."""
+"""A whole fit: from a scene, recordings and parameters to an Answer and to how well it predicts what it was not fitted to."""
 import dataclasses
 
 import numpy
@@ -46,7 +46,7 @@ def _force_errors(run, force, rows):
     return (force - run.recording.force_n)[numpy.ix_(rows, axes)], run.recording.force_n[numpy.ix_(rows, axes)]
 
 
-def foretold(run, force, rows):
+def prediction_error(run, force, rows):
     wrong, measured = _force_errors(run, force, rows)
     size, error = numpy.linalg.norm(measured, axis=1), numpy.linalg.norm(wrong, axis=1)
     loud = size >= 0.1 * run.recording.peak_n()
@@ -77,19 +77,21 @@ def fit(setup, recordings, held_out=(), cross_check=True, finer=None):
         hold_out_blocks(runs)
     problem = setup.problem(runs)
     point, costs = solve.search(problem, setup.starts, setup.seed)
-    point = solve.refine(problem, point)
+    tolerance = solve.FIRST_TOLERANCE if finer else solve.TOLERANCE  # of a point that is corrected anyway
+    point = solve.refine(problem, point, tolerance)
     quality = []
     if by_blocks:
         for run, (force, _) in zip(runs, problem.forces([point])[0]):
-            quality.append(foretold(run, force, ~run.fitted))
+            quality.append(prediction_error(run, force, ~run.fitted))
             run.fitted = numpy.ones(len(run.fitted), bool)
-        point = solve.refine(problem, point)
+        point = solve.refine(problem, point, tolerance)
+    before = point
     if finer:
         coarse, problem = problem, setup.problem(runs, finer)
         point = solve.corrected(coarse, point, problem)
-    answer = uncertainty.assess(problem, point)
+    answer = uncertainty.assess(problem, point, point - before)
     if held_out:
-        strangers = runs_of(setup, held_out)
-        done = setup.workers.map(setup.forces, [(answer.values, run, finer) for run in strangers])
-        quality = [foretold(run, force, numpy.arange(len(force)) > 0) for run, (force, _) in zip(strangers, done)]
+        others = runs_of(setup, held_out)
+        done = setup.workers.map(setup.forces, [(answer.values, run, finer) for run in others])
+        quality = [prediction_error(run, force, numpy.arange(len(force)) > 0) for run, (force, _) in zip(others, done)]
     return answer, quality, problem, costs

@@ -1,4 +1,5 @@
-"""Least squares over runs of the scene. Unknowns are parts of the way between bounds, 0 to 1; forces are weighed by their own spread."""
+"""Least squares over runs of the scene. Unknowns are parts of the way between bounds, 0 to 1; residuals are divided by their recording's scale, a
+robust standard deviation."""
 import dataclasses
 import time
 
@@ -7,9 +8,9 @@ from scipy import optimize, stats
 
 from fitting import FitError
 
-FIRST_SPREAD = 0.05  # of the peak force, until residuals tell it
-LEAST_SPREAD = 1e-4  # of the peak force: a replay's own tolerance
-HUBER = 1.5          # spreads from which on a residual counts by its magnitude only; 96 % efficient with normal noise
+FIRST_SCALE = 0.05  # of the peak force, until residuals give it
+LEAST_SCALE = 1e-4  # of the peak force: a replay's own tolerance
+HUBER = 1.5          # scales from which on a residual counts by its magnitude only; 96 % efficient with normal noise
 STEP = 0.01          # of the way between bounds, for differences: far above the solver's tolerance, far below what bends
 MOST_ITERATIONS, MOST_CORRECTIONS = 25, 6
 CORRECTED, LONGEST_CORRECTION = 2e-3, 0.2  # of the way between bounds: the last correction is as small as that
@@ -22,10 +23,10 @@ class Run:
     recording: object
     motion: numpy.ndarray
     fitted: numpy.ndarray  # samples that count
-    spread_n: float = 0.0
+    scale_n: float = 0.0
 
     def __post_init__(self):
-        self.spread_n = FIRST_SPREAD * self.recording.peak_n()
+        self.scale_n = FIRST_SCALE * self.recording.peak_n()
 
 
 class Problem:
@@ -42,7 +43,7 @@ class Problem:
         return [float(parameter.value(part)) for parameter, part in zip(self.parameters, point)]
 
     def in_order(self, point):
-        """The same forces by the parameters as they are told: of a pair of frictions the larger one is static."""
+        """The same forces by the parameters as they are reported: of a pair of frictions the larger one is static."""
         settings = self._settings_of(self.values(point))
         ordered = [p.part(settings[p.key]) if p.key in settings else part for p, part in zip(self.parameters, point)]
         return numpy.clip(ordered, 0.0, 1.0)
@@ -58,8 +59,8 @@ class Problem:
         return [self._known[key] for key in keys]
 
     def residual(self, forces, is_fitted=True):
-        """All weighed residuals of one point; of what is held out for is_fitted False."""
-        return numpy.concatenate([part for run, (force, _) in zip(self.runs, forces) for part in _weighed(run, force, is_fitted)])
+        """All weighted residuals of one point; of what is held out for is_fitted False."""
+        return numpy.concatenate([part for run, (force, _) in zip(self.runs, forces) for part in _weighted(run, force, is_fitted)])
 
     def at(self, point):
         return self.residual(self.forces([point])[0])
@@ -79,18 +80,18 @@ class Problem:
             ", ".join("%s %.4g" % (p.label, v) for p, v in zip(self.parameters, self.values(point)))))
 
 
-def _weighed(run, force, is_fitted):
+def _weighted(run, force, is_fitted):
     """Of each measured axis."""
     rows = run.fitted if is_fitted else ~run.fitted
     rows = rows & (numpy.arange(len(rows)) > 0)  # the first sample only places the tool
-    return [(force[rows, axis] - run.recording.force_n[rows, axis]) / run.spread_n for axis in run.recording.measured()]
+    return [(force[rows, axis] - run.recording.force_n[rows, axis]) / run.scale_n for axis in run.recording.measured()]
 
 
-def set_spreads(problem, point):
+def set_scales(problem, point):
     """From the residuals at a point, each recording for itself: 1.48 median deviations are a standard deviation."""
     for run, (force, _) in zip(problem.runs, problem.forces([point])[0]):
-        residual = numpy.concatenate(_weighed(run, force, True)) * run.spread_n
-        run.spread_n = max(1.4826 * float(numpy.median(numpy.abs(residual))), LEAST_SPREAD * run.recording.peak_n())
+        residual = numpy.concatenate(_weighted(run, force, True)) * run.scale_n
+        run.scale_n = max(1.4826 * float(numpy.median(numpy.abs(residual))), LEAST_SCALE * run.recording.peak_n())
 
 
 def starts(problem, count, seed):
@@ -100,13 +101,23 @@ def starts(problem, count, seed):
     return [numpy.clip(own, 0.0, 1.0)] + list(cube)
 
 
+def _require_contact(problem, point):
+    for run, (force, _) in zip(problem.runs, problem.forces([point])[0]):
+        if not numpy.abs(force).max() > 0.0:
+            raise FitError("%s: up to %.3g N were measured, but the tool of the scene never touches: are its positions those of the tip in the "
+                           "scene's world, in metres, or its joints as the URDF has them?" % (run.recording.name, run.recording.peak_n()))
+
+
 def _descend(problem, point, loss, name, tolerance):
     def jacobian(at):
         problem.tell(name, at)
         return problem.jacobian(at, both_sides=tolerance <= TOLERANCE)
 
+    point = numpy.clip(point, 1e-6, 1.0 - 1e-6)
+    if not problem.jacobian(point, both_sides=tolerance <= TOLERANCE).any():  # nothing to go by, on which SciPy divides by 0
+        return optimize.OptimizeResult(x=point, cost=0.5 * float(problem.at(point) @ problem.at(point)))
     try:
-        return optimize.least_squares(problem.at, numpy.clip(point, 1e-6, 1.0 - 1e-6), jacobian, bounds=(0.0, 1.0), loss=loss, f_scale=HUBER,
+        return optimize.least_squares(problem.at, point, jacobian, bounds=(0.0, 1.0), loss=loss, f_scale=HUBER,
                                        ftol=tolerance, xtol=tolerance, gtol=None, max_nfev=MOST_ITERATIONS)
     except ValueError as error:  # a residual that is not finite
         raise FitError("the fit cannot go on: %s" % error) from error
@@ -118,6 +129,7 @@ def search(problem, count, seed):
     costs = [float(numpy.abs(problem.residual(forces)).sum()) for forces in problem.forces(points)]
     order = numpy.argsort(costs, kind="stable")
     problem.tell("best of %d starts" % len(points), points[order[0]])
+    _require_contact(problem, points[order[0]])
     tried = [_descend(problem, points[i], "soft_l1", "descent", FIRST_TOLERANCE) for i in _apart(points, order)]
     return min(tried, key=lambda found: found.cost).x, [found.cost for found in tried]
 
@@ -128,12 +140,12 @@ def _apart(points, order):
     return [order[0]] + rest[:1]
 
 
-def refine(problem, point):
-    """From a point near the answer: spreads from its residuals, then robust least squares."""
-    set_spreads(problem, point)
-    found = _descend(problem, point, "huber", "refinement", TOLERANCE)
+def refine(problem, point, tolerance=TOLERANCE):
+    """From a point near the answer: scales from its residuals, then robust least squares."""
+    set_scales(problem, point)
+    found = _descend(problem, point, "huber", "refinement", tolerance)
     point = problem.in_order(found.x)
-    set_spreads(problem, point)
+    set_scales(problem, point)
     problem.tell("done", point)
     return point
 
@@ -142,9 +154,9 @@ def corrected(coarse, point, fine):
     """The point of a scene with a finer mesh: by residuals of that and derivatives of the coarse one, which differ little (chord method), a
     few runs of the finer scene do in place of a whole fit of it. `fine` then has the coarse one's derivatives as its own."""
     start = numpy.array(point)
-    fine.jacobian = lambda at, both_sides=True: coarse.jacobian(start)  # run once; weighed by the spreads of the moment
+    fine.jacobian = lambda at, both_sides=True: coarse.jacobian(start)  # run once; weighted by the scales of the moment
     for _ in range(MOST_CORRECTIONS):
-        set_spreads(fine, point)
+        set_scales(fine, point)
         fine.tell("correction", point)
         residual = fine.at(point)
         weight = numpy.sqrt(numpy.minimum(1.0, HUBER / numpy.maximum(numpy.abs(residual), 1e-300)))
@@ -153,6 +165,6 @@ def corrected(coarse, point, fine):
         change, point = numpy.abs(moved - point).max(), moved
         if change < CORRECTED:
             break
-    set_spreads(fine, point)
+    set_scales(fine, point)
     fine.tell("corrected", point)
     return point

@@ -1,10 +1,11 @@
-"""How well the data tell the parameters: covariance, 95 % intervals, correlation, and what cannot be told.
+"""How well the data identify the parameters: covariance, 95 % intervals, correlation, and what they do not identify.
 
-Near the answer residuals are r = r0 + J d, and the answer's covariance is C = H^-1 M H^-1 with H = J^T J (Huber's: of the residuals not
-clipped) and M = sum over recordings of s^2 tau J^T J: s^2 the variance that the residuals themselves have, tau = 1 + 2 sum rho_k their
-autocorrelation time in samples, since neighbours that err alike tell less than as many strangers. What mesh, step and solver make of the forces
-is no noise: twice the simulator's own estimate of it (a likely size: eight times in ten within a factor of two) moves all forces one way, and the
-answer by H^-1 J^T e.
+Near the answer residuals are r = r0 + J d, and the answer's covariance is C = H^-1 M H^-1 (the sandwich) with H = J^T J (Huber's: of the
+residuals not clipped) and M = sum over recordings of tau sum r_i^2 J_i^T J_i: each residual's own square, since noise is not alike on and off the
+tissue (White 1980), and tau = 1 + 2 sum rho_k, their autocorrelation time in samples, since neighbours that err alike tell less than as many
+independent samples. What mesh, step and solver make of the forces is no noise. Twice the simulator's own estimate of it (a likely size: eight times
+in ten within a factor of two) moves all forces one way, and the answer by H^-1 J^T e; where the answer was corrected to a finer scene, half the
+correction is left to do (second order, cells two thirds the size; Roache's grid convergence): the larger of the two counts.
 """
 import dataclasses
 
@@ -14,10 +15,11 @@ from scipy import stats
 from fitting.solve import HUBER
 
 LEVEL = 0.95
-TOLD_LOG = 0.25    # half an interval, as a share of the value, up to which data tell a parameter known by its order of magnitude
-TOLD_RANGE = 0.25  # ... and as a share of the way between its bounds
+IDENTIFIED_LOG = 0.25    # half an interval, as a share of the value, up to which a parameter known by its order of magnitude is identified
+IDENTIFIED_RANGE = 0.25  # ... and as a share of the way between its bounds
 ALIKE = 0.9        # correlation from which on two parameters are named together
 LIKELY = 2.0       # times the simulator's estimate of its error
+LEFT_TO_CORRECT = 0.5
 FLAT = 1e-9        # of the largest curvature
 AT_BOUND = 1e-3    # of the way between bounds
 
@@ -32,9 +34,9 @@ class Answer:
     model_half: numpy.ndarray   # ... and mesh, step, solver
     alone_half: numpy.ndarray   # if all others were known
     correlation: numpy.ndarray
-    singular: numpy.ndarray     # of the Jacobian per part of the way, weighed forces
+    singular: numpy.ndarray     # of the Jacobian per part of the way, weighted forces
     shares: numpy.ndarray       # runs x parameters: of what is known about it
-    untold: list                # sentences; empty: all are told
+    unidentified: list          # sentences; empty: all are identified
 
     def interval(self, i):
         parameter = self.parameters[i]
@@ -72,54 +74,55 @@ def _groups(problem):
 
 
 def _model_error(problem, forces):
-    """Of each force along itself, weighed as the residuals are."""
+    """Of each force along itself, weighted as the residuals are."""
     parts = []
     for run, (force, error) in zip(problem.runs, forces):
         size = numpy.maximum(numpy.linalg.norm(force, axis=1), 1e-300)
         rows = run.fitted & (numpy.arange(len(size)) > 0)
-        parts += [(LIKELY * error * force[:, axis] / size)[rows] / run.spread_n for axis in run.recording.measured()]
+        parts += [(LIKELY * error * force[:, axis] / size)[rows] / run.scale_n for axis in run.recording.measured()]
     return numpy.concatenate(parts)
 
 
-def assess(problem, point):
+def assess(problem, point, correction=0.0):
+    """correction: of the point, by the finer scene."""
     forces = problem.forces([point])[0]
     residual, jacobian = problem.residual(forces), problem.jacobian(point)
     inlier = numpy.abs(residual) <= HUBER
     curvature = jacobian[inlier].T @ jacobian[inlier]
-    spread, information, strangers = numpy.zeros_like(curvature), numpy.zeros((len(problem.runs), len(point))), 0.0
+    meat, information, independent = numpy.zeros_like(curvature), numpy.zeros((len(problem.runs), len(point))), 0.0
     for run, rows in _groups(problem):
         clipped = numpy.clip(residual[rows], -HUBER, HUBER)
         time = autocorrelation_time(clipped, len(point))
-        square = jacobian[rows].T @ jacobian[rows]
-        spread += float(clipped @ clipped) / max(len(clipped), 1) * time * square
-        information[run] += numpy.diag(square)
-        strangers += len(clipped) / time
+        scores = clipped[:, None] * jacobian[rows]
+        meat += time * scores.T @ scores
+        information[run] += (jacobian[rows] ** 2).sum(axis=0)
+        independent += len(clipped) / time
     # Directions in which nothing is known become very long ones, not none.
-    least = FLAT * max(numpy.linalg.norm(curvature, 2), 1e-300) * numpy.eye(len(point))
-    inverse, spread = numpy.linalg.inv(curvature + least), spread + least
-    freedom = max(strangers - len(point), 1.0)
-    spread *= strangers / freedom  # the fit has taken its share of the residuals
-    covariance = inverse @ spread @ inverse
+    least = FLAT * max(numpy.linalg.norm(curvature, 2), 1e-100) * numpy.eye(len(point))
+    inverse, meat = numpy.linalg.inv(curvature + least), meat + least
+    freedom = max(independent - len(point), 1.0)
+    meat *= independent / freedom  # the fit has taken its share of the residuals
+    covariance = inverse @ meat @ inverse
     quantile = stats.t.ppf(0.5 + 0.5 * LEVEL, freedom)
     deviation = numpy.sqrt(numpy.maximum(numpy.diag(covariance), 0.0))
     hardly = numpy.diag(curvature) <= 1e-12 * max(numpy.diag(curvature).max(), 1e-300)
     noise = numpy.where(hardly, numpy.inf, quantile * deviation)
-    alone = quantile * numpy.sqrt(numpy.diag(spread)) / numpy.maximum(numpy.diag(curvature), 1e-300)
-    model = numpy.abs(inverse @ (jacobian.T @ _model_error(problem, forces)))
+    alone = quantile * numpy.sqrt(numpy.diag(meat)) / numpy.maximum(numpy.diag(curvature), 1e-300)
+    model = numpy.maximum(numpy.abs(inverse @ (jacobian.T @ _model_error(problem, forces))), LEFT_TO_CORRECT * numpy.abs(correction))
     safe = numpy.where(deviation > 0.0, deviation, 1.0)
     answer = Answer(
         parameters=problem.parameters, point=point, values=problem.values(point), half=numpy.sqrt(noise ** 2 + model ** 2), noise_half=noise,
         model_half=model, alone_half=numpy.where(hardly, numpy.inf, alone), correlation=covariance / numpy.outer(safe, safe),
-        singular=numpy.linalg.svd(jacobian, compute_uv=False), shares=information / numpy.maximum(information.sum(axis=0), 1e-300), untold=[])
-    answer.untold = [sentence for i in range(len(point)) for sentence in _untold(answer, i)]
+        singular=numpy.linalg.svd(jacobian, compute_uv=False), shares=information / numpy.maximum(information.sum(axis=0), 1e-300), unidentified=[])
+    answer.unidentified = [sentence for i in range(len(point)) for sentence in _unidentified(answer, i)]
     return answer
 
 
 def _limit(parameter):
-    """Half an interval, in parts of the way, up to which a parameter is told."""
+    """Half an interval, in parts of the way, up to which a parameter is identified."""
     if parameter.is_log:
-        return min(TOLD_RANGE, numpy.log1p(TOLD_LOG) / numpy.log(parameter.high / parameter.low))
-    return TOLD_RANGE
+        return min(IDENTIFIED_RANGE, numpy.log1p(IDENTIFIED_LOG) / numpy.log(parameter.high / parameter.low))
+    return IDENTIFIED_RANGE
 
 
 def _percent(answer, i, half):
@@ -128,18 +131,18 @@ def _percent(answer, i, half):
     return "%.0f %%" % (100.0 * unit / answer.values[i]) if parameter.is_log else "%.2g %s" % (unit, parameter.unit)
 
 
-def _untold(answer, i):
+def _unidentified(answer, i):
     parameter, half, alone = answer.parameters[i], answer.noise_half[i], answer.alone_half[i]
     limit = _limit(parameter)
     if half <= limit:
         return
     if alone > limit:
-        yield ("these data do not tell %s: they hardly depend on it where it is %.3g %s; leave its --fit out, or measure what depends on it" %
+        yield ("these data do not identify %s: they hardly depend on it where it is %.3g %s; leave its --fit out, or measure what depends on it" %
                (parameter.label, answer.values[i], parameter.unit)).replace("  ", " ")
         return
     others = sorted((j for j in range(len(answer.values)) if j != i), key=lambda j: -abs(answer.correlation[i, j]))
     alike = [j for j in others if abs(answer.correlation[i, j]) >= ALIKE] or others[:1]
-    yield ("these data cannot tell %s from %s: known to ± %s if the other were known, to ± %s without (correlation %s); "
+    yield ("these data cannot separate %s from %s: known to ± %s if the other were known, to ± %s without (correlation %s); "
            "measure one of them otherwise and leave its --fit out, or add recordings that they change differently" % (
                parameter.label, " and ".join(answer.parameters[j].label for j in alike), _percent(answer, i, alone),
                _percent(answer, i, half), ", ".join("%+.3f" % answer.correlation[i, j] for j in alike)))

@@ -1,0 +1,145 @@
+"""What fit.py reads and refuses: tables and bags. Cases of fit_test.py, which runs them."""
+import math
+import os
+import tempfile
+import tracemalloc
+import unittest
+from unittest import mock
+
+import numpy
+
+from fitting import FitError, measured
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def write(self, name, text):
+        with open(os.path.join(self.folder, name), "w", encoding="utf-8") as stream:
+            stream.write(text)
+        return os.path.join(self.folder, name)
+
+    def refused(self, words, function, *arguments):
+        with self.assertRaises(FitError) as caught:
+            function(*arguments)
+        for word in words:
+            self.assertIn(word, str(caught.exception))
+
+
+class TableTest(Folder):
+    GOOD = ["time_s,x_m,y_m,z_m,fz_n"] + ["%g,0,0,0.01,%g" % (0.1 * i, 0.01 * i) for i in range(12)]
+
+    def read(self, lines):
+        return measured.read(self.write("m.csv", "\n".join(lines)), ["x", "y", "z"], ["/js"], "/force_sensor")
+
+    def test_what_it_reads(self):
+        recording = self.read(self.GOOD)
+        self.assertEqual(recording.measured(), [2])
+        self.assertAlmostEqual(recording.peak_n(), 0.11)
+        self.assertIsNone(recording.joints)
+        joints = self.read(["time_s,z,fz_n,fx_n"] + ["%d,0.5,%d,2" % (i, i) for i in range(12)])
+        self.assertEqual(list(joints.joints), ["z"])
+        self.assertEqual(joints.measured(), [0, 2])
+
+    def test_bad_tables_are_refused_by_file_line_column_value_and_range(self):
+        def changed(line, text):
+            return self.GOOD[:line - 1] + [text] + self.GOOD[line:]
+        for lines, words in [
+                ([], ["m.csv is empty", "header"]),
+                (["", ""], ["m.csv:1", "there is no column time_s"]),
+                (["version https://git-lfs.github.com/spec/v1", "oid sha256:0", "size 1"], ["m.csv is a git-lfs pointer", "git lfs pull"]),
+                (["time_s,x_m,y_m,z_m,fz_n"] + ["%d,0,0,%g,%d" % (i, 3.5 * (i % 2), i) for i in range(12)],
+                 ["'z_m' spans 3.5 m", "up to 1 m", "metres"]),
+                (["time_s,x_m,y_m,z_m,fz_n"] + ["%d,0,0,0,%d" % (1000 * i, i) for i in range(12)], ["lasts 11000 s", "up to 3600 s"]),
+                (changed(5, "0.3,0,0,0.01,0." + "1" * 20000), ["m.csv:5", "more than 10000 characters"]),
+                (changed(1, "time_s,x_m,y_m,z_m,fz"), ["m.csv:1", "'fz'", "did you mean", "fz_n"]),
+                (changed(1, "time_s,x_m,y_m,fz_n,fz_n"), ["m.csv:1", "'fz_n' is there twice"]),
+                (changed(1, "time_s,x_m,y_m,fx_n,fz_n"), ["m.csv:1", "z_m", "all are needed"]),
+                (changed(1, "time_s,x,y,x_m,fz_n"), ["m.csv:1", "all are needed"]),
+                (["time_s,fz_n"] + ["%d,1" % i for i in range(12)], ["m.csv:1", "either the tip's position"]),
+                (["time_s,z"] + ["%d,1" % i for i in range(12)], ["there is no force"]),
+                (changed(5, "0.3,0,0,ten,0.1"), ["m.csv:5", "'z_m' is 'ten'", "-10 to 10 m"]),
+                (changed(5, "0.3,0,0,35.2,0.1"), ["m.csv:5", "'z_m' is '35.2'", "metres"]),
+                (changed(5, "0.3,0,0,0.01,nan"), ["m.csv:5", "'fz_n' is 'nan'", "newtons"]),
+                (changed(5, "0.3,0,0,0.01,1e400"), ["m.csv:5", "'fz_n'"]),
+                (changed(5, "0.1,0,0,0.01,0.1"), ["m.csv:5", "'time_s' is 0.1, not after 0.2", "ascend"]),
+                (changed(5, "0.3,0,0,0.01"), ["m.csv:5", "4 values under 5 columns"]),
+                (self.GOOD[:6], ["5 rows", "10 or more"]),
+                (["time_s,x_m,y_m,z_m,fz_n"] + ["%d,0,0,0,0" % i for i in range(12)], ["the force is the same in every row (0 N)"]),
+                (["time_s,x_m,y_m,z_m,qx,qy,qz,qw,fz_n"] + ["%d,0,0,0,0,0,0,%g,1" % (i, 0.9 if i == 7 else 1) for i in range(12)],
+                 ["row 8", "0.9", "norm"])]:
+            with self.subTest(words=words):
+                self.refused(words, self.read, lines)
+        for path, why in [(self.folder, "not a file"), ("/dev/zero", "not a file"), (os.path.join(self.folder, "none"), "No such file")]:
+            self.refused([path + " cannot be read: ", why], measured.read, path, [], [], "")
+        with open(os.path.join(self.folder, "b.csv"), "wb") as stream:
+            stream.write(b"time_s,\xff\xfe\n")
+        self.refused(["cannot be read as a table"], measured.read, os.path.join(self.folder, "b.csv"), [], [], "")
+
+    def test_a_huge_table_is_refused_with_little_memory(self):
+        path = os.path.join(self.folder, "huge.csv")
+        with open(path, "wb") as stream:
+            stream.write(b"time_s,z,fz_n\n" + 8 * b"1")
+            stream.truncate(4000000000)  # a sparse file: one line of four gigabytes
+        with mock.patch.object(measured, "MOST_ROWS", 100):
+            self.refused(["m.csv:102", "more than 100 rows"], self.read, ["time_s,x_m,y_m,z_m,fz_n"] + ["%d,0,0,0,%d" % (i, i) for i in range(200)])
+        tracemalloc.start()
+        self.addCleanup(tracemalloc.stop)
+        self.refused(["huge.csv:2", "more than 10000 characters"], measured.read, path, ["z"], [], "")
+        self.assertLess(tracemalloc.get_traced_memory()[1], 5e6)
+
+    def test_thin_smooth_tare(self):
+        recording = self.read(["time_s,x_m,y_m,z_m,fz_n"] + ["%.3f,0,0,%.9f,%g" % (0.002 * i, 1e-4 * (0.002 * i) ** 2, 3 + i % 2) for i in range(500)])
+        self.assertAlmostEqual(measured.tare(recording, 0.1).force_n[:, 2].mean(), 0.0)
+        thinned = measured.thin(recording, 100.0)
+        self.assertEqual(len(thinned.times_s), 100)
+        self.assertAlmostEqual(thinned.times_s[3], 0.034)  # the mean of five
+        self.assertLess(abs(thinned.force_n[:, 2]).max(), 0.11)
+        numpy.testing.assert_allclose(measured.smooth(recording, 0.1).positions_m, recording.positions_m, atol=1e-9)  # a parabola stays
+        self.refused(["longer than"], measured.smooth, recording, 2.0)
+        self.refused(["leaves 5 samples"], measured.thin, recording, 5.0)
+
+
+class BagTest(Folder):
+    def bag(self, states=200, force_type=None, stamps=1.0, force=lambda i: 0.02 * i):
+        import genpy
+        import rosbag
+        from geometry_msgs.msg import WrenchStamped
+        from sensor_msgs.msg import JointState
+        path = os.path.join(self.folder, "m.bag")
+        with rosbag.Bag(path, "w") as bag:
+            for i in range(states):
+                state = JointState(name=["z"], position=[1e-5 * i])
+                wrench = WrenchStamped() if force_type is None else JointState(name=["z"], position=[0])
+                if force_type is None:
+                    wrench.wrench.force.z = force(i)
+                for topic, message, at in (("/js", state, 10 + stamps * 0.01 * i), ("/force_sensor", wrench, 10.005 + 0.01 * i)):
+                    message.header.stamp = genpy.Time.from_sec(at)
+                    bag.write(topic, message, genpy.Time.from_sec(10 + i))
+        return path
+
+    def read(self, path, topic="/force_sensor"):
+        return measured.read(path, ["z"], ["/js"], topic)
+
+    def test_force_at_the_stamps_of_joint_states(self):
+        recording = self.read(self.bag())
+        self.assertEqual(len(recording.times_s), 199)  # the first state is before the first force
+        numpy.testing.assert_allclose(recording.joints["z"], 1e-5 * numpy.arange(1, 200), atol=1e-12)
+        numpy.testing.assert_allclose(recording.force_n[:, 2], 0.02 * (numpy.arange(199) + 0.5), atol=1e-6)
+
+    def test_refused(self):
+        self.refused(["no messages on /wrench", "/force_sensor, /js"], self.read, self.bag(), "/wrench")
+        self.refused(["/force_sensor has sensor_msgs/JointState; geometry_msgs/WrenchStamped is needed"], self.read, self.bag(force_type="js"))
+        self.refused(["is not after", "header.stamp"], self.read, self.bag(stamps=0.0))
+        self.refused(["10 to"], self.read, self.bag(5))
+        self.refused(["no joint_state_topics"], measured.read, self.bag(), ["z"], [], "/force_sensor")
+        self.refused(["the force is the same in every row"], self.read, self.bag(force=lambda i: 3.0))
+        self.refused(["on /force_sensor a force is nan N; from -1000 to 1000 N"], self.read, self.bag(force=lambda i: math.nan if i == 9 else 1.0))
+        with open(self.bag(), "rb") as stream:
+            content = stream.read()
+        with open(os.path.join(self.folder, "cut.bag"), "wb") as stream:
+            stream.write(content[:5000])
+        self.refused(["cut.bag cannot be read as a bag"], self.read, os.path.join(self.folder, "cut.bag"))
