@@ -44,7 +44,7 @@ def main():
         print("E = %g Pa: %.3f N at %.1f mm" % (modulus, forces[-1], 1e3 * DEPTHS_M[-1]))
     axes.set_xlabel("depth (mm)")
     axes.set_ylabel("normal force (N); band: its likely error")
-    axes.legend()
+    axes.legend(loc="upper left")
     figure.savefig(arguments.output, dpi=120)
 
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include "python/binding/arrays.h"
 #include "python/binding/loaded_scene.h"
@@ -38,6 +39,20 @@ py::object remake(const LoadedScene& loaded) {
     return py::make_tuple(helpers.attr("parse_scene_again"),
                           py::make_tuple(*loaded.yaml, loaded.file, loaded.settings));
   return py::make_tuple(helpers.attr("load_scene_again"), py::make_tuple(loaded.file, loaded.settings));
+}
+
+/// By reference, which pybind11 refuses for what Simulator.__new__() alone has made; a pointer would be null.
+template <typename Result, typename... Arguments>
+auto bound(Result (PythonSimulator::*function)(Arguments...)) {
+  return [function](PythonSimulator& self, Arguments... arguments) -> Result {
+    return (self.*function)(std::forward<Arguments>(arguments)...);
+  };
+}
+template <typename Result, typename... Arguments>
+auto bound(Result (PythonSimulator::*function)(Arguments...) const) {
+  return [function](const PythonSimulator& self, Arguments... arguments) -> Result {
+    return (self.*function)(std::forward<Arguments>(arguments)...);
+  };
 }
 
 void bindScene(py::module_& module) {
@@ -158,52 +173,53 @@ void bindSimulator(py::module_& module) {
       .def(py::init(make), py::arg("scene"), py::kw_only(), py::arg("urdf") = py::none(),
            py::arg("frames") = py::none(),
            "urdf: file for scenes that take their URDF from a parameter. frames: {tf frame: 4 x 4 pose in the world}.")
-      .def_property_readonly("instruments", &Self::instruments, "Names, in the order of the scene.")
-      .def_property_readonly("tissues", &Self::tissues, "Names, in the order of the scene.")
-      .def("joint_names", &Self::jointNames, py::arg("instrument"),
+      .def_property_readonly("instruments", bound(&Self::instruments), "Names, in the order of the scene.")
+      .def_property_readonly("tissues", bound(&Self::tissues), "Names, in the order of the scene.")
+      .def("joint_names", bound(&Self::jointNames), py::arg("instrument"),
            "In the order of joint positions; mimic joints are not among them.")
-      .def("joint_limits", &Self::jointLimits, py::arg("instrument"),
+      .def("joint_limits", bound(&Self::jointLimits), py::arg("instrument"),
            "(n, 2) rad or m: lower, upper, as the URDF has them; not enforced.")
-      .def("contact_links", &Self::contactLinks, py::arg("instrument"),
+      .def("contact_links", bound(&Self::contactLinks), py::arg("instrument"),
            "Names of the links that touch, by the index `link` of contacts().")
-      .def("place", &Self::place, py::arg("instrument"), py::arg("positions"),
+      .def("place", bound(&Self::place), py::arg("instrument"), py::arg("positions"),
            "Puts an instrument somewhere without a path: no speed, no contact until the next advance. positions: (n,) "
            "rad or m.")
-      .def("advance", &Self::advance, py::arg("duration_s"), py::arg("positions") = py::none(),
+      .def("advance", bound(&Self::advance), py::arg("duration_s"), py::arg("positions") = py::none(),
            "Advances by duration_s > 0 while the joints move linearly to positions (rad, m): {instrument: (n,)} or a "
            "list for\n"
            "all instruments; those not named stay. Cut into implicit steps as the scene says. Other threads run "
            "meanwhile.")
-      .def("reset", &Self::reset, "Everything back to the start.")
+      .def("reset", bound(&Self::reset), "Everything back to the start.")
       .def(
           "retune", [](Self& self, const LoadedScene& changed) { self.retune(changed.scene); }, py::arg("scene"),
           "Takes moduli, Poisson's ratios, damping, friction and solver limits of a scene that differs in these alone, "
           "from the\n"
           "next step on.")
-      .def("save_state", &Self::saveState, "All that the next advance depends on, as bytes.")
-      .def("load_state", &Self::loadState, py::arg("state"),
+      .def("save_state", bound(&Self::saveState), "All that the next advance depends on, as bytes.")
+      .def("load_state", bound(&Self::loadState), py::arg("state"),
            "Goes on from saved bytes of the same scene, to the same bits. ValueError when they do not fit.")
-      .def("joint_positions", &Self::jointPositions, py::arg("instrument"), "(n,) rad or m, now.")
-      .def("wrench", &Self::wrench, py::arg("instrument"), py::arg("frame") = "tip",
+      .def("joint_positions", bound(&Self::jointPositions), py::arg("instrument"), "(n,) rad or m, now.")
+      .def("wrench", bound(&Self::wrench), py::arg("instrument"), py::arg("frame") = "tip",
            "(6,): force (N) and torque (N m) of the tissues on the instrument at the origin of its tip link, mean over "
            "the last\n"
            "implicit step; in the axes of the tip, as published, or frame='world'.")
-      .def("tip_pose", &Self::tipPose, py::arg("instrument"), "(4, 4): pose of the tip link in the world, m.")
-      .def("positions", &Self::positions, py::arg("tissue"), "(n, 3) m: nodes. Read-only, not copied.")
-      .def("velocities", &Self::velocities, py::arg("tissue"), "(n, 3) m/s: nodes. Read-only, not copied.")
-      .def("topology", &Self::topology, py::arg("tissue"),
+      .def("tip_pose", bound(&Self::tipPose), py::arg("instrument"), "(4, 4): pose of the tip link in the world, m.")
+      .def("positions", bound(&Self::positions), py::arg("tissue"), "(n, 3) m: nodes. Read-only, not copied.")
+      .def("velocities", bound(&Self::velocities), py::arg("tissue"), "(n, 3) m/s: nodes. Read-only, not copied.")
+      .def("topology", bound(&Self::topology), py::arg("tissue"),
            "The mesh of positions(); the same object until the mesh changes.")
-      .def("contacts", &Self::contacts,
+      .def("contacts", bound(&Self::contacts),
            "Of the last step: structured array with instrument, link, shape, tissue, other_tissue (indices; -1: none), "
            "state\n"
            "(tissue_contact.OPEN, STATIC, KINETIC), point (m), normal (into the tissue), force (N, on the tissue), "
            "slip (m), gap (m).")
-      .def("force_errors", &Self::forceErrors,
+      .def("force_errors", bound(&Self::forceErrors),
            "Per instrument, N: how wrong its force likely is: total_n, mesh_n (NaN: not known), step_n, solver_n.")
-      .def("residuals", &Self::residuals, "Of the last step, by name: how far its answer is from its contact problem.")
-      .def("report", &Self::report, "How the last advance went.")
-      .def("advice", &Self::advice, "Which models were chosen for the scene and why, a line each.")
-      .def_property_readonly("step_count", &Self::stepCount, "Implicit steps since the start or a reset.");
+      .def("residuals", bound(&Self::residuals),
+           "Of the last step, by name: how far its answer is from its contact problem.")
+      .def("report", bound(&Self::report), "How the last advance went.")
+      .def("advice", bound(&Self::advice), "Which models were chosen for the scene and why, a line each.")
+      .def_property_readonly("step_count", bound(&Self::stepCount), "Implicit steps since the start or a reset.");
 }
 
 }  // namespace
