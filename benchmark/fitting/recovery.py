@@ -3,7 +3,7 @@
 a finer simulation, recorded with noise, and fitted. Prints errors and how often the stated intervals hold the truth. doc/calibration.md has its
 figures.
 
-  benchmark/fitting/recovery.py --trials 10             as in doc/calibration.md
+  benchmark/fitting/recovery.py --trials 10             some three minutes each
   benchmark/fitting/recovery.py --same-mesh             data of the very model that fits them: what noise alone does
   benchmark/fitting/recovery.py --write-example FOLDER  press.csv, swing.csv, drag.csv, deeper.csv of config/calibration
 """
