@@ -1,11 +1,10 @@
 /// @file
-/// What the frames of links are called, and what names are refused.
+/// What the frames of links are called, and which are refused.
 #include "ros/publish/instrument_messages.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
-#include <set>
 #include <string>
 
 #include "support/refusal.h"
@@ -18,8 +17,9 @@ namespace {
 Simulator sceneOf(const std::map<std::string, std::string>& instruments, const std::string& world_frame = "world") {
   std::string yaml = "world_frame: " + world_frame + "\n" + blockScene() + "instruments:\n";
   for (const auto& [name, urdf] : instruments) {
-    yaml += "  - {name: " + name + ", robot_description: " + urdf + ", tip_link: tip, contact_links: [tip], joint_state_topics: [/" +
-            name + "], base_pose: {position_m: [0, 0, 0.1]}}\n";
+    yaml += "  - {name: " + name + ", robot_description: " + urdf +
+            ", tip_link: tip, contact_links: [tip], joint_state_topics: [/" + name +
+            "], base_pose: {position_m: [0, 0, 0.1]}}\n";
   }
   const std::string ball = "<collision><geometry><sphere radius='0.005'/></geometry></collision>";
   const std::string joint =
@@ -59,12 +59,6 @@ TEST(FrameNames, HaveTheInstrumentWhereALinkIsCalledAsTheWorldAndElsewhere) {
 TEST(FrameNames, AreRefusedWhereALinkIsCalledAsTheFrameOfAnother) {
   const Simulator simulator = sceneOf({{"a", "probe"}, {"b", "other"}, {"c", "cunning"}});
   expectRefusal([&] { frameNames(simulator); }, {"two links", "'a/tip'", "rename one in its URDF"});
-}
-
-TEST(CheckNames, RefusesWhatCannotBePartOfATopic) {
-  checkNames(sceneOf({{"a", "probe"}}));
-  const Simulator simulator = sceneOf({{"left-arm", "probe"}});
-  expectRefusal([&] { checkNames(simulator); }, {"instrument name 'left-arm'", "letters, digits and underscores"});
 }
 
 }  // namespace
