@@ -19,8 +19,8 @@ constexpr std::size_t kMostCarried = 10'000;
 
 void requirePossible(const StateArchive& archive, const Vector3& p_T, double cell_m, double coarsening) {
   constexpr double kMost_m = 1e6;  // so that no product of two overflows
-  const bool is_possible = p_T.cwiseAbs().maxCoeff() <= kMost_m && cell_m >= 1.0 / kMost_m && cell_m <= kMost_m &&
-                           coarsening >= 1.0 && coarsening <= kMost_m;
+  const bool is_possible = p_T.allFinite() && p_T.cwiseAbs().maxCoeff() <= kMost_m && cell_m >= 1.0 / kMost_m &&
+                           cell_m <= kMost_m && coarsening >= 1.0 && coarsening <= kMost_m;
   archive.check(is_possible, "a place of fine cells, or their length, that no scene has");
 }
 

@@ -20,10 +20,16 @@ MeshFollower::MeshFollower(const MeshUsers& users, TissueRefinement& refinement,
 
 double MeshFollower::lead(double dt) { return std::max(kLead_s, 2.0 * dt); }
 
+double MeshFollower::ahead(double travel_m, double dt, double reach_m) {
+  const double foreseen_m = lead(dt) / dt * travel_m;  // infinite, or no number, if dt is tiny
+  return foreseen_m < kFarthestAhead * reach_m ? foreseen_m : kFarthestAhead * reach_m;
+}
+
 ComingMesh* MeshFollower::follow(const std::vector<TouchedPlace>& places, const NodalVectors& x, double last_dt) {
   touched_ = !places.empty();
+  if (pending_ && !is_given_) goOn();
   const bool is_due = pending_ && isDue(x, last_dt);
-  if (is_due) pause();
+  if (is_due && worker_.wait(ticket_)) ++moves_.waited;
   if (is_due && comingKeeps(places)) {
     ComingMesh* const taken = take();
     if (taken != nullptr) ++moves_.prepared;
@@ -50,8 +56,9 @@ bool MeshFollower::isDue(const NodalVectors& x, double last_dt) {
   constexpr double kRounding = 1.0 - 1e-9;  // of sums of time steps
   elapsed_s_ += last_dt;
   ++steps_;
-  if (has_snapshot_) return steps_ >= 2 && elapsed_s_ >= kRounding * kLead_s;
-  if (elapsed_s_ >= kRounding * kMeshTime_s) beginState(x);
+  if (steps_ >= 2 && elapsed_s_ >= kRounding * kLead_s) return true;
+  const bool is_next = elapsed_s_ + last_dt >= kRounding * kLead_s;
+  if (!has_snapshot_ && (is_next || elapsed_s_ >= kRounding * kMeshTime_s)) beginState(x);
   return false;
 }
 
@@ -114,6 +121,7 @@ void MeshFollower::beginState(const NodalVectors& x) {
 
 void MeshFollower::goOn() {
   if (!pending_) return;
+  is_given_ = true;
   ticket_ = worker_.start([this] { makeMesh(); });
   if (has_snapshot_) ticket_ = worker_.start([this] { makeState(); });
 }
@@ -148,7 +156,7 @@ ComingMesh* MeshFollower::take() {
 }
 
 void MeshFollower::pause() {
-  if (pending_) moves_.waited += worker_.wait(ticket_) ? 1 : 0;
+  if (pending_) worker_.wait(ticket_);
 }
 
 void MeshFollower::drop() {
@@ -158,6 +166,7 @@ void MeshFollower::drop() {
 
 void MeshFollower::carry(StateArchive& archive, int nodes) {
   archive.carry(pending_);
+  if (archive.isReading()) is_given_ = false;
   if (!pending_) return;
   carryPlaces(archive, places_);
   archive.carry(elapsed_s_);
@@ -170,7 +179,6 @@ void MeshFollower::carry(StateArchive& archive, int nodes) {
     archive.carry(snapshot_);
     archive.check(snapshot_.allFinite() && snapshot_.cwiseAbs().maxCoeff() <= 1e9, "a position that no tissue has");
   }
-  if (archive.isReading()) goOn();
 }
 
 }  // namespace tissue_contact

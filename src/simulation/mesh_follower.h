@@ -3,10 +3,11 @@
 /// the mesh to go on with out, prepared beside the steps.
 ///
 /// Once something will not lie well within what is fine when the time that a preparation takes is over, the next mesh is begun, for all
-/// places between there and now. kMeshTime_s of the simulation's own time later the stiffness follows, from where nodes are
-/// then, and kLead_s after the beginning the steps go on with it, waiting for the worker if need be: neither the speed of the machine nor
-/// that of the clock has a say. What touches where nothing is fine, because it jumped there or is the first, has its mesh at once, in a
-/// step that is as long as it takes.
+/// places between there and now. kMeshTime_s of the simulation's own time later, or in the last step before the mesh is due if that is
+/// earlier, the stiffness follows, from where nodes are then. The first step, the second at the earliest, that begins kLead_s after
+/// that goes on with it, waiting for the worker if need be; if steps became longer meanwhile, it makes the stiffness itself. Neither the
+/// speed of the machine nor that of the clock has a say. What touches where nothing is fine, because it jumped there or is the first, has
+/// its mesh at once, in a step that is as long as it takes.
 #pragma once
 
 #include <exception>
@@ -41,6 +42,9 @@ class MeshFollower {
   /// How long before a place is touched it must be known of to have its mesh then, s. @param dt length of steps.
   static double lead(double dt);
 
+  /// How far beyond the reach of its cells a place must be known of, m. @param travel_m what touches moves by in a step, at most.
+  static double ahead(double travel_m, double dt, double reach_m);
+
   /// By what factor cells of the newest foci are longer than asked for, to have no more nodes than allowed: 1 or more; 1 while nothing
   /// touches.
   double coarsening() const { return touched_ ? refinement_.cells().coarsening() : 1.0; }
@@ -53,6 +57,7 @@ class MeshFollower {
   void pause();
   void goOn();
 
+  /// On reading, the worker has what is being prepared with the next step: what follows in the state may be refused.
   /// @pre the refinement has been carried; on reading, drop() before that.
   void carry(StateArchive& archive, int nodes);
 
@@ -77,6 +82,7 @@ class MeshFollower {
   std::vector<FinePlace> places_;  ///< what it is to be fine for
   double elapsed_s_ = 0.0;         ///< since it was begun
   int steps_ = 0;
+  bool is_given_ = false;  ///< to the worker
   bool has_snapshot_ = false;
   NodalVectors snapshot_;  ///< where nodes of the present mesh were when its stiffness was begun, m
   BackgroundWorker::Ticket ticket_ = 0;

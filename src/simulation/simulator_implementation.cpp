@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 #include "simulation/build_scene.h"
 #include "tissue_contact/baselines/make_contact_solver.h"
@@ -228,25 +229,35 @@ void Simulator::Implementation::restTissues() {
 /// Lets the meshes follow what touched tissues in the step before, or is near to them now.
 void Simulator::Implementation::refineTissues(double dt) {
   if (!worker) return;
-  const double touches_m = kStepsAhead * motion.longestTravel();
-  const double ahead_m = touches_m + MeshFollower::lead(dt) / dt * motion.longestTravel();
-  for (std::size_t t = 0; t < tissues.size(); ++t) near_m[t] = approach_m[t] < 0.0 ? -1.0 : approach_m[t] + ahead_m;
+  const double travel_m = motion.longestTravel();
+  const double touches_m = kStepsAhead * travel_m;
+  const auto ahead_m = [&](std::size_t t) { return touches_m + MeshFollower::ahead(travel_m, dt, approach_m[t]); };
+  for (std::size_t t = 0; t < tissues.size(); ++t) near_m[t] = approach_m[t] < 0.0 ? -1.0 : approach_m[t] + ahead_m(t);
   detector.findNear(x, motion.startPoses(), near_m, near);
   bool any = false;
+  std::exception_ptr error;  // the meshes of the others are theirs nevertheless
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     if (!followers[t]) continue;
-    const int tissue = static_cast<int>(t);
-    const NodalVectors& rest = tissues[t].restPositions();
-    touched_places.begin(tissue, contacts.solved(), rest, last_dt);
-    touched_places.addNear(near, refinements[t]->cells(), {motion, dt, ahead_m, touches_m}, x[t], rest);
-    ComingMesh* const coming = followers[t]->follow(touched_places.places(), x[t], last_dt);
-    if (coming == nullptr) continue;
-    changeMesh(tissue, *coming);
-    any = true;
+    try {
+      any |= refineTissue(static_cast<int>(t), {motion, dt, ahead_m(t), touches_m});
+    } catch (...) {
+      if (!error) error = std::current_exception();
+    }
   }
-  if (!any) return;
-  contacts.finishRenumbering();
-  solver->reset();
+  if (any) {
+    contacts.finishRenumbering();
+    solver->reset();
+  }
+  if (error) std::rethrow_exception(error);
+}
+
+/// @return whether the mesh of that tissue has changed.
+bool Simulator::Implementation::refineTissue(int tissue, const TouchedPlaces::Approaching& approaching) {
+  touched_places.begin(tissue, contacts.solved(), tissues[tissue].restPositions(), last_dt);
+  touched_places.addNear(near, refinements[tissue]->cells(), approaching, x[tissue], tissues[tissue].restPositions());
+  ComingMesh* const coming = followers[tissue]->follow(touched_places.places(), x[tissue], last_dt);
+  if (coming != nullptr) changeMesh(tissue, *coming);
+  return coming != nullptr;
 }
 
 void Simulator::Implementation::changeMesh(int tissue, ComingMesh& coming) {

@@ -37,6 +37,7 @@ struct Simulator::Implementation {
   void restTissues();
   void retune();
   void refineTissues(double dt);
+  bool refineTissue(int tissue, const TouchedPlaces::Approaching& approaching);
   void changeMesh(int tissue, ComingMesh& coming);
   void takeMesh(int tissue, ComingMesh& coming, const std::vector<int>& to_new);
   void restartMesh(int tissue);

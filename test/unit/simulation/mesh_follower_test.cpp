@@ -1,12 +1,15 @@
 /// @file
-/// Meshes that are prepared beside the steps: when they are begun and used, that neither the speed of the worker nor saving, changed
-/// materials or a second tissue makes another bit, and what becomes of errors. Run with the thread sanitizer as well.
+/// Meshes that are prepared beside the steps: when they are begun and used, what becomes of errors, and what is refused in a saved state.
+/// Run with the thread sanitizer as well.
 #include "simulation/mesh_follower.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <thread>
@@ -14,7 +17,6 @@
 #include <vector>
 
 #include "support/refusal.h"
-#include "support/text_scene.h"
 
 namespace tissue_contact {
 namespace {
@@ -45,13 +47,14 @@ struct Followed {
   std::unique_ptr<MeshFollower> follower;
   BackgroundWorker worker;
   int steps = 0;
+  double dt = kStep;
 
   Followed() {
     const MeshUsers users = {0, ElasticModel::kCorotational, false, &folds};
     follower = std::make_unique<MeshFollower>(users, refinement, worker);
   }
   ComingMesh* step(const std::vector<TouchedPlace>& places) {
-    return follower->follow(places, refinement.mesh().mesh.positions, steps++ == 0 ? 0.0 : kStep);
+    return follower->follow(places, refinement.mesh().mesh.positions, steps++ == 0 ? 0.0 : dt);
   }
   /// How many steps later than the next one goes over to another mesh; 100: none does.
   int stepsUntilItMoves(const std::vector<TouchedPlace>& places) {
@@ -108,12 +111,157 @@ TEST(MeshFollower, HasOneAtOnceWhereSomethingTouchesThatJumpedThere) {
   EXPECT_EQ(followed.stepsUntilItMoves({at(0.02)}), 100) << "what was begun for where it was is dropped";
 }
 
+// The first step, the second at the earliest, that begins 20 ms later, however that compares with when the stiffness is begun.
+TEST(MeshFollower, HasOthersOnTimeWithStepsOfAnyLength) {
+  for (const double dt : {0.0005, 0.004, 0.0068, 0.009, 0.01, 0.012, 0.0139, 0.014, 0.019, 0.02, 0.05}) {
+    Followed followed;
+    followed.dt = dt;
+    followed.step({at(0.0)});
+    const int expected = std::max(2, static_cast<int>(std::ceil(MeshFollower::kLead_s / dt - 1e-6)));
+    ComingMesh* coming = nullptr;
+    int steps = -1;
+    for (; coming == nullptr && steps < 100; ++steps) coming = followed.step({at(0.003)});
+    EXPECT_EQ(steps, expected) << dt;
+    ASSERT_NE(coming, nullptr) << dt;
+    EXPECT_NE(coming->elastic_state, nullptr) << dt << ": its stiffness was prepared as well";
+  }
+}
+
+TEST(MeshFollower, HasOneOnTimeThoughStepsBecomeLonger) {
+  Followed followed;
+  followed.step({at(0.0)});
+  EXPECT_EQ(followed.step({at(0.003)}), nullptr);
+  EXPECT_EQ(followed.step({at(0.003)}), nullptr);
+  followed.dt = 0.03;
+  ComingMesh* const coming = followed.step({at(0.003)});
+  ASSERT_NE(coming, nullptr);
+  EXPECT_EQ(coming->elastic_state, nullptr) << "nobody could know when to begin it";
+}
+
+TEST(MeshFollower, LooksNoFartherAheadThanTwiceTheReach) {
+  EXPECT_DOUBLE_EQ(MeshFollower::ahead(1e-5, 0.001, 0.00375), 2e-4);
+  EXPECT_DOUBLE_EQ(MeshFollower::ahead(1e-4, 1e-6, 0.00375), 0.0075);
+  EXPECT_DOUBLE_EQ(MeshFollower::ahead(0.0, 1e-310, 0.00375), 0.0075) << "20 ms hold no number of such steps";
+  EXPECT_DOUBLE_EQ(MeshFollower::ahead(1e-4, 1e-310, 0.00375), 0.0075);
+}
+
 TEST(MeshFollower, WaitsForAWorkerThatIsLate) {
   Followed followed;
   followed.step({at(0.0)});
   followed.worker.start([] { std::this_thread::sleep_for(std::chrono::seconds(1)); });
   EXPECT_EQ(followed.stepsUntilItMoves({at(0.003)}), 20);
   EXPECT_EQ(followed.follower->moves().waited, 1);
+}
+
+// Only steps that wait for what they then go on with count.
+TEST(MeshFollower, CountsNoWaitForWhatIsDropped) {
+  const std::vector<std::function<void(Followed&)>> ways = {
+      [](Followed& followed) { followed.follower->pause(); }, [](Followed& followed) { followed.follower->drop(); },
+      [](Followed& followed) { EXPECT_NE(followed.step({at(0.02)}), nullptr); }};
+  for (const auto& ends : ways) {
+    Followed followed;
+    followed.step({at(0.0)});
+    followed.worker.start([] { std::this_thread::sleep_for(std::chrono::milliseconds(300)); });
+    EXPECT_EQ(followed.step({at(0.003)}), nullptr);
+    ends(followed);
+    EXPECT_EQ(followed.follower->moves().waited, 0);
+  }
+}
+
+/// What a follower with a mesh on its way saves.
+struct SavedFollower {
+  bool pending = true;
+  std::vector<FinePlace> places = {{Vector3(0.003, 0.0, 0.04), 0.00125}};
+  double elapsed_s = 0.015;
+  int steps = 15;
+  bool has_snapshot = true;
+  NodalVectors snapshot;
+
+  std::string bytes() {
+    StateArchive archive("state");
+    archive.section("tissue");
+    archive.carry(pending);
+    archive.carryList(places, places.size(), [&](FinePlace& place) {
+      archive.carry(place.p_T);
+      archive.carry(place.cell_m);
+    });
+    archive.carry(elapsed_s);
+    archive.carry(steps);
+    archive.carry(has_snapshot);
+    archive.carry(snapshot);
+    return archive.finish();
+  }
+};
+
+/// Of a follower with its first mesh, saved 15 steps after another was begun.
+SavedFollower savedFollower(const Followed& followed) {
+  SavedFollower saved;
+  saved.snapshot = followed.refinement.mesh().mesh.positions;
+  return saved;
+}
+
+void read(Followed& followed, const std::string& bytes) {
+  StateArchive archive("state", bytes);
+  archive.section("tissue");
+  followed.follower->carry(archive, static_cast<int>(followed.refinement.mesh().mesh.positions.cols()));
+  archive.requireEnd();
+}
+
+TEST(SavedFollower, GoesOnWhereItWas) {
+  Followed followed;
+  followed.step({at(0.0)});
+  read(followed, savedFollower(followed).bytes());
+  EXPECT_EQ(followed.stepsUntilItMoves({at(0.003)}), 4);
+  EXPECT_EQ(followed.follower->moves().prepared, 1);
+}
+
+// What follows in the state may be refused, and what the worker reads put back.
+TEST(SavedFollower, GivesTheWorkerNothingBeforeTheNextStep) {
+  Followed followed;
+  followed.step({at(0.0)});
+  const BackgroundWorker::Ticket before = followed.worker.start([] {});
+  read(followed, savedFollower(followed).bytes());
+  EXPECT_EQ(followed.worker.start([] {}), before + 1);
+  followed.step({at(0.003)});
+  EXPECT_EQ(followed.worker.start([] {}), before + 4) << "mesh and stiffness";
+}
+
+TEST(SavedFollower, IsRefusedWithWhatNoneHas) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  struct Bad {
+    std::function<void(SavedFollower&)> make;
+    const char* message;
+  };
+  std::vector<Bad> all;
+  for (const double value : {kNan, kInfinity, -1e7, 1e7}) {
+    for (int i = 0; i < 3; ++i) {
+      all.push_back({[=](SavedFollower& saved) { saved.places[0].p_T[i] = value; }, "a place of fine cells"});
+    }
+    all.push_back({[=](SavedFollower& saved) { saved.places[0].cell_m = value; }, "a place of fine cells"});
+  }
+  for (const double value : {0.0, -0.001, 1e-7}) {
+    all.push_back({[=](SavedFollower& saved) { saved.places[0].cell_m = value; }, "a place of fine cells"});
+  }
+  for (const double value : {kNan, kInfinity, -1e-9, 2e9}) {
+    all.push_back({[=](SavedFollower& saved) { saved.elapsed_s = value; }, "a mesh begun at a time that is none"});
+  }
+  for (const int value : {-1, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()}) {
+    all.push_back({[=](SavedFollower& saved) { saved.steps = value; }, "a mesh begun at a time that is none"});
+  }
+  for (const double value : {kNan, kInfinity, -2e9}) {
+    all.push_back({[=](SavedFollower& saved) { saved.snapshot(1, 7) = value; }, "a position that no tissue has"});
+  }
+  all.push_back({[](SavedFollower& saved) { saved.snapshot.setZero(3, 5); }, "15 values, where the scene has"});
+  all.push_back({[](SavedFollower& saved) { saved.places.resize(10'001, saved.places[0]); }, "at most 10000"});
+  Followed followed;
+  followed.step({at(0.0)});
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    SavedFollower saved = savedFollower(followed);
+    all[k].make(saved);
+    EXPECT_NE(refusal([&] { read(followed, saved.bytes()); }).find(all[k].message), std::string::npos) << k;
+    followed.follower->drop();
+  }
 }
 
 TEST(MeshFollower, TellsOfLongerCellsWhileSomethingTouches) {
@@ -140,107 +288,6 @@ TEST(MeshFollower, ThrowsWhatTheWorkerThrewAndGoesOn) {
   followed.refinement.description().regions.clear();
   EXPECT_EQ(followed.stepsUntilItMoves({at(0.003)}), 20);
   EXPECT_EQ(followed.refinement.revision(), 2);
-}
-
-/// Two blocks beside each other, each with a ball of 5 mm some tenths of a millimetre above it. @param modulus_pa of the first.
-std::string twoBlocks(int modulus_pa = 5000) {
-  const auto tissue = [](const std::string& name, const std::string& modulus, const std::string& x) {
-    return "  - name: " + name +
-           "\n    block: {size_m: [0.06, 0.06, 0.03], cells: [6, 6, 3]}\n    pose: {position_m: [" + x +
-           ", 0, 0]}\n    material: {model: corotational, youngs_modulus_pa: " + modulus +
-           ", poissons_ratio: 0.45, density_kg_per_m3: 1000}\n    damping: {stiffness_s: 0.003}\n"
-           "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n    refinement: auto\n";
-  };
-  return "tissues:\n" + tissue("block", std::to_string(modulus_pa), "0") + tissue("other", "5000", "0.1") +
-         "instruments:\n" + probeEntry("probe", "/a", "[-0.01, 0.001, 0.0352]") +
-         probeEntry("second", "/b", "[0.1, 0.002, 0.0354]") +
-         "friction:\n  - {instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}\n"
-         "  - {instrument: second, tissue: other, static: 0.5, kinetic: 0.4}\n";
-}
-
-/// 80 steps down, then along at 50 and 40 mm/s.
-void go(Simulator& simulator, long to) {
-  while (simulator.stepCount() < to) {
-    const auto k = static_cast<double>(simulator.stepCount() + 1);
-    const double down = -2.5e-5 * std::min(k, 80.0);
-    const double along = std::max(k - 80.0, 0.0);
-    simulator.advance(kStep, {Vector3(5e-5 * along, 0.0, down), Vector3(0.0, 4e-5 * along, 0.9 * down)});
-  }
-}
-
-void expectEqual(const Simulator& a, const Simulator& b, const std::string& when) {
-  for (int i = 0; i < 2; ++i) {
-    EXPECT_EQ(a.wrench(i).force, b.wrench(i).force) << when;
-    ASSERT_EQ(a.positions(i).cols(), b.positions(i).cols()) << when;
-    EXPECT_TRUE(a.positions(i) == b.positions(i)) << when;
-    EXPECT_TRUE(a.velocities(i) == b.velocities(i)) << when;
-  }
-}
-
-TEST(PreparedMeshes, MoveInTwoTissuesAndRepeatToTheBit) {
-  Simulator first = makeSimulator(twoBlocks());
-  go(first, 260);
-  for (int t = 0; t < 2; ++t) {
-    EXPECT_GE(first.meshMoves(t).prepared, 2) << t;
-    EXPECT_EQ(first.meshMoves(t).at_once, 1) << t;
-  }
-  Simulator second = makeSimulator(twoBlocks());
-  for (long k = 10; k <= 260; k += 10) {
-    go(second, k);
-    std::this_thread::sleep_for(std::chrono::milliseconds(k % 50 == 0 ? 30 : 0));  // the worker is ahead, or is not
-  }
-  expectEqual(first, second, "at the end");
-}
-
-// Each of these steps lies before, within or after some preparation, or between its mesh and its stiffness.
-TEST(PreparedMeshes, StatesSavedWhileTheyArePreparedGoOnToTheSameBits) {
-  Simulator whole = makeSimulator(twoBlocks());
-  Simulator saved = makeSimulator(twoBlocks());
-  Simulator restored = makeSimulator(twoBlocks());
-  long at = 96;
-  go(whole, at);
-  go(saved, at);
-  for (const long further : {1, 4, 9, 2, 7, 3, 8, 21, 5, 13, 6, 30}) {
-    restored.restoreState(saved.saveState());
-    at += further;
-    go(whole, at);
-    go(saved, at);
-    go(restored, at);
-    expectEqual(whole, restored, "step " + std::to_string(at));
-    std::swap(saved, restored);
-  }
-  EXPECT_GE(whole.meshMoves(0).prepared, 3);
-}
-
-// Of what is being prepared too: a simulation that was built of the new material takes the state after the move.
-TEST(PreparedMeshes, TakeMaterialsThatChangeMeanwhile) {
-  for (const long changed_at : {100, 104, 109, 113, 118, 123}) {
-    Simulator simulator = makeSimulator(twoBlocks());
-    go(simulator, changed_at);
-    Scene scene = simulator.scene();
-    scene.tissues[0].material.youngs_modulus_pa = 8000.0;
-    simulator.retune(scene);
-    const int revision = simulator.meshRevision(0);
-    go(simulator, changed_at + 60);
-    EXPECT_GT(simulator.meshRevision(0), revision);
-    Simulator stiff = makeSimulator(twoBlocks(8000));
-    stiff.restoreState(simulator.saveState());
-    go(simulator, changed_at + 70);
-    go(stiff, changed_at + 70);
-    expectEqual(simulator, stiff, "changed at step " + std::to_string(changed_at));
-  }
-}
-
-TEST(PreparedMeshes, ResetAndEndWhileTheyArePrepared) {
-  Simulator simulator = makeSimulator(twoBlocks());
-  Simulator other = makeSimulator(twoBlocks());
-  go(other, 150);
-  for (const long until : {100, 105, 110, 115, 120}) {
-    go(simulator, until);
-    simulator.reset();
-  }
-  go(simulator, 150);
-  expectEqual(simulator, other, "after resets");
 }
 
 }  // namespace
