@@ -131,11 +131,14 @@ def fit(arguments):
     instrument = instrument_of(keys, arguments.instrument)
     tool = forward.Tool(arguments.scene, instrument["name"], instrument.get("joint_names") or {})
     fitted = parameters.parse_fits(arguments.fit, keys)
+    finer = finer_settings(arguments.finer)
+    forward.load_scene(arguments.scene, finer)
+    if arguments.out:
+        os.makedirs(arguments.out, exist_ok=True)  # hours of fitting shall not end at a folder that cannot be
     setup = run.Setup(arguments.scene, keys, tool, fitted, numpy.array(arguments.approach) / length, forward.Workers(arguments.workers),
                       arguments.starts, arguments.seed, lambda line: print(line, flush=True))
     recordings, held_out = [[prepared(arguments, path, tool, joint_topics(instrument)) for path in paths]
                             for paths in (arguments.measured, arguments.held_out)]
-    finer = finer_settings(arguments.finer)
     for one in fitted:
         setup.say("%s from %g to %g %s" % (one.key, one.low, one.high, one.unit))
     answer, quality, problem, costs = run.fit(setup, recordings, held_out, finer=finer)

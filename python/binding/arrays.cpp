@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <new>
 #include <stdexcept>
 
 namespace tissue_contact::python {
@@ -10,6 +11,8 @@ namespace {
 void copy(const Vector3& from, double (&to)[3]) {
   for (int i = 0; i < 3; ++i) to[i] = from[i];
 }
+
+constexpr py::ssize_t kMostNumbers = 1'000'000;  // a view of one number may claim to be any number of them
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
@@ -21,7 +24,13 @@ Numbers toNumbers(const py::handle& value, const std::string& what) {
     throw py::type_error(what + " must be real numbers (a list of them, or an array), not " +
                          std::string(py::str(py::type::of(value))));
   }
-  return Numbers::ensure(any);
+  if (any.size() > kMostNumbers) {
+    throw std::invalid_argument(what + " has " + std::to_string(any.size()) + " numbers; up to " +
+                                std::to_string(kMostNumbers) + " are allowed");
+  }
+  Numbers numbers = Numbers::ensure(any);
+  if (!numbers) throw std::bad_alloc();  // ensure() has taken the error away
+  return numbers;
 }
 
 }  // namespace

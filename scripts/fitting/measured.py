@@ -20,6 +20,7 @@ LONGEST_LINE = 10000
 FEWEST_ROWS = 10
 FARTHEST_M, LARGEST_N, LARGEST_JOINT, LATEST_S = 10.0, 1000.0, 1000.0, 1.0e10
 WIDEST_M, LONGEST_S = 1.0, 3600.0  # of a recording
+LONGEST_GAP_S, WIDEST_GAP = 0.2, 10.0  # between samples; in usual intervals
 NORM_WITHIN = 0.01
 
 
@@ -74,6 +75,7 @@ def _require_plausible(path, recording):
     if not numpy.ptp(force, axis=0).max() > 0.0:
         raise FitError("%s: the force is the same in every row (%s N); nothing can be fitted to it: is the sensor connected?" %
                        (path, ", ".join("%g" % one for one in force[0])))
+    _require_no_gap(path, recording.times_s)
     duration = recording.times_s[-1] - recording.times_s[0]
     if not duration <= LONGEST_S:
         raise FitError("%s: it lasts %g s; up to %g s are allowed: cut it to the contact; times are in seconds" % (path, duration, LONGEST_S))
@@ -82,6 +84,21 @@ def _require_plausible(path, recording):
         if not span.max() <= WIDEST_M:
             raise FitError("%s: column '%s' spans %g m; up to %g m are allowed: positions are in metres; cut it to the contact" %
                            (path, POSITION[int(span.argmax())], span.max(), WIDEST_M))
+
+
+def _require_no_gap(path, times_s):
+    """The motion between samples is a spline, which swings where there are none."""
+    intervals = numpy.diff(times_s)
+    longest, usual = int(intervals.argmax()), float(numpy.median(intervals))
+    if intervals[longest] > max(LONGEST_GAP_S, WIDEST_GAP * usual):
+        raise FitError("%s: nothing is recorded from %g to %g s; up to %g s are allowed, samples are usually %g s apart: cut it into two recordings, each of "
+                       "which begins off the tissue" % (path, times_s[longest], times_s[longest + 1], max(LONGEST_GAP_S, WIDEST_GAP * usual), usual))
+
+
+def _without_flips(quaternions):
+    """q and -q are the same rotation; a row is taken as that which continues the one before, so that they can be smoothed."""
+    flips = numpy.concatenate([[1.0], numpy.where((quaternions[1:] * quaternions[:-1]).sum(axis=1) < 0.0, -1.0, 1.0)])
+    return quaternions * numpy.cumprod(flips)[:, None]
 
 
 def _require_columns(path, names, joint_names):
@@ -182,7 +199,7 @@ def _recording(path, columns, joints):
         name=name_of(path), times_s=columns["time_s"],
         force_n=numpy.stack([columns.get(name, unmeasured) for name in FORCE], axis=1),
         positions_m=None if joints else numpy.stack([columns[name] for name in POSITION], axis=1),
-        quaternions=numpy.stack([columns[name] for name in QUATERNION], axis=1) if QUATERNION[0] in columns else None,
+        quaternions=_without_flips(numpy.stack([columns[name] for name in QUATERNION], axis=1)) if QUATERNION[0] in columns else None,
         joints={name: columns[name] for name in joints} or None)
 
 

@@ -64,6 +64,7 @@ class SceneKeys:
             raise FitError("%s cannot be read: %s" % (path, error)) from error
         if not isinstance(self.tree, dict):
             raise FitError("%s is not a scene" % path)
+        self.tree = _with_exponents(self.tree)
         self.numbers = dict(_numbers(self.tree, ""))
 
     def resolve(self, name):
@@ -82,6 +83,8 @@ class SceneKeys:
         if len(thick) > 1:
             raise FitError("--fit %s: %s has several blocks; give one of %s" %
                            (name, self.path, ", ".join(path + "." + THICKNESS for path in thick)))
+        if name.endswith("." + THICKNESS):
+            raise FitError("--fit %s: %s has no such block; its blocks are %s" % (name, self.path, ", ".join(blocks) or "none"))
         if "." in name:
             return name, None  # a key that the file leaves out: the scene's own reader says whether there is one
         raise FitError("--fit %s: %s has no such number; give the whole path of a key that it leaves out, or one of %s" %
@@ -145,6 +148,16 @@ class SceneKeys:
         at = [float(x) for x in pose.get("position_m", [0.0, 0.0, 0.0])]
         at[2] += float(size[2]) - thickness_m
         return {path + ".block.size_m": [float(size[0]), float(size[1]), thickness_m], path + ".pose.position_m": at}
+
+
+def _with_exponents(node):
+    """The tree with numbers as the scene's reader has them: YAML 1.1, which PyYAML reads, takes 5e3 for text."""
+    if isinstance(node, dict):
+        return {key: _with_exponents(child) for key, child in node.items()}
+    if isinstance(node, list):
+        return [_with_exponents(child) for child in node]
+    is_number = isinstance(node, str) and re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+", node)
+    return float(node) if is_number else node
 
 
 def _numbers(node, path):

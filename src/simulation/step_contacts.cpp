@@ -286,6 +286,7 @@ void StepContacts::requireContact(const StateArchive& archive, const SolvedConta
                                   const std::vector<Instrument>& instruments) const {
   const Contact& contact = solved.contact;
   const ContactKey& key = contact.key;
+  archive.requireIndex(key.slot, 0, ContactMemory::kKeptPoints + 1, "the slot");
   const auto require_point = [&](int tissue, const std::array<int, 3>& feature, const std::array<int, 3>& nodes) {
     archive.requireIndex(tissue, 0, tissues_.size(), "the tissue");
     const auto count = static_cast<std::size_t>(tissues_[tissue].nodeCount());
@@ -302,11 +303,13 @@ void StepContacts::requireContact(const StateArchive& archive, const SolvedConta
   } else {
     require_point(key.other_tissue, key.other_feature, contact.other_nodes);
   }
-  constexpr double kMost = 1.0 + 1e-6;  // of a barycentric weight, and of a direction's component
-  const bool is_possible =
-      contact.weights.cwiseAbs().maxCoeff() <= kMost && contact.other_weights.cwiseAbs().maxCoeff() <= kMost &&
-      contact.R_WC.cwiseAbs().maxCoeff() <= kMost && contact.p_WC.allFinite() && std::isfinite(contact.gap_m) &&
-      solved.force_on_tissue_n.allFinite() && solved.slip_W.allFinite();
+  constexpr double kMost = 1.0 + 1e-6;              // of a barycentric weight, and of a direction's component
+  const auto within = [](const auto& components) {  // maxCoeff() passes over NaN
+    return components.allFinite() && components.cwiseAbs().maxCoeff() <= kMost;
+  };
+  const bool is_possible = within(contact.weights) && within(contact.other_weights) && within(contact.R_WC) &&
+                           contact.p_WC.allFinite() && std::isfinite(contact.gap_m) &&
+                           solved.force_on_tissue_n.allFinite() && solved.slip_W.allFinite();
   archive.check(is_possible, "a contact whose place or force is none");
   archive.requireIndex(static_cast<int>(solved.state), 0, 3, "the state");
 }

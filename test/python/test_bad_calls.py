@@ -22,6 +22,7 @@ WRONG = [
     (ValueError, lambda s: s.place("probe", [[0.0, 0.0, 0.0]]), "flat list"),
     (ValueError, lambda s: s.place("probe", [0.0, NAN, 0.0]), "joint 'y'"),
     (TypeError, lambda s: s.place("probe", ["0", "0", "0"]), "real numbers"),
+    (ValueError, lambda s: s.place("probe", np.broadcast_to(0.0, (2 ** 45,))), "1000000 are allowed"),
     (TypeError, lambda s: s.place("probe", None), "real numbers"),
     (TypeError, lambda s: s.place("probe", [1j, 0, 0]), "real numbers"),
     (TypeError, lambda s: s.place("probe", {"x": 0.0}), "real numbers"),

@@ -44,6 +44,12 @@ class TableTest(Folder):
         self.assertEqual(list(joints.joints), ["z"])
         self.assertEqual(joints.measured(), [0, 2])
 
+    def test_a_quaternion_and_its_negative_are_one_rotation(self):
+        signs = [1, 1, -1, -1, 1, -1, 1, 1, 1, -1, 1, 1]
+        recording = self.read(["time_s,x_m,y_m,z_m,qx,qy,qz,qw,fz_n"] +
+                              ["%g,0,0,0,0,0,%g,%g,%d" % (0.01 * i, 0.6 * sign, 0.8 * sign, i) for i, sign in enumerate(signs)])
+        self.assertTrue((recording.quaternions == [0.0, 0.0, 0.6, 0.8]).all())
+
     def test_bad_tables_are_refused_by_file_line_column_value_and_range(self):
         def changed(line, text):
             return self.GOOD[:line - 1] + [text] + self.GOOD[line:]
@@ -54,6 +60,8 @@ class TableTest(Folder):
                 (["time_s,x_m,y_m,z_m,fz_n"] + ["%d,0,0,%g,%d" % (i, 3.5 * (i % 2), i) for i in range(12)],
                  ["'z_m' spans 3.5 m", "up to 1 m", "metres"]),
                 (["time_s,x_m,y_m,z_m,fz_n"] + ["%d,0,0,0,%d" % (1000 * i, i) for i in range(12)], ["lasts 11000 s", "up to 3600 s"]),
+                (["time_s,x_m,y_m,z_m,fz_n"] + ["%g,0,0,0,%d" % (0.01 * i + (i > 7), i) for i in range(12)],
+                 ["nothing is recorded from 0.07 to 1.08 s", "up to 0.2 s", "cut it"]),
                 (changed(5, "0.3,0,0,0.01,0." + "1" * 20000), ["m.csv:5", "more than 10000 characters"]),
                 (changed(1, "time_s,x_m,y_m,z_m,fz"), ["m.csv:1", "'fz'", "did you mean", "fz_n"]),
                 (changed(1, "time_s,x_m,y_m,fz_n,fz_n"), ["m.csv:1", "'fz_n' is there twice"]),

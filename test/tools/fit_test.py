@@ -54,7 +54,15 @@ class ParameterTest(Folder):
                                        ("offset_m", -1e-3, 1e-3, 0.0)]:
             found = parameters.parse_fit(name, self.keys)
             numpy.testing.assert_allclose([found.low, found.high, found.start], [low, high, start], atol=1e-12)
+        self.refused(["no such block", "tissues.phantom"], parameters.parse_fit, "tissues.phantm.thickness_m", self.keys)
         self.refused(["density_kg_per_m3 has no bounds", "KEY:LOW..HIGH", "static"], parameters.parse_fit, "density_kg_per_m3", self.keys)
+
+    def test_numbers_as_the_scene_reads_them(self):
+        with open(study.SCENE, encoding="utf-8") as stream:
+            text = stream.read()
+        self.assertIn("youngs_modulus_pa: 10000", text)
+        scene = self.write("exponent.yaml", text.replace("youngs_modulus_pa: 10000", "youngs_modulus_pa: 1e4"))
+        self.assertEqual(parameters.SceneKeys(scene).numbers[E], 1e4)
 
     def test_refused(self):
         for text, words in [("youngs_modulus_pa:", ["KEY:LOW..HIGH"]), ("static:1..0.5", ["LOW below HIGH"]), ("static:a..b", ["KEY:LOW..HIGH"]),

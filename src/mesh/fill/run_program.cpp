@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -69,6 +70,7 @@ std::vector<char*> pointersTo(const std::vector<std::string>& texts) {
   _exit(errno == ENOENT || errno == EACCES || errno == ENOTDIR ? kNotFound : 1);
 }
 
+constexpr rlim_t kMostFiles = 1U << 16U;           // that are looked for
 const int kEndings[] = {SIGINT, SIGTERM, SIGHUP};  // what a group or a machine is told to end by
 
 /// What a child does for a ScratchFolder: leaves behind a process, of no terminal and nobody's to wait for, that removes the folder once the
@@ -83,7 +85,10 @@ const int kEndings[] = {SIGINT, SIGTERM, SIGHUP};  // what a group or a machine 
   if (dup2(ends[0], kPipe) < 0) _exit(1);
   const int nothing = open("/dev/null", O_RDWR);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nothing, standard);
-  close_range(kPipe + 1, ~0U, 0);
+  rlimit files{};
+  if (getrlimit(RLIMIT_NOFILE, &files) != 0) _exit(1);
+  const int end = static_cast<int>(std::min<rlim_t>(files.rlim_cur, kMostFiles));
+  for (int file = kPipe + 1; file < end; ++file) close(file);  // close_range() is newer than Debian 11
   if (chdir("/") != 0) _exit(1);
   char none = 0;
   while (read(kPipe, &none, 1) < 0 && errno == EINTR) {

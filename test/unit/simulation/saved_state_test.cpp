@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -170,6 +172,46 @@ TEST_F(RefusedState, WhateverByteOfItIsChangedOrMissing) {
   EXPECT_FALSE(refusalOf(state + "x").empty());
 }
 
+std::string withChecksum(std::string content) {
+  ContentHash hash;
+  hash.add(content.data(), content.size());
+  const std::uint64_t value = hash.value();
+  return content.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+template <typename T>
+std::string bytesOf(const T& value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+TEST_F(RefusedState, WithAContactThatNoneIs) {
+  Simulator simulator = make(kPlain);
+  go(simulator, 0, 100);
+  const std::string state = simulator.saveState();
+  ASSERT_FALSE(simulator.contacts().empty());
+  const Contact& contact = simulator.contacts().front().contact;
+  const ContactKey& key = contact.key;
+  std::string beginning;  // of a contact in a state
+  for (const int index : {key.tissue, key.instrument, key.link, key.shape, key.corner}) beginning += bytesOf(index);
+  const std::size_t slot =
+      state.rfind(beginning + bytesOf(key.slot) + bytesOf(key.other_tissue) + bytesOf(key.feature));
+  ASSERT_NE(slot, std::string::npos);
+  const std::size_t slot_at = slot + beginning.size();
+  const std::size_t weights_at = slot_at + 2 * sizeof(int) + 4 * sizeof key.feature;
+  ASSERT_EQ(state.compare(weights_at, sizeof contact.weights, bytesOf(contact.weights)), 0);
+  const std::size_t rotation_at = weights_at + 5 * sizeof contact.weights;
+  const auto refusalWith = [&](std::size_t at, const std::string& bytes) {
+    std::string content = state.substr(0, state.size() - sizeof(std::uint64_t));
+    return refusalOf(withChecksum(content.replace(at, bytes.size(), bytes)));
+  };
+  for (const int wrong : {-1, 4, 100000})
+    EXPECT_NE(refusalWith(slot_at, bytesOf(wrong)).find("slot"), std::string::npos);
+  const std::string nan = bytesOf(std::numeric_limits<double>::quiet_NaN());
+  for (const std::size_t at : {weights_at + sizeof(double), rotation_at + sizeof(double)}) {
+    EXPECT_NE(refusalWith(at, nan).find("place"), std::string::npos) << at;
+  }
+}
+
 // Made to deceive: with the right checksum. Whatever it says, the simulation goes on or refuses, with finite numbers.
 TEST_F(RefusedState, WhateverStandsInItNothingBreaks) {
   const std::string state = saved();
@@ -182,10 +224,7 @@ TEST_F(RefusedState, WhateverStandsInItNothingBreaks) {
     const std::size_t at =
         k < kPlaces / 2 ? end - 1 - 61 * static_cast<std::size_t>(k) : end / kPlaces * static_cast<std::size_t>(k) + 40;
     for (std::size_t i = at; i < std::min(at + 8, end); ++i) deceiving[i] = static_cast<char>(k % 2 == 0 ? 0xff : 0x7f);
-    ContentHash content;
-    content.add(deceiving.data(), deceiving.size());
-    const std::uint64_t hash = content.value();
-    deceiving.append(reinterpret_cast<const char*>(&hash), sizeof hash);
+    deceiving = withChecksum(deceiving);
     Simulator simulator = make(kPlain);
     try {
       simulator.restoreState(deceiving);
