@@ -1,50 +1,69 @@
 #include "core/background_worker.h"
 
+#include <unistd.h>
+
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace tissue_contact {
 
-BackgroundWorker::BackgroundWorker() : thread_([this] { work(); }) {}
+BackgroundWorker::BackgroundWorker()
+    : process_(getpid()), shared_(std::make_unique<Shared>()), thread_([this] { work(*shared_); }) {}
 
 BackgroundWorker::~BackgroundWorker() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ends_ = true;
+  if (getpid() !=
+      process_) {  // no thread to wait for; what it held or waited for at the fork would hang whoever destroys it
+    thread_.detach();
+    static_cast<void>(shared_.release());
+    return;
   }
-  given_.notify_one();
+  {
+    const std::lock_guard<std::mutex> lock(shared_->mutex);
+    shared_->ends = true;
+  }
+  shared_->given.notify_one();
   thread_.join();
 }
 
+void BackgroundWorker::requireThread() const {
+  if (getpid() == process_) return;
+  throw std::runtime_error("this simulation has a second thread, which stayed in process " + std::to_string(process_) +
+                           " when that was forked: make the simulator in this process, and load the saved state");
+}
+
 BackgroundWorker::Ticket BackgroundWorker::start(std::function<void()> job) {
+  requireThread();
   Ticket ticket = 0;
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    jobs_.push_back(std::move(job));
-    ticket = ++jobs_given_;
+    const std::lock_guard<std::mutex> lock(shared_->mutex);
+    shared_->jobs.push_back(std::move(job));
+    ticket = ++shared_->jobs_given;
   }
-  given_.notify_one();
+  shared_->given.notify_one();
   return ticket;
 }
 
 bool BackgroundWorker::wait(Ticket job) {
-  std::unique_lock<std::mutex> lock(mutex_);
-  const bool is_early = jobs_done_ < job;
-  done_.wait(lock, [&] { return jobs_done_ >= job; });
+  requireThread();
+  std::unique_lock<std::mutex> lock(shared_->mutex);
+  const bool is_early = shared_->jobs_done < job;
+  shared_->done.wait(lock, [&] { return shared_->jobs_done >= job; });
   return is_early;
 }
 
-void BackgroundWorker::work() {
-  std::unique_lock<std::mutex> lock(mutex_);
+void BackgroundWorker::work(Shared& shared) {
+  std::unique_lock<std::mutex> lock(shared.mutex);
   for (;;) {
-    given_.wait(lock, [this] { return ends_ || !jobs_.empty(); });
-    if (ends_) return;
-    const std::function<void()> job = std::move(jobs_.front());
-    jobs_.pop_front();
+    shared.given.wait(lock, [&] { return shared.ends || !shared.jobs.empty(); });
+    if (shared.ends) return;
+    const std::function<void()> job = std::move(shared.jobs.front());
+    shared.jobs.pop_front();
     lock.unlock();
     job();
     lock.lock();
-    ++jobs_done_;
-    done_.notify_all();
+    ++shared.jobs_done;
+    shared.done.notify_all();
   }
 }
 

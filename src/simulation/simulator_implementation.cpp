@@ -248,7 +248,15 @@ void Simulator::Implementation::refineTissues(double dt) {
     contacts.finishRenumbering();
     solver->reset();
   }
-  if (error) std::rethrow_exception(error);
+  if (!error) return;
+  if (any) {  // what was solved last belongs to the meshes before
+    problem.contacts.clear();
+    solution.impulses.assign(contacts.solved().size(), Vector3::Zero());
+    solution.states.clear();
+    force_errors.reset();
+    residuals = Residuals();
+  }
+  std::rethrow_exception(error);
 }
 
 /// @return whether the mesh of that tissue has changed.

@@ -3,10 +3,14 @@
 #include "core/background_worker.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <future>
+#include <memory>
 #include <numeric>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -63,6 +67,33 @@ TEST(BackgroundWorker, EndsOnceTheJobItIsAtIsDone) {
     begun.get_future().wait();
   }
   EXPECT_TRUE(ended);
+}
+
+// As Python's multiprocessing forks: a thread that is not there must be waited for by nobody.
+TEST(BackgroundWorker, RefusesInAForkedProcess) {
+  auto worker = std::make_unique<BackgroundWorker>();
+  worker->wait(worker->start([] {}));
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(60);  // what hangs ends by a signal
+    int refused = 0;
+    try {
+      worker->start([] {});
+    } catch (const std::runtime_error&) {
+      ++refused;
+    }
+    try {
+      worker->wait(1);
+    } catch (const std::runtime_error&) {
+      ++refused;
+    }
+    worker.reset();
+    _exit(refused);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 2);
 }
 
 TEST(BackgroundWorker, EndsWithoutAnyJob) { const BackgroundWorker worker; }
