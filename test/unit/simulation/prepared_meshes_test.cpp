@@ -86,7 +86,7 @@ TEST(PreparedMeshes, OfOneTissueAreUsedThoughThatOfAnotherCannotBeMade) {
   }
   expectContains(error, {"youngs_modulus_pa"});
   EXPECT_EQ(simulator.meshRevision(0), before + 1) << "the first moved in that step";
-  EXPECT_TRUE(isFinite(simulator.residuals())) << "of the contacts and meshes before";
+  EXPECT_EQ(simulator.residuals().momentum, 0.0) << "of the contacts and meshes before";
   EXPECT_EQ(simulator.forceErrors().size(), 2U);
   Simulator restored = makeSimulator(scene);
   EXPECT_NO_THROW(restored.restoreState(simulator.saveState()));
