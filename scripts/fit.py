@@ -106,6 +106,16 @@ def prepared(arguments, path, tool, topics):
     return recording
 
 
+def require_folder(folder):
+    """Before the fit, which may take long; it is made after it."""
+    from fitting import FitError
+    place = os.path.abspath(folder or ".")
+    while not os.path.exists(place):
+        place = os.path.dirname(place)
+    if not os.path.isdir(place) or not os.access(place, os.W_OK):
+        raise FitError("--out %s: %s is no folder that can be written to; give another" % (folder, place))
+
+
 def finer_settings(texts):
     import yaml
     from fitting import FitError
@@ -133,8 +143,7 @@ def fit(arguments):
     fitted = parameters.parse_fits(arguments.fit, keys)
     finer = finer_settings(arguments.finer)
     forward.load_scene(arguments.scene, finer)
-    if arguments.out:
-        os.makedirs(arguments.out, exist_ok=True)  # hours of fitting shall not end at a folder that cannot be
+    require_folder(arguments.out)
     setup = run.Setup(arguments.scene, keys, tool, fitted, numpy.array(arguments.approach) / length, forward.Workers(arguments.workers),
                       arguments.starts, arguments.seed, lambda line: print(line, flush=True))
     recordings, held_out = [[prepared(arguments, path, tool, joint_topics(instrument)) for path in paths]

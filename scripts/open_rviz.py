@@ -168,7 +168,10 @@ class Follower:
         while True:
             self._came.wait()
             self._came.clear()
-            self._tell(MarkerArray().deserialize(self._newest).markers)
+            try:
+                self._tell(MarkerArray().deserialize(self._newest).markers)
+            except Exception as error:  # of markers of another version, or none: the next ones may be better
+                rospy.logwarn_throttle(10.0, "the view does not follow: %s" % error)
             time.sleep(1.0 / RATE_HZ)
 
     def _tell(self, markers):

@@ -33,6 +33,18 @@ const char* stopText(StopReason stop) {
   return "";
 }
 
+/// Of a class that Python cannot make: what its __new__() alone would make has no value.
+void refuseNew(const py::module_& module, const char* name) {
+  const py::cpp_function refuse([text = std::string(name)](const py::args&, const py::kwargs&) -> py::object {
+    throw py::type_error("a " + text + " is made by the functions of tissue_contact alone");
+  });
+  py::setattr(module.attr(name), "__new__", refuse);
+}
+
+py::object refusePickle(const py::object& self, int /*protocol*/) {
+  throw py::type_error("cannot pickle " + std::string(py::str(py::type::of(self))) + ": send Simulator.save_state()");
+}
+
 py::object remake(const LoadedScene& loaded) {
   const py::module_ helpers = py::module_::import("tissue_contact._helpers");  // pickle knows Python's functions alone
   if (loaded.yaml)
@@ -78,6 +90,7 @@ void bindScene(py::module_& module) {
       .def_property_readonly(
           "max_step_s", [](const LoadedScene& self) { return self.scene.step.max_step_s; }, "Longest implicit step, s.")
       .def("__reduce__", remake);
+  refuseNew(module, "Scene");
   module.def(
       "load_scene", [](const py::object& file, const py::object& set) { return loadScene(pathOf(file), set); },
       py::arg("file"), py::arg("set") = py::none(),
@@ -129,7 +142,9 @@ void bindReport(py::module_& module) {
           "Likely relative error of the force by the choice of the elastic law; negative: force too small.")
       .def_property_readonly(
           "strain", [](const StepReport& self) { return self.law_error.strain; },
-          "Equivalent strain under the tool, where the law is linear or corotational.");
+          "Equivalent strain under the tool, where the law is linear or corotational.")
+      .def("__reduce_ex__", refusePickle);
+  refuseNew(module, "StepReport");
 }
 
 void bindMemory(py::module_& module) {
@@ -153,7 +168,10 @@ void bindMemory(py::module_& module) {
           },
           "(n, 3) m, world frame: undeformed.")
       .def_property_readonly(
-          "fixed", [](const Topology& self) { return toArray(self.fixed); }, "(n,) bool: held in place.");
+          "fixed", [](const Topology& self) { return toArray(self.fixed); }, "(n,) bool: held in place.")
+      .def("__reduce_ex__", refusePickle);
+  refuseNew(module, "_Memory");
+  refuseNew(module, "Topology");
 }
 
 void bindSimulator(py::module_& module) {
@@ -219,6 +237,7 @@ void bindSimulator(py::module_& module) {
            "Of the last step, by name: how far its answer is from its contact problem.")
       .def("report", bound(&Self::report), "How the last advance went.")
       .def("advice", bound(&Self::advice), "Which models were chosen for the scene and why, a line each.")
+      .def("__reduce_ex__", refusePickle)
       .def_property_readonly("step_count", bound(&Self::stepCount), "Implicit steps since the start or a reset.");
 }
 

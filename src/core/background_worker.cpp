@@ -8,13 +8,13 @@
 
 namespace tissue_contact {
 
-BackgroundWorker::BackgroundWorker()
-    : process_(getpid()), shared_(std::make_unique<Shared>()), thread_([this] { work(*shared_); }) {}
+BackgroundWorker::BackgroundWorker() : process_(getpid()), shared_(std::make_unique<Shared>()) {
+  shared_->thread = std::thread([shared = shared_.get()] { work(*shared); });
+}
 
 BackgroundWorker::~BackgroundWorker() {
-  if (getpid() !=
-      process_) {  // no thread to wait for; what it held or waited for at the fork would hang whoever destroys it
-    thread_.detach();
+  if (getpid() != process_) {
+    // No thread to wait for. What it held or waited for at the fork would hang whoever destroys it, and its handle may be another's now.
     static_cast<void>(shared_.release());
     return;
   }
@@ -23,7 +23,7 @@ BackgroundWorker::~BackgroundWorker() {
     shared_->ends = true;
   }
   shared_->given.notify_one();
-  thread_.join();
+  shared_->thread.join();
 }
 
 void BackgroundWorker::requireThread() const {

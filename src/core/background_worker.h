@@ -42,6 +42,7 @@ class BackgroundWorker {
     Ticket jobs_given = 0;
     Ticket jobs_done = 0;
     bool ends = false;
+    std::thread thread;  ///< last: it uses all of the above
   };
 
   static void work(Shared& shared);
@@ -49,7 +50,6 @@ class BackgroundWorker {
 
   pid_t process_;  ///< that has the thread
   std::unique_ptr<Shared> shared_;
-  std::thread thread_;  ///< last: it uses all of the above
 };
 
 }  // namespace tissue_contact

@@ -10,8 +10,11 @@ namespace {
 /// Of the reach of a focus: cells begin to grow there.
 constexpr double kLost = 1.0;
 
-/// Of the reach: nothing is foreseen farther ahead than this, since what moves that fast turns or stops before long.
+/// Of the reach: sliding is foreseen no farther ahead than this, since what moves that fast turns or stops before long.
 constexpr double kFarthestAhead = 2.0;
+
+/// Of the reach: how far off what comes nearer is looked for; a tool of 1 mm has its mesh in time up to some .4 m/s.
+constexpr double kFarthestApproach = 10.0;
 
 }  // namespace
 
@@ -22,7 +25,7 @@ double MeshFollower::lead(double dt) { return std::max(kLead_s, 2.0 * dt); }
 
 double MeshFollower::ahead(double travel_m, double dt, double reach_m) {
   const double foreseen_m = lead(dt) / dt * travel_m;  // infinite, or no number, if dt is tiny
-  return foreseen_m < kFarthestAhead * reach_m ? foreseen_m : kFarthestAhead * reach_m;
+  return foreseen_m < kFarthestApproach * reach_m ? foreseen_m : kFarthestApproach * reach_m;
 }
 
 ComingMesh* MeshFollower::follow(const std::vector<TouchedPlace>& places, const NodalVectors& x, double last_dt) {

@@ -5,7 +5,7 @@
 /// Once something will not lie well within what is fine when the time that a preparation takes is over, the next mesh is begun, for all
 /// places between there and now. kMeshTime_s of the simulation's own time later, or in the last step before the mesh is due if that is
 /// earlier, the stiffness follows, from where nodes are then. The first step, the second at the earliest, that begins kLead_s after
-/// that goes on with it, waiting for the worker if need be; if steps became longer meanwhile, it makes the stiffness itself. Neither the
+/// the mesh was begun goes on with it, waiting for the worker if need be; if steps became longer meanwhile, it makes the stiffness itself. Neither the
 /// speed of the machine nor that of the clock has a say. What touches where nothing is fine, because it jumped there or is the first, has
 /// its mesh at once, in a step that is as long as it takes.
 #pragma once

@@ -87,13 +87,17 @@ TEST(BackgroundWorker, RefusesInAForkedProcess) {
     } catch (const std::runtime_error&) {
       ++refused;
     }
+    auto own = std::make_unique<BackgroundWorker>();
     worker.reset();
-    _exit(refused);
+    int done = 0;
+    own->wait(own->start([&] { done = 1; }));
+    own.reset();
+    _exit(refused + done);
   }
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
   ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 2);
+  EXPECT_EQ(WEXITSTATUS(status), 3);
 }
 
 TEST(BackgroundWorker, EndsWithoutAnyJob) { const BackgroundWorker worker; }

@@ -33,7 +33,7 @@ Simulator sceneOf(const std::map<std::string, std::string>& instruments, const s
                       "</link><joint name='x' type='prismatic'><parent link='a/tip'/><child link='point'/>"
                       "<axis xyz='1 0 0'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint></robot>"}};
   const std::string point = "tip_link: tip, contact_links: [tip]";
-  for (std::size_t at = yaml.find("robot_description: cunning"); at != std::string::npos; at = std::string::npos) {
+  if (const std::size_t at = yaml.find("robot_description: cunning"); at != std::string::npos) {
     yaml.replace(yaml.find(point, at), point.size(), "tip_link: point, contact_links: [point]");
   }
   return makeSimulator(yaml, urdfs);
