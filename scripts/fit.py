@@ -174,6 +174,8 @@ def main():
         sys.exit(fit(arguments))
     except (FitError, ValueError) as error:
         sys.exit("fit.py: %s" % error)
+    except KeyboardInterrupt:
+        sys.exit("fit.py: interrupted; nothing was written")
     except OSError as error:
         sys.exit("fit.py: cannot write %s: %s" % (error.filename or arguments.out, error.strerror))
 

@@ -111,4 +111,4 @@ def fitted_text(scene, settings, to_folder, heading):
         text = yaml.safe_dump(wanted, sort_keys=False)
         if yaml.safe_load(text) != wanted:
             raise FitError("%s cannot be written with the fitted numbers" % scene)
-    return "".join("# %s\n" % line for line in heading) + text
+    return "".join("# %s\n" % line for line in "\n".join(heading).splitlines()) + text

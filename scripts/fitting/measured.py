@@ -20,7 +20,7 @@ LONGEST_LINE = 10000
 FEWEST_ROWS = 10
 FARTHEST_M, LARGEST_N, LARGEST_JOINT, LATEST_S = 10.0, 1000.0, 1000.0, 1.0e10
 WIDEST_M, LONGEST_S = 1.0, 3600.0  # of a recording
-LONGEST_GAP_S, WIDEST_GAP = 0.2, 10.0  # between samples; in usual intervals
+WIDEST_GAP = 20.0  # between samples, in usual intervals
 NORM_WITHIN = 0.01
 
 
@@ -90,9 +90,9 @@ def _require_no_gap(path, times_s):
     """The motion between samples is a spline, which swings where there are none."""
     intervals = numpy.diff(times_s)
     longest, usual = int(intervals.argmax()), float(numpy.median(intervals))
-    if intervals[longest] > max(LONGEST_GAP_S, WIDEST_GAP * usual):
+    if intervals[longest] > WIDEST_GAP * usual:
         raise FitError("%s: nothing is recorded from %g to %g s; up to %g s are allowed, samples are usually %g s apart: cut it into two recordings, each of "
-                       "which begins off the tissue" % (path, times_s[longest], times_s[longest + 1], max(LONGEST_GAP_S, WIDEST_GAP * usual), usual))
+                       "which begins off the tissue" % (path, times_s[longest], times_s[longest + 1], WIDEST_GAP * usual, usual))
 
 
 def _without_flips(quaternions):

@@ -124,6 +124,8 @@ class SceneKeys:
                 settings[key] = value
         for kinetic in [key for key in settings if key.startswith("friction.") and key.endswith(".kinetic")]:
             self._order(settings, kinetic[:-len("kinetic")] + "static", kinetic)
+        for static in [key for key in settings if key.startswith("friction.") and key.endswith(".static")]:
+            settings[static] = max(settings[static], settings.get(static[:-len("static")] + "kinetic", self.numbers.get(static[:-len("static")] + "kinetic", 0.0)))
         return settings
 
     def _order(self, settings, static, kinetic):

@@ -10,6 +10,7 @@ from fitting import FitError
 
 FIRST_SCALE = 0.05  # of the peak force, until residuals give it
 LEAST_SCALE = 1e-4  # of the peak force: a replay's own tolerance
+LEAST_TOUCHING = 10  # samples, to tell a scale from those alone
 HUBER = 1.5          # scales from which on a residual counts by its magnitude only; 96 % efficient with normal noise
 STEP = 0.01          # of the way between bounds, for differences: far above the solver's tolerance, far below what bends
 MOST_ITERATIONS, MOST_CORRECTIONS = 25, 6
@@ -58,9 +59,9 @@ class Problem:
         self.evaluations += len(fresh)
         return [self._known[key] for key in keys]
 
-    def residual(self, forces, is_fitted=True):
-        """All weighted residuals of one point; of what is held out for is_fitted False."""
-        return numpy.concatenate([part for run, (force, _) in zip(self.runs, forces) for part in _weighted(run, force, is_fitted)])
+    def residual(self, forces):
+        """All weighted residuals of one point."""
+        return numpy.concatenate([part for run, (force, _) in zip(self.runs, forces) for part in _weighted(run, force, run.fitted)])
 
     def at(self, point):
         return self.residual(self.forces([point])[0])
@@ -80,9 +81,8 @@ class Problem:
             ", ".join("%s %.4g" % (p.label, v) for p, v in zip(self.parameters, self.values(point)))))
 
 
-def _weighted(run, force, is_fitted):
+def _weighted(run, force, rows):
     """Of each measured axis."""
-    rows = run.fitted if is_fitted else ~run.fitted
     rows = rows & (numpy.arange(len(rows)) > 0)  # the first sample only places the tool
     return [(force[rows, axis] - run.recording.force_n[rows, axis]) / run.scale_n for axis in run.recording.measured()]
 
@@ -90,7 +90,9 @@ def _weighted(run, force, is_fitted):
 def set_scales(problem, point):
     """From the residuals at a point, each recording for itself: 1.48 median deviations are a standard deviation."""
     for run, (force, _) in zip(problem.runs, problem.forces([point])[0]):
-        residual = numpy.concatenate(_weighted(run, force, True)) * run.scale_n
+        touching = run.fitted & force.any(axis=1)  # off the tissue there is the sensor's own noise alone
+        rows = touching if touching.sum() > LEAST_TOUCHING else run.fitted
+        residual = numpy.concatenate(_weighted(run, force, rows)) * run.scale_n
         run.scale_n = max(1.4826 * float(numpy.median(numpy.abs(residual))), LEAST_SCALE * run.recording.peak_n())
 
 

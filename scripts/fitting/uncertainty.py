@@ -89,17 +89,17 @@ def assess(problem, point, correction=0.0):
     residual, jacobian = problem.residual(forces), problem.jacobian(point)
     inlier = numpy.abs(residual) <= HUBER
     curvature = jacobian[inlier].T @ jacobian[inlier]
-    meat, information, independent = numpy.zeros_like(curvature), numpy.zeros((len(problem.runs), len(point))), 0.0
+    sums, information, independent = {}, numpy.zeros((len(problem.runs), len(point))), 0.0
     for run, rows in _groups(problem):
         clipped = numpy.clip(residual[rows], -HUBER, HUBER)
         time = autocorrelation_time(clipped, len(point))
-        scores = clipped[:, None] * jacobian[rows]
-        meat += time * scores.T @ scores
+        scores = time ** 0.5 * clipped[:, None] * jacobian[rows]
+        sums[run] = sums.get(run, 0.0) + scores  # of its axes, sample by sample: an error of the pose moves all of them
         information[run] += (jacobian[rows] ** 2).sum(axis=0)
         independent += len(clipped) / time
     # Directions in which nothing is known become very long ones, not none.
     least = FLAT * max(numpy.linalg.norm(curvature, 2), 1e-100) * numpy.eye(len(point))
-    inverse, meat = numpy.linalg.inv(curvature + least), meat + least
+    inverse, meat = numpy.linalg.inv(curvature + least), sum(scores.T @ scores for scores in sums.values()) + least
     freedom = max(independent - len(point), 1.0)
     meat *= independent / freedom  # the fit has taken its share of the residuals
     covariance = inverse @ meat @ inverse
