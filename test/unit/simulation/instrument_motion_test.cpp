@@ -53,7 +53,7 @@ Cut walked(const Instrument& instrument, double duration_s, const VectorX& start
   std::vector<Pose> before, after;
   instrument.linkPoses(start, before);
   double longest = 0.0;
-  for (double k = 1.0; k <= steps; ++k) {
+  for (int k = 1; k <= static_cast<int>(steps); ++k) {
     instrument.linkPoses(start + k / steps * (target - start), after);
     const double angle = Eigen::AngleAxisd(before[ball].linear().transpose() * after[ball].linear()).angle();
     longest = std::max(longest, (after[ball] * center - before[ball] * center).norm() + angle * kRadius);
