@@ -169,7 +169,7 @@ def main():
         from tissue_contact import Simulator  # noqa: F401 (likewise)
         from fitting import FitError
     except ImportError as error:
-        sys.exit("fit.py: %s; install python3-scipy and source scripts/env.bash" % error)
+        sys.exit("fit.py: %s (fit.py needs python3-scipy, and `source scripts/env.bash` or setup.bash)" % error)
     try:
         sys.exit(fit(arguments))
     except (FitError, ValueError) as error:

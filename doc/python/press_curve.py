@@ -36,14 +36,14 @@ def main():
     parser.add_argument("--scene", default="package://tissue_contact/config/press_drag.yaml")
     parser.add_argument("--output", default="press_curve.png")
     arguments = parser.parse_args()
-    figure, axes = plt.subplots()
+    figure, axes = plt.subplots(figsize=(6.4, 4.0), constrained_layout=True)
     for modulus in arguments.moduli:
         forces, errors = press(arguments.scene, modulus)
         line, = axes.plot(1e3 * DEPTHS_M, forces, label="E = %g Pa" % modulus)
         axes.fill_between(1e3 * DEPTHS_M, forces - errors, forces + errors, color=line.get_color(), alpha=0.2, linewidth=0)
         print("E = %g Pa: %.3f N at %.1f mm" % (modulus, forces[-1], 1e3 * DEPTHS_M[-1]))
-    axes.set_xlabel("depth (mm)")
-    axes.set_ylabel("normal force (N); band: its likely error")
+    axes.set(xlabel="depth (mm)", ylabel="normal force (N); band: its likely error", xlim=(0.0, 1e3 * DEPTHS_M[-1]))
+    axes.set_ylim(bottom=0.0)
     axes.legend(loc="upper left")
     figure.savefig(arguments.output, dpi=120)
 

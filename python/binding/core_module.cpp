@@ -70,6 +70,7 @@ auto bound(Result (PythonSimulator::*function)(Arguments...) const) {
 void bindScene(py::module_& module) {
   const auto names = [](const auto& all) {
     std::vector<std::string> found;
+    found.reserve(all.size());
     for (const auto& one : all) found.push_back(one.name);
     return found;
   };
@@ -148,6 +149,7 @@ void bindReport(py::module_& module) {
 }
 
 void bindMemory(py::module_& module) {
+  // NOLINTNEXTLINE(bugprone-unused-raii): what is left is in the module
   py::class_<NodalView, std::shared_ptr<NodalView>>(module, "_Memory", "Keeps alive what an array shows.");
   const auto rows = [](const auto& all, const std::shared_ptr<Topology>& self) {
     constexpr std::size_t kColumns = std::tuple_size_v<typename std::decay_t<decltype(all)>::value_type>;

@@ -14,6 +14,7 @@ namespace {
 template <typename Things>
 std::vector<std::string> namesOf(const Things& things) {
   std::vector<std::string> names;
+  names.reserve(things.size());
   for (const auto& one : things) names.push_back(one.name());
   return names;
 }

@@ -47,7 +47,7 @@ class Replayed:
 def replay(scene, bag, *, set=None, csv=None, urdf=None, from_s=0.0, duration_s=math.inf, changes=""):
     """Plays the joint states of a bag through a scene, as tissue_contact_replay does: the same bits. No roscore.
 
-    scene, bag: files. set: {key: value} of the scene. csv: file to write as well. urdf: text for the parameter a scene takes its URDF
+    scene, bag: files. set: {key: value} of the scene. csv: file to write as well. urdf: file for the parameter a scene takes its URDF
     from. from_s, duration_s: part of the recording. changes: topic of recorded changes, "none", or "" for the only one there.
     Other threads run meanwhile. Raises ValueError or RuntimeError with the program's message.
     """

@@ -40,6 +40,25 @@ double farthestTurn(const RobotModel& model, const VectorX& start, const VectorX
   return farthest;
 }
 
+/// Bound on travel() summed over the steps of a motion, however many they are, m: each joint moves what lies beyond it,
+/// which is never farther off than the offsets in between are long.
+double travelBound(const RobotModel& model, const VectorX& start, const VectorX& target, int link,
+                   const Vector3& center, double bounding_radius) {
+  double reach = center.norm(), way = 0.0, turn = 0.0;  // reach: from the frame of the link to the center
+  for (; link >= 0; link = model.links()[link].parent) {
+    const RobotModel::Link& one = model.links()[link];
+    if (one.motion != RobotModel::Link::Motion::kFixed) {
+      const double from = one.multiplier * start[one.joint] + one.offset;
+      const double to = one.multiplier * target[one.joint] + one.offset;
+      const bool turns = one.motion == RobotModel::Link::Motion::kRevolute;
+      way += std::abs(to - from) * (turns ? reach : 1.0);
+      (turns ? turn : reach) += turns ? std::abs(to - from) : std::max(std::abs(from), std::abs(to));
+    }
+    reach += one.X_PJ.translation().norm();
+  }
+  return way + turn * bounding_radius;
+}
+
 }  // namespace
 
 InstrumentMotion::InstrumentMotion(const std::vector<Instrument>& instruments)
@@ -56,6 +75,7 @@ InstrumentMotion::InstrumentMotion(const std::vector<Instrument>& instruments)
     }
   }
   reset();
+  X_WL_before_ = X_WL_;  // so that begin() allocates nothing
 }
 
 void InstrumentMotion::reset() {
@@ -72,7 +92,8 @@ void InstrumentMotion::place(int instrument, const VectorX& positions) {
 int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets, int most_steps) {
   // A duration that is a whole number of steps up to round-off of the stamps must not get one step more.
   constexpr double kRoundOff = 1e-9;
-  constexpr double kLargestTurn = 1.0;  // rad
+  constexpr double kLargestTurn = 1.0;    // rad
+  constexpr double kSurely = 1.0 - 1e-6;  // that round-off, of positions over a billion steps, makes no step too long
   double joint_steps = 1.0;
   for (std::size_t i = 0; i < states_.size(); ++i) {
     State& state = states_[i];
@@ -84,9 +105,11 @@ int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vec
   }
   const double by_time = std::max(1.0, std::ceil(duration_s / max_step_s - kRoundOff));
   double steps = std::max(by_time, joint_steps);
-  if (joint_steps <= kMaxTravelSteps) steps *= std::max(1.0, std::ceil(longestTravelOver(steps) / kTravelPerStep));
-  const double most_for_travel = std::min(kMaxTravelSteps, kMaxTravelStepsPerSecond * duration_s);
-  jumped_ = !(steps <= std::max(by_time, most_for_travel));
+  const double most = std::max(by_time, std::min(kMaxTravelSteps, kMaxTravelStepsPerSecond * duration_s));
+  if (joint_steps <= kMaxTravelSteps && !(travelBound() <= kSurely * kTravelPerStep * steps)) {
+    steps *= std::max(1.0, std::ceil(longestTravelOver(steps, kTravelPerStep * most / steps) / kTravelPerStep));
+  }
+  jumped_ = !(steps <= most);
   if (jumped_) {
     for (std::size_t i = 0; i < states_.size(); ++i) place(static_cast<int>(i), targets[i]);
     steps = by_time;
@@ -94,10 +117,26 @@ int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vec
   return most_steps > 0 ? std::min(most_steps, static_cast<int>(steps)) : static_cast<int>(steps);
 }
 
-double InstrumentMotion::longestTravelOver(double steps) {
+double InstrumentMotion::travelBound() const {
+  double longest = 0.0;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    if (instruments_[i].isObstacle()) continue;
+    const State& state = states_[i];
+    for (const MovingLink& link : state.links) {
+      for (const MovingShape& shape : link.shapes) {
+        const double travel = tissue_contact::travelBound(instruments_[i].model(), state.start, state.target, link.link,
+                                                          shape.center, shape.bounding_radius);
+        longest = std::max(longest, travel / shape.smallest_half_extent);
+      }
+    }
+  }
+  return longest;
+}
+
+double InstrumentMotion::longestTravelOver(double steps, double most) {
   double longest = 0.0;
   X_WL_before_ = X_WL_;
-  for (int k = 1; k <= static_cast<int>(steps); ++k) {
+  for (int k = 1; k <= static_cast<int>(steps) && longest <= most; ++k) {
     moveTo(k / steps);
     longest = std::max(longest, longestTravel(true));
     finishStep();

@@ -62,7 +62,10 @@ class InstrumentMotion {
     VectorX start, target, positions;
   };
   double longestTravel(bool per_half_extent) const;
-  double longestTravelOver(double steps);  ///< the same over the whole interval cut into so many steps
+  /// The longest of one step per half extent, of the whole interval cut into so many; of those looked at so far once it
+  /// is beyond `most`.
+  double longestTravelOver(double steps, double most);
+  double travelBound() const;  ///< no less than that of all steps summed, however many; costs a step's kinematics
 
   const std::vector<Instrument>& instruments_;
   std::vector<State> states_;

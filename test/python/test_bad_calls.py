@@ -166,7 +166,7 @@ def test_interrupted(simulator):
     before, handler = simulator.step_count, signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
     threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
-        simulator.advance(1000.0, {"probe": [0.0, 0.0, -0.002]})
+        simulator.advance(1e6, {"probe": [0.0, 0.0, -0.002]})
     signal.signal(signal.SIGINT, handler)
     assert simulator.step_count > before
     simulator.reset()

@@ -1,5 +1,7 @@
 """tissue_contact.replay against the program: the same bits; and a Simulator stepped by hand against both."""
 import csv
+import os
+import pathlib
 import shutil
 import subprocess
 
@@ -13,12 +15,16 @@ FIELDS = ["force_x_n", "force_y_n", "force_z_n", "torque_x_nm", "torque_y_nm", "
 SECONDS = 1.0
 
 
+def program(scene, bag, file, *options):
+    subprocess.run(["rosrun", "tissue_contact", "tissue_contact_replay", "--scene", str(scene), "--bag", str(bag), "--csv", str(file),
+                    *map(str, options)], check=True)
+
+
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
     from conftest import SOURCE
     file = tmp_path_factory.mktemp("replay") / "program.csv"
-    subprocess.run(["rosrun", "tissue_contact", "tissue_contact_replay", "--scene", str(SOURCE / SCENE), "--bag", str(SOURCE / BAG),
-                    "--duration", str(SECONDS), "--csv", str(file)], check=True)
+    program(SOURCE / SCENE, SOURCE / BAG, file, "--duration", SECONDS)
     return file
 
 
@@ -38,6 +44,19 @@ def test_same_bits_as_the_program(source, written, tmp_path):
     assert result.digest() == tc.replay(source / SCENE, source / BAG, duration_s=SECONDS).digest()
     softer = tc.replay(source / SCENE, source / BAG, duration_s=SECONDS, set={"tissues.block.material.youngs_modulus_pa": 4000.0})
     assert softer.digest() != result.digest()
+
+
+def test_same_bits_of_a_real_robot(source, tmp_path):
+    """Two seconds in which a dVRK PSM comes down on a slab and slides; skipped without the recording (TISSUE_CONTACT_SHARED_DATA)."""
+    folder = pathlib.Path(os.environ.get("TISSUE_CONTACT_SHARED_DATA") or source / "../shared/data")
+    bag, scene = folder / "dvrk/psm2_classic_motion.bag", source / "config/psm_dvrk.yaml"
+    if not bag.exists():
+        pytest.skip("no recording at %s" % bag)
+    program(scene, bag, tmp_path / "program.csv", "--from", 14.0, "--duration", 2.0)
+    result = tc.replay(scene, bag, csv=tmp_path / "ours.csv", from_s=14.0, duration_s=2.0)
+    assert (tmp_path / "ours.csv").read_bytes() == (tmp_path / "program.csv").read_bytes()
+    assert result.wrenches("psm").tobytes() == wrenches_of(tmp_path / "program.csv").tobytes()
+    assert np.count_nonzero(np.abs(result.wrenches("psm")).max(axis=1)) > 100
 
 
 def test_stepped_by_hand(source, written):

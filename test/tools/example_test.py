@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""doc/example and doc/controller_test as other packages build them: against this build, installed into a folder of its own.
+"""What `make install` leaves: doc/example and doc/controller_test as other packages build them against it, and Python.
 
 usage: example_test.py SOURCE_DIRECTORY BUILD_DIRECTORY
 """
@@ -99,6 +99,27 @@ class ExamplePackage(unittest.TestCase):
         self.assertIn("2 failed, 1 passed", pytest.stdout)
         for done in [gtest, rostest, pytest]:
             self.assertNotEqual(done.returncode, 0, done.stdout)
+
+    def in_a_shell(self, command):
+        """Of a user who has sourced setup.bash, and nothing else."""
+        setup = self.prefix / "setup.bash"
+        return subprocess.run(["/bin/bash", "-c", "source %s && %s" % (setup, command)], cwd="/", stdin=subprocess.DEVNULL,
+                              env={"HOME": self.folder.name, "PATH": "/usr/bin:/bin"}, capture_output=True, text=True, timeout=100)
+
+    def test_python(self):
+        messages = self.in_a_shell("%s -B -c 'from tissue_contact.msg import Status; print(Status.__module__)'" % sys.executable)
+        self.assertEqual((messages.stdout, messages.stderr), ("tissue_contact.msg._Status\n", ""))
+        helped = self.in_a_shell("rosrun tissue_contact fit.py --help")
+        self.assertIn("--held-out", helped.stdout, helped.stderr)
+        modules = sorted(self.prefix.glob("lib/python3/dist-packages/tissue_contact/*.so"))
+        if not modules:
+            self.skipTest("built without pybind11: no simulator in Python")
+        code = ("import tissue_contact as tc; s = tc.Simulator(tc.load_scene(\"package://tissue_contact/config/press_drag.yaml\")); "
+                "print(tc.__file__, s.instruments, tc.replay.__name__)")
+        simulator = self.in_a_shell("%s -B -c '%s'" % (sys.executable, code))
+        self.assertEqual((simulator.stdout, simulator.stderr), ("%s ['probe'] replay\n" % (modules[0].parent / "__init__.py"), ""))
+        for module in modules:  # without setup.bash as well
+            self.assertIn("libtissue_contact_core.so => " + str(modules[0].parent), run("ldd", module).stdout)
 
     def test_a_later_version_is_refused(self):
         copy = pathlib.Path(self.folder.name) / "later"
