@@ -290,7 +290,9 @@ void SceneMarkers::updateForceTexts(const SceneSnapshot& snapshot) {
     marker.text = (instruments.size() > 1 ? instruments[i].name() + " " : "") + forceText(force_n.norm());
     marker.color = slides_n > held_n ? kineticColor() : held_n > 0.0 ? staticColor() : wordColor();
     const Vector3 tip = snapshot.link_poses[i][static_cast<std::size_t>(instruments[i].tipLink())].translation();
-    marker.pose.position = toPoint(textPlace(tip, half_widths_[i]) + 1.2 * frame_.halfWidth(marker.text));
+    const Vector3 half_text = 1.2 * frame_.halfWidth(marker.text);
+    const Vector3 place = textPlace(tip, half_widths_[i]) + half_text;
+    marker.pose.position = toPoint(place + riseAbove(snapshot.positions, place, half_text.norm()) * frame_.upwards());
     message_.markers[first_tip_ + i].pose.position = toPoint(tip);
   }
 }
@@ -299,6 +301,21 @@ void SceneMarkers::updateForceTexts(const SceneSnapshot& snapshot) {
 Vector3 SceneMarkers::textPlace(const Vector3& tip, double half_width_m) const {
   const double aside = frame_.letter() + std::min(half_width_m, 6.0 * frame_.letter());
   return tip + aside * frame_.rightwards() + 3.0 * frame_.letter() * frame_.upwards();
+}
+
+/// How far a text here has to rise, m, for tissue not to hide it from anyone who looks down steeply enough, as in open_rviz.py's views.
+double SceneMarkers::riseAbove(const std::vector<NodalVectors>& tissues, const Vector3& text,
+                               double half_width_m) const {
+  constexpr double kSlope = 0.48;  // tan of the views' pitch
+  double rise_m = 0.0;
+  for (const NodalVectors& nodes : tissues) {
+    for (Eigen::Index i = 0; i < nodes.cols(); ++i) {
+      const Vector3 to_node = nodes.col(i) - text;
+      const double aside_m = std::max(0.0, to_node.head<2>().norm() - half_width_m);
+      rise_m = std::max(rise_m, frame_.up * to_node.z() + frame_.letter() - kSlope * aside_m);
+    }
+  }
+  return rise_m;
 }
 
 /// Arrows that are no longer needed are sent once more as deletions, then forgotten.

@@ -54,6 +54,7 @@ class SceneMarkers {
 
   double arrowPerNewton() const;
   Vector3 textPlace(const Vector3& tip, double half_width_m) const;
+  double riseAbove(const std::vector<NodalVectors>& tissues, const Vector3& text, double half_width_m) const;
 
   const Simulator& simulator_;
   const MarkerStyle style_;

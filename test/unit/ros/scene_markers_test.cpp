@@ -171,6 +171,30 @@ TEST(SceneMarkers, TheForceStandsAtTheTipInTheColorOfItsState) {
   EXPECT_LT(away, 0.5 * pictureFrame(simulator).size());
 }
 
+// Seen as open_rviz.py looks at it, with the probe above the block and, where gravity points up, below it.
+TEST(SceneMarkers, TheBlockDoesNotHideTheForce) {
+  const Eigen::AlignedBox3d block(Vector3(-0.03, -0.03, 0.0), Vector3(0.03, 0.03, 0.02));
+  for (const double gravity : {-9.81, 9.81}) {
+    Scene scene = makeScene().scene();
+    scene.gravity_m_per_s2 = Vector3(0, 0, gravity);
+    const Simulator simulator(scene, ownEnvironment());
+    const PictureFrame frame = pictureFrame(simulator);
+    SceneMarkers markers(simulator, MarkerStyle());
+    const Marker& text = markerOf(markers.update(snapshotOf(simulator, kSecond)), "force_texts", 0);
+    const Vector3 middle(text.pose.position.x, text.pose.position.y, text.pose.position.z);
+    const Vector3 foot = middle - 0.5 * text.scale.z * frame.upwards();
+    const Vector3 tip(0.0, 0.0, 0.026);
+    EXPECT_LT((middle - tip).norm(), 0.5 * frame.size());
+    const Vector3 to_viewer = std::cos(0.45) * Vector3(std::cos(frame.azimuth), std::sin(frame.azimuth), 0.0) +
+                              std::sin(0.45) * frame.upwards();
+    for (const double end : {-1.0, 0.0, 1.0}) {
+      for (double way_m = 0.0; way_m < 0.2; way_m += 0.0005) {
+        ASSERT_FALSE(block.contains(foot + 1.2 * end * frame.halfWidth(text.text) + way_m * to_viewer)) << gravity;
+      }
+    }
+  }
+}
+
 TEST(SceneMarkers, ScalesFitWhatIsDrawnAndNeverShrink) {
   Simulator simulator = makeScene();
   SceneMarkers markers(simulator, MarkerStyle());
