@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,10 @@ struct Topology {
 /// that are still held to them, and goes on in a copy. So they neither change nor dangle, whatever becomes of mesh and simulator.
 class PythonSimulator : public std::enable_shared_from_this<PythonSimulator> {
  public:
+  /// Refuses. make_shared() does not come here, but pybind11 does, for room where the constructor should have been, when
+  /// something is asked of what Simulator.__new__() alone has made.
+  static void* operator new(std::size_t) { throw std::runtime_error("Simulator.__init__() has not been called"); }
+
   PythonSimulator(const Scene& scene, const SceneEnvironment& environment);
 
   std::vector<std::string> instruments() const;
