@@ -151,7 +151,7 @@ TEST(MeshFollower, WaitsForAWorkerThatIsLate) {
   followed.step({at(0.0)});
   std::promise<void> goes_on;
   followed.worker.start([&] { goes_on.get_future().wait(); });
-  for (int k = 0; k < 19; ++k) ASSERT_EQ(followed.step({at(0.003)}), nullptr) << k;
+  for (int k = 0; k < 20; ++k) ASSERT_EQ(followed.step({at(0.003)}), nullptr) << k;
   std::thread later([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     goes_on.set_value();

@@ -197,9 +197,10 @@ TEST_F(RefusedState, WithAContactThatNoneIs) {
       state.rfind(beginning + bytesOf(key.slot) + bytesOf(key.other_tissue) + bytesOf(key.feature));
   ASSERT_NE(slot, std::string::npos);
   const std::size_t slot_at = slot + beginning.size();
-  const std::size_t weights_at = slot_at + 2 * sizeof(int) + 4 * sizeof key.feature;
-  ASSERT_EQ(state.compare(weights_at, sizeof contact.weights, bytesOf(contact.weights)), 0);
-  const std::size_t rotation_at = weights_at + 5 * sizeof contact.weights;
+  const std::size_t weights_at = state.find(bytesOf(contact.weights), slot_at);
+  ASSERT_NE(weights_at, std::string::npos);
+  const std::size_t rotation_at = state.find(bytesOf(contact.R_WC), weights_at);
+  ASSERT_NE(rotation_at, std::string::npos);
   const auto refusalWith = [&](std::size_t at, const std::string& bytes) {
     std::string content = state.substr(0, state.size() - sizeof(std::uint64_t));
     return refusalOf(withChecksum(content.replace(at, bytes.size(), bytes)));
