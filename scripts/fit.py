@@ -93,6 +93,15 @@ def smoothing(arguments):
     return windows
 
 
+def require_each_once(paths):
+    """What is fitted twice counts twice, and what is held out must not be fitted."""
+    from fitting import FitError
+    for i, path in enumerate(paths):
+        for other in paths[:i]:
+            if os.path.exists(path) and os.path.exists(other) and os.path.samefile(path, other):
+                raise FitError("%s is given twice, as --measured or --held-out; give each recording once" % path)
+
+
 def prepared(arguments, path, tool, topics):
     from fitting import measured
     windows = smoothing(arguments)
@@ -108,7 +117,9 @@ def prepared(arguments, path, tool, topics):
 
 def require_folder(folder):
     """Before the fit, which may take long; it is made after it."""
-    from fitting import FitError
+    from fitting import FitError, measured
+    if folder and measured.printable(os.path.abspath(folder)) != os.path.abspath(folder):
+        raise FitError("--out %s is no UTF-8, which a scene's file must be; give another folder" % folder)
     place = os.path.abspath(folder or ".")
     while not os.path.exists(place):
         place = os.path.dirname(place)
@@ -132,7 +143,7 @@ def finer_settings(texts):
 
 
 def fit(arguments):
-    from fitting import FitError, forward, parameters, results, run
+    from fitting import FitError, forward, measured, parameters, results, run
     length = math.sqrt(sum(x * x for x in arguments.approach))
     if not length > 1e-6:
         raise FitError("--approach %g %g %g has no direction" % tuple(arguments.approach))
@@ -144,6 +155,7 @@ def fit(arguments):
     finer = finer_settings(arguments.finer)
     forward.load_scene(arguments.scene, finer)
     require_folder(arguments.out)
+    require_each_once(arguments.measured + arguments.held_out)
     setup = run.Setup(arguments.scene, keys, tool, fitted, numpy.array(arguments.approach) / length, forward.Workers(arguments.workers),
                       arguments.starts, arguments.seed, lambda line: print(line, flush=True))
     recordings, held_out = [[prepared(arguments, path, tool, joint_topics(instrument)) for path in paths]
@@ -156,13 +168,15 @@ def fit(arguments):
         print("\nnothing was written" if arguments.out else "")
         return 1
     if arguments.out:
-        names = results.write(arguments.out, setup, finer, answer, problem, quality, "fit.py " + shlex.join(sys.argv[1:]),
+        names = results.write(arguments.out, setup, finer, answer, problem, quality, measured.printable("fit.py " + shlex.join(sys.argv[1:])),
                               [arguments.scene] + arguments.measured + arguments.held_out, whole_file)
         print("\nwritten: " + ", ".join(names))
     return 0
 
 
 def main():
+    for stream in (sys.stdout, sys.stderr):
+        stream.reconfigure(errors="backslashreplace")  # file names need not be UTF-8
     arguments = parse_arguments()
     try:
         import scipy  # noqa: F401 (looked for, before anything else says so in its own words)

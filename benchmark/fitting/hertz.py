@@ -41,15 +41,15 @@ class Curve:
         motion = numpy.zeros((len(times), 6))
         motion[:, 2] = RADIUS_M - depth
         settings = {E_KEY: modulus, DEEP_E_KEY: DEEP_RATIO * modulus, DEEP_TOP_KEY: HEIGHT_M - layer_m}
-        force, error = forward.forces(SCENE, dict(settings, **mesh), study.TOOL, times, motion)
-        self.force, self.error = (PchipInterpolator(depth, values / modulus) for values in (force[:, 2], error))
+        done = forward.forces(SCENE, dict(settings, **mesh), study.TOOL, times, motion)
+        self.force, self.error = (PchipInterpolator(depth, values / modulus) for values in (done.force_n[:, 2], done.error_n))
 
     def at(self, modulus, depth_m):
-        """(forces, errors), as a run of the scene gives them."""
+        """As a run of the scene gives it."""
         depth_m = numpy.clip(depth_m, -2e-4, DEEPEST_M - 1e-4)
         force = numpy.zeros((len(depth_m), 3))
         force[:, 2] = modulus * self.force(depth_m)
-        return force, modulus * self.error(depth_m)
+        return forward.Simulated(force, modulus * self.error(depth_m))
 
 
 def depth_of(positions):
@@ -79,7 +79,7 @@ def point(seed, true_curves, fit_curves, fitted):
     curve, truth = nearest(fit_curves, layer_m), nearest(true_curves, layer_m)
     seen, true_n = [], []
     for name, motion in (("shallow", press(2.0)), ("deep", press(3.0))):
-        true_n.append(truth.at(modulus, depth_of(motion[1]))[0])
+        true_n.append(truth.at(modulus, depth_of(motion[1])).force_n)
         recording = study.record(name, motion, true_n[-1], noise, offset_m, generator)
         recording.force_n[:, :2] = numpy.nan  # a sensor of one axis
         seen.append(study.as_fit_sees(recording))
@@ -87,7 +87,7 @@ def point(seed, true_curves, fit_curves, fitted):
     problem = solve.Problem(runs[:1], fitted, lambda values, one: curve.at(values[0], one.motion + values[1]), forward.Workers(1), lambda line: None)
     answer = uncertainty.assess(problem, solve.refine(problem, solve.search(problem, 4, seed)[0]))
     # The prediction is compared with the true force, whose own noise is not the model's.
-    deep, predicted = runs[1], curve.at(answer.values[0], runs[1].motion + answer.values[1])[0]
+    deep, predicted = runs[1], curve.at(answer.values[0], runs[1].motion + answer.values[1]).force_n
     quiet = numpy.stack([study.measured.thin(study.measured.Recording("", press(3.0)[0], true_n[1], press(3.0)[1]), 100.0).force_n[:, 2]] * 3, axis=1)
     deep.recording.force_n[:, 2] = quiet[:, 2]
     over = run.prediction_error(deep, predicted, numpy.arange(len(predicted)) > 0)

@@ -17,7 +17,9 @@ def text_of(value):
         return "{%s}" % ", ".join("%s: %s" % (key, text_of(child)) for key, child in value.items())
     if isinstance(value, (list, tuple)):
         return "[%s]" % ", ".join(map(text_of, value))
-    return yaml.safe_dump(value).splitlines()[0] if isinstance(value, str) else _number(value)
+    if isinstance(value, str):  # as an element of a flow list it is quoted wherever a comma or a bracket would end it
+        return yaml.safe_dump([value], default_flow_style=True, allow_unicode=True, width=float("inf")).strip()[1:-1]
+    return _number(value)
 
 
 def _rounded(value):
@@ -70,7 +72,7 @@ def _edit(root, path, value):
     node = root
     for at, part in enumerate(path):
         if isinstance(node, yaml.ScalarNode):  # "material: liver"
-            return node.start_mark.index, node.end_mark.index, "{preset: %s, %s: %s}" % (node.value, part, text_of(value))
+            return node.start_mark.index, node.end_mark.index, "{preset: %s, %s: %s}" % (text_of(node.value), part, text_of(value))
         below = _child(node, part)
         if below is None:
             for missing in reversed(path[at + 1:]):

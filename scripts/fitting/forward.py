@@ -2,6 +2,7 @@
 Python's lock while it steps, and the same run gives the same bits whatever runs beside it."""
 import concurrent.futures
 import math
+import typing
 
 import numpy
 from scipy.interpolate import CubicSpline
@@ -110,24 +111,43 @@ def _pieces(times_s, motion, step_s):
         yield [((end - start) / count, spline(start + (i + 1) * (end - start) / count)) for i in range(count)]
 
 
+class Simulated(typing.NamedTuple):
+    """A run of the scene; arrays have a row for each sample."""
+    force_n: numpy.ndarray  # what the tissue exerts on the tool, axes of the world
+    error_n: numpy.ndarray  # how wrong it likely is
+    doubts: dict = {}       # what was wrong -> in how many steps
+
+
+DOUBTS = {  # by the report's field
+    "jumped": "the tool went too far to be swept and was put there: are the positions in metres, is the recording of one piece?",
+    "discarded": "the scene had no finite answer and stopped the tissue where it was, without forces: take smaller steps or a finer mesh",
+    "implausible_load": "the tissue bore more than any does (elements inside out, or pressures far above the stiffness): is the tool so deep?"}
+
+
+def _doubt(doubts, report):
+    for field in DOUBTS:
+        if getattr(report, field):
+            doubts[field] = doubts.get(field, 0) + 1
+
+
 def forces(scene_path, settings, tool_name, times_s, motion):
-    """What the tissue exerts on the tool (N, axes of the world) after each sample's step, and how wrong it likely is (N); the first
-    sample only places the tool."""
+    """Simulated; forces are those after each sample's step: the first sample only places the tool."""
     try:
         scene = tissue_contact.load_scene(scene_path, set=settings)
         simulator = tissue_contact.Simulator(scene)
         simulator.place(tool_name, motion[0])
         index = list(simulator.instruments).index(tool_name)
-        force, error = numpy.zeros((len(times_s), 3)), numpy.zeros(len(times_s))
+        force, error, doubts = numpy.zeros((len(times_s), 3)), numpy.zeros(len(times_s)), {}
         for i, pieces in enumerate(_pieces(times_s, motion, scene.max_step_s), 1):
             for duration, joints in pieces:
                 simulator.advance(duration, {tool_name: joints})
+                _doubt(doubts, simulator.report())
             force[i] = simulator.wrench(tool_name, "world")[:3]
             error[i] = simulator.force_errors()["total_n"][index]
     except (ValueError, RuntimeError) as problem:
         raise FitError("%s with %s: %s" % (scene_path, ", ".join("%s=%s" % (key, "%.6g" % value if isinstance(value, float) else value)
                                                                   for key, value in settings.items()), problem)) from problem
-    return force, error
+    return Simulated(force, error, doubts)
 
 
 class Workers:

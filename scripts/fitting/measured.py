@@ -18,6 +18,7 @@ FORCE = ("fx_n", "fy_n", "fz_n")
 MOST_ROWS = 1000000
 LONGEST_LINE = 10000
 FEWEST_ROWS = 10
+FEWEST_SMOOTHED = 5  # three make a parabola that smooths nothing
 FARTHEST_M, LARGEST_N, LARGEST_JOINT, LATEST_S = 10.0, 1000.0, 1000.0, 1.0e10
 WIDEST_M, LONGEST_S = 1.0, 3600.0  # of a recording
 WIDEST_GAP = 20.0  # between samples, in usual intervals
@@ -42,8 +43,13 @@ class Recording:
         return float(numpy.sqrt((self.force_n[:, self.measured()] ** 2).sum(axis=1)).max())
 
 
+def printable(text):
+    """File names need not be UTF-8; reports, tables and pictures are."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
 def name_of(path):
-    return os.path.splitext(os.path.basename(path))[0]
+    return printable(os.path.splitext(os.path.basename(path))[0])
 
 
 def read(path, joint_names, joint_topics, force_topic):
@@ -312,8 +318,11 @@ def smooth(recording, time_s):
     measurement. Forces stay as they are."""
     interval = float(numpy.median(numpy.diff(recording.times_s)))
     samples = 2 * int(round(0.5 * time_s / interval)) + 1
-    if time_s <= 0.0 or samples < 5:
+    if time_s <= 0.0:
         return recording
+    if samples < FEWEST_SMOOTHED:
+        raise FitError("--smooth %g s has %d samples of %s, which are %g s apart; %d or more are needed, from %.3g s on; or --smooth %s=0" %
+                       (time_s, samples, recording.name, interval, FEWEST_SMOOTHED, (FEWEST_SMOOTHED - 1) * interval, recording.name))
     if samples > len(recording.times_s):
         raise FitError("--smooth %g s is longer than %s" % (time_s, recording.name))
     return _per_sample(recording, lambda array: savgol_filter(array, samples, 2, axis=0))

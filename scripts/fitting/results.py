@@ -9,7 +9,7 @@ import yaml
 
 from fitting import uncertainty
 from fitting.fitted_scene import fitted_text
-from fitting.forward import load_scene
+from fitting.forward import DOUBTS, load_scene
 from fitting.parameters import OFFSET
 
 MOST_DRAWN = 8
@@ -39,13 +39,21 @@ def _shares(answer, problem):
 
 
 def _quality(problem, answer, held_out):
-    for run, (force, _) in zip(problem.runs, problem.forces([answer.point])[0]):
-        wrong = (force - run.recording.force_n)[1:, run.recording.measured()]
+    for run, done in zip(problem.runs, problem.forces([answer.point])[0]):
+        wrong = (done.force_n - run.recording.force_n)[1:, run.recording.measured()]
         rms, peak = float(numpy.sqrt((wrong ** 2).sum(axis=1).mean())), run.recording.peak_n()
         yield "fitted   %-20s RMS error %.3g N, %.1f %% of its peak force" % (run.recording.name, rms, 100.0 * rms / peak)
     for one in held_out:
-        yield "held-out %-20s RMS error %.3g N, %.1f %% of the RMS force; median %.1f %% of the force; %d samples" % (
-            one.name, one.rms_n, 100.0 * one.share, 100.0 * one.median, one.samples)
+        yield "held-out %-20s RMS error %.3g N, %.1f %% of the RMS force; median %.1f %% of the force; %d samples%s" % (
+            one.name, one.rms_n, 100.0 * one.share, 100.0 * one.median, one.samples, one.scene and ", by the scene %s" % one.scene)
+
+
+def _doubts(problem, answer, held_out):
+    """Sentences on what the simulator itself does not believe of the answer's runs."""
+    runs = [(run.recording.name, done.doubts) for run, done in zip(problem.runs, problem.forces([answer.point])[0])]
+    for name, doubts in runs + [(one.name, one.doubts) for one in held_out]:
+        for field, steps in doubts.items():
+            yield "do not trust the forces of %s: in %d steps %s" % (name, steps, DOUBTS[field])
 
 
 def _descents(costs):
@@ -57,7 +65,7 @@ def _descents(costs):
 def report(answer, problem, held_out, costs):
     parts = [_estimates(answer), _correlations(answer), _shares(answer, problem), _quality(problem, answer, held_out),
              ["singular values of the weighted Jacobian: " + ", ".join("%.3g" % one for one in answer.singular)],
-             list(uncertainty.at_bounds(answer)) + list(_descents(costs)) + answer.unidentified]
+             list(uncertainty.at_bounds(answer)) + list(_doubts(problem, answer, held_out)) + list(_descents(costs)) + answer.unidentified]
     return "\n\n".join("\n".join(part) for part in map(list, parts) if part)
 
 
@@ -72,9 +80,10 @@ def figures(answer, problem, held_out, made_by):
                        for i, parameter in enumerate(answer.parameters)],
         "correlation": [[round(float(one), 4) for one in row] for row in answer.correlation],
         "singular_values": [float(one) for one in answer.singular],
-        "scale_n": {run.recording.name: float(run.scale_n) for run in problem.runs},
+        "scale_n": [{"recording": run.recording.name, "scale_n": float(run.scale_n)} for run in problem.runs],
+        "doubts": list(_doubts(problem, answer, held_out)),
         "held_out": [{"recording": one.name, "rms_n": one.rms_n, "share_of_rms_force": one.share, "median_share": one.median,
-                      "samples": one.samples} for one in held_out],
+                      "samples": one.samples, "scene": one.scene or "fitted"} for one in held_out],
         "evaluations": problem.evaluations,
     }
 
@@ -86,8 +95,8 @@ def draw(path, answer, problem):
     runs = problem.runs[:MOST_DRAWN]
     figure, axes = pyplot.subplots(2, len(runs), figsize=(1.5 + 4.0 * len(runs), 6.0), squeeze=False, sharex="col",
                                    gridspec_kw={"height_ratios": [2, 1]}, constrained_layout=True)
-    for column, (run, (force, _)) in enumerate(zip(runs, problem.forces([answer.point])[0])):
-        recording, times = run.recording, run.recording.times_s
+    for column, (run, done) in enumerate(zip(runs, problem.forces([answer.point])[0])):
+        recording, times, force = run.recording, run.recording.times_s, done.force_n
         for axis in recording.measured():
             colour = "C%d" % axis
             axes[0, column].plot(times, recording.force_n[:, axis], ".", ms=2, color=colour, alpha=0.5, label="%s measured" % "xyz"[axis])
@@ -107,8 +116,8 @@ def _write_residuals(path, answer, problem):
     with open(path, "w", newline="", encoding="utf-8") as stream:
         table = csv.writer(stream)
         table.writerow(["recording", "time_s"] + ["%s_%s_n" % (what, axis) for what in ("measured", "fitted") for axis in "xyz"])
-        for run, (force, _) in zip(problem.runs, problem.forces([answer.point])[0]):
-            for time, measured, fitted in list(zip(run.recording.times_s, run.recording.force_n, force))[1:]:
+        for run, done in zip(problem.runs, problem.forces([answer.point])[0]):
+            for time, measured, fitted in list(zip(run.recording.times_s, run.recording.force_n, done.force_n))[1:]:
                 table.writerow([run.recording.name, "%.6f" % time] + ["" if math.isnan(one) else "%.6g" % one for one in measured] +
                                ["%.6g" % one for one in fitted])
 

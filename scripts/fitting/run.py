@@ -39,6 +39,8 @@ class HeldOut:
     share: float    # of the RMS of what was measured there
     median: float   # median of |error| over |measured|, of samples with a tenth of the peak force or more
     samples: int
+    doubts: dict = dataclasses.field(default_factory=dict)  # of a run that nothing else tells of
+    scene: str = ""  # by which it was predicted, if not by the one of the answer
 
 
 def _force_errors(run, force, rows):
@@ -46,13 +48,13 @@ def _force_errors(run, force, rows):
     return (force - run.recording.force_n)[numpy.ix_(rows, axes)], run.recording.force_n[numpy.ix_(rows, axes)]
 
 
-def prediction_error(run, force, rows):
+def prediction_error(run, force, rows, doubts=None, scene=""):
     wrong, measured = _force_errors(run, force, rows)
     size, error = numpy.linalg.norm(measured, axis=1), numpy.linalg.norm(wrong, axis=1)
     loud = size >= 0.1 * run.recording.peak_n()
     rms = float(numpy.sqrt((error ** 2).mean()))
     return HeldOut(run.recording.name, rms, rms / max(float(numpy.sqrt((size ** 2).mean())), 1e-300),
-                   float(numpy.median(error[loud] / size[loud])) if loud.any() else float("nan"), len(error))
+                   float(numpy.median(error[loud] / size[loud])) if loud.any() else float("nan"), len(error), doubts or {}, scene)
 
 
 def runs_of(setup, recordings):
@@ -81,8 +83,8 @@ def fit(setup, recordings, held_out=(), cross_check=True, finer=None):
     point = solve.refine(problem, point, tolerance)
     quality = []
     if by_blocks:
-        for run, (force, _) in zip(runs, problem.forces([point])[0]):
-            quality.append(prediction_error(run, force, ~run.fitted))
+        for run, done in zip(runs, problem.forces([point])[0]):
+            quality.append(prediction_error(run, done.force_n, ~run.fitted, scene="without --finer" if finer else ""))
             run.fitted = numpy.ones(len(run.fitted), bool)
         point = solve.refine(problem, point, tolerance)
     before = point
@@ -93,5 +95,5 @@ def fit(setup, recordings, held_out=(), cross_check=True, finer=None):
     if held_out:
         others = runs_of(setup, held_out)
         done = setup.workers.map(setup.forces, [(answer.values, run, finer) for run in others])
-        quality = [prediction_error(run, force, numpy.arange(len(force)) > 0) for run, (force, _) in zip(others, done)]
+        quality = [prediction_error(run, one.force_n, numpy.arange(len(one.force_n)) > 0, one.doubts) for run, one in zip(others, done)]
     return answer, quality, problem, costs

@@ -34,7 +34,7 @@ class Problem:
     """Forces of all runs at a point (an array of parts)."""
 
     def __init__(self, runs, parameters, forces_of, workers, say, settings_of=lambda values: {}):
-        """forces_of(values, run) -> (forces, errors), each with a row for a sample; settings_of(values) -> {key of the scene: value}."""
+        """forces_of(values, run) -> forward.Simulated; settings_of(values) -> {key of the scene: value}."""
         self.runs, self.parameters, self._settings_of = runs, parameters, settings_of
         self._forces_of, self._workers, self._say = forces_of, workers, say
         self._known = {}
@@ -50,7 +50,7 @@ class Problem:
         return numpy.clip(ordered, 0.0, 1.0)
 
     def forces(self, points):
-        """[[(forces, errors) of each run] of each point]; points seen before are not run again."""
+        """[[forward.Simulated of each run] of each point]; points seen before are not run again."""
         keys = [tuple(float(part) for part in point) for point in points]
         fresh = [key for i, key in enumerate(keys) if key not in self._known and key not in keys[:i]]
         done = self._workers.map(self._forces_of, [(self.values(key), run) for key in fresh for run in self.runs])
@@ -61,7 +61,7 @@ class Problem:
 
     def residual(self, forces):
         """All weighted residuals of one point."""
-        return numpy.concatenate([part for run, (force, _) in zip(self.runs, forces) for part in _weighted(run, force, run.fitted)])
+        return numpy.concatenate([part for run, done in zip(self.runs, forces) for part in _weighted(run, done.force_n, run.fitted)])
 
     def at(self, point):
         return self.residual(self.forces([point])[0])
@@ -89,10 +89,10 @@ def _weighted(run, force, rows):
 
 def set_scales(problem, point):
     """From the residuals at a point, each recording for itself: 1.48 median deviations are a standard deviation."""
-    for run, (force, _) in zip(problem.runs, problem.forces([point])[0]):
-        touching = run.fitted & force.any(axis=1)  # off the tissue there is the sensor's own noise alone
+    for run, done in zip(problem.runs, problem.forces([point])[0]):
+        touching = run.fitted & done.force_n.any(axis=1)  # off the tissue there is the sensor's own noise alone
         rows = touching if touching.sum() > LEAST_TOUCHING else run.fitted
-        residual = numpy.concatenate(_weighted(run, force, rows)) * run.scale_n
+        residual = numpy.concatenate(_weighted(run, done.force_n, rows)) * run.scale_n
         run.scale_n = max(1.4826 * float(numpy.median(numpy.abs(residual))), LEAST_SCALE * run.recording.peak_n())
 
 
@@ -104,8 +104,8 @@ def starts(problem, count, seed):
 
 
 def _require_contact(problem, point):
-    for run, (force, _) in zip(problem.runs, problem.forces([point])[0]):
-        if not numpy.abs(force).max() > 0.0:
+    for run, done in zip(problem.runs, problem.forces([point])[0]):
+        if not numpy.abs(done.force_n).max() > 0.0:
             raise FitError("%s: up to %.3g N were measured, but the tool of the scene never touches: are its positions those of the tip in the "
                            "scene's world, in metres, or its joints as the URDF has them?" % (run.recording.name, run.recording.peak_n()))
 

@@ -76,7 +76,8 @@ def _groups(problem):
 def _model_error(problem, forces):
     """Of each force along itself, weighted as the residuals are."""
     parts = []
-    for run, (force, error) in zip(problem.runs, forces):
+    for run, done in zip(problem.runs, forces):
+        force, error = done.force_n, done.error_n
         size = numpy.maximum(numpy.linalg.norm(force, axis=1), 1e-300)
         rows = run.fitted & (numpy.arange(len(size)) > 0)
         parts += [(LIKELY * error * force[:, axis] / size)[rows] / run.scale_n for axis in run.recording.measured()]

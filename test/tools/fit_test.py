@@ -98,6 +98,14 @@ class FittedSceneTest(Folder):
                          "damping": {"stiffness_s": 1e-5}}],
             "friction": [{"instrument": "p", "tissue": "a", "static": 0.75, "kinetic": 0.25}]})
 
+    def test_names_that_yaml_would_read_otherwise(self):
+        names = ["m, {a}.vtk", "m: b.vtk", "m #1.vtk", "'m'.vtk", "ä" * 100 + ".vtk"]
+        scene = self.write("s.yaml", "tissues:\n" + "".join("  - {name: t%d, mesh: {file: %s}}\n" % (i, fitted_scene.text_of(name))
+                                                            for i, name in enumerate(names)) + "  - {name: p, material: \"a, b}\"}\n")
+        got = yaml.safe_load(fitted_scene.fitted_text(scene, {"tissues.p.material.youngs_modulus_pa": 2.0}, os.path.join(self.folder, "x"), []))
+        self.assertEqual([tissue["mesh"]["file"] for tissue in got["tissues"][:-1]], ["../" + name for name in names])
+        self.assertEqual(got["tissues"][-1]["material"], {"preset": "a, b}", "youngs_modulus_pa": 2.0})
+
     def test_an_anchor_is_not_changed_for_others(self):
         scene = self.write("s.yaml", "tissues:\n  - {name: a, material: &m {youngs_modulus_pa: 1}}\n  - {name: b, material: *m}\n")
         got = yaml.safe_load(fitted_scene.fitted_text(scene, {"tissues.b.material.youngs_modulus_pa": 2.0}, self.folder, []))
@@ -119,13 +127,13 @@ def closed_form(count, seed, noise=0.05, correlated=False, alike=False, constant
         size = values[0] * numpy.maximum(depth + (0.0 if alike else 1e3 * values[1]), 0.0) ** 1.5 * (values[1] if alike else 1.0)
         force = numpy.zeros((count, 3))
         force[:, 2] = size
-        return force, numpy.zeros(count)
+        return forward.Simulated(force, numpy.zeros(count))
 
     white = generator.standard_normal(count)
     if correlated:
         for i in range(1, count):
             white[i] = 0.9 * white[i - 1] + numpy.sqrt(1 - 0.81) * white[i]
-    force = forces(truth, None)[0]
+    force = forces(truth, None).force_n
     force[:, 2] += noise * force[:, 2].max() * white
     force[generator.permutation(count)[:outliers], 2] *= 5.0
     force[:, :2] = numpy.nan
@@ -286,6 +294,23 @@ class CommandTest(Folder):
         name = parameters.SceneKeys(arm).instruments()[0]["name"]
         self.refused(["poses of the tip", "give its joints' columns instead"], forward.Tool(arm, name, {}).motion, recording)
 
+    def test_what_the_simulator_itself_doubts_is_told(self):
+        os.rename(os.path.join(self.folder, "press.csv"), os.path.join(os.fsencode(self.folder), b"\xffpress.csv"))
+        with open(os.path.join(os.fsencode(self.folder), b"\xffpress.csv"), encoding="utf-8") as stream:
+            lines = [line.split(",") for line in stream]
+        for line in lines[1:]:
+            line[3] = "%g" % (0.012 - 9.0 * (0.012 - float(line[3])))  # through the plate it is glued to
+        self.write("deep.csv", "".join(map(",".join, lines)))
+        out = os.path.join(self.folder, "out")
+        done = self.fit("--fit", "youngs_modulus_pa", "--held-out", os.path.join(self.folder, "deep.csv"), "--out", out,
+                        recordings=[os.fsdecode(b"\xffpress.csv")])
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertRegex(done.stdout, r"do not trust the forces of deep: in \d+ steps the tissue bore more than any does")
+        self.assertNotIn("forces of \\udcffpress", done.stdout)
+        self.assertRegex(done.stdout, r"fitted   \\udcffpress +RMS")
+        with open(os.path.join(out, "fit.yaml"), encoding="utf-8") as stream:
+            self.assertEqual(len(yaml.safe_load(stream)["doubts"]), 1)
+
     def test_a_recording_in_another_frame_is_refused(self):
         with open(os.path.join(self.folder, "press.csv"), encoding="utf-8") as stream:
             lines = [line.split(",") for line in stream]
@@ -303,6 +328,9 @@ class CommandTest(Folder):
                                  (["--fit", "static:0.1..1", "--approach", "0", "0", "0"], ["no direction"]),
                                  (["--fit", "static:0.1..1", "--smooth", "drag=0.2"], ["no recording 'drag'", "given are press"]),
                                  (["--fit", "static:0.1..1", "--smooth", "press=x"], ["'press=x' is not S or RECORDING=S"]),
+                                 (["--fit", "static:0.1..1", "--smooth", "press=0.005"], ["3 samples of press", "5 or more", "0.016 s"]),
+                                 (["--fit", "static:0.1..1", "--held-out", os.path.join(self.folder, ".", "press.csv")], ["press.csv is given twice"]),
+                                 (["--fit", "static:0.1..1", "--out", os.fsdecode(b"/tmp/\xff")], ["\\udcff is no UTF-8"]),
                                  (["--fit", "static:0.1..1", "--measured", "none.csv"], ["none.csv cannot be read"])]:
             with self.subTest(arguments=arguments):
                 done = self.fit(*arguments, recordings=["press.csv"])
