@@ -1,7 +1,9 @@
 #include "tissue_contact/baselines/delassus.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -17,6 +19,20 @@ bool isotropic(const DelassusProblem& problem) {
                      [](const CoulombLaw& law) { return law.anisotropic == nullptr; });
 }
 
+/// Their squares, and those of a few thousand of them, are finite then. NaN is refused too.
+void requireMagnitudes(const Eigen::Ref<const Eigen::MatrixXd>& values, const char* name) {
+  constexpr double kMost = 1e100;  // 1/kg and m/s: nothing of mechanics comes near
+  for (Eigen::Index j = 0; j < values.cols(); ++j) {
+    for (Eigen::Index i = 0; i < values.rows(); ++i) {
+      if (std::abs(values(i, j)) <= kMost) continue;
+      std::ostringstream text;
+      text << "contact problem: " << name << " has the entry " << values(i, j) << " in row " << i + 1
+           << "; from -1e100 to 1e100 is allowed";
+      throw std::invalid_argument(text.str());
+    }
+  }
+}
+
 void requireProblem(const DelassusProblem& problem) {
   const Eigen::Index rows = 3 * static_cast<Eigen::Index>(problem.contacts());
   if (problem.W.rows() != rows || problem.W.cols() != rows || problem.q.size() != rows ||
@@ -27,8 +43,8 @@ void requireProblem(const DelassusProblem& problem) {
                                 std::to_string(problem.was_sliding.size()) +
                                 "; W must be 3n x 3n, q 3n, was_sliding n");
   }
-  if (!problem.W.allFinite()) throw std::invalid_argument("contact problem: W has entries that are not finite");
-  if (!problem.q.allFinite()) throw std::invalid_argument("contact problem: q has entries that are not finite");
+  requireMagnitudes(problem.W, "W");
+  requireMagnitudes(problem.q, "q");
 }
 
 void requireMethod(const DelassusProblem& problem, const SolverDescription& description) {
@@ -162,6 +178,11 @@ DelassusReport solveDelassus(const DelassusProblem& problem, const SolverDescrip
       break;
     default:
       report.iterations = solveBySweeps(problem, description, solution);
+  }
+  if (!solution.r.allFinite()) {  // numbers whose quotients overflow: without an answer, but never NaN
+    solution.r.setZero(problem.q.size());
+    solution.u = problem.q;
+    solution.states.assign(problem.laws.size(), ContactState::kOpen);
   }
   report.residuals = computeResiduals(problem, solution.r);
   report.converged = report.residuals.scaled_natural_map <= tolerance;

@@ -234,6 +234,18 @@ TEST(SolveDelassus, NoContacts) {
   }
 }
 
+TEST(SolveDelassus, NumbersThatOverflowGiveNoAnswerAndNoNan) {
+  DelassusProblem problem = oneContact({-1e100, 1e99, 0.0}, 0.5, 0.5);
+  problem.W *= 1e-300;
+  for (const SolverMethod method : kAllMethods) {
+    DelassusSolution solution;
+    const DelassusReport report = solveDelassus(problem, solver(method), solution);
+    EXPECT_FALSE(report.converged) << solverMethodName(method);
+    EXPECT_EQ(solution.r, VectorX::Zero(3)) << solverMethodName(method);
+    EXPECT_EQ(solution.u, problem.q) << solverMethodName(method);
+  }
+}
+
 TEST(SolveDelassus, RefusesBadInput) {
   const DelassusProblem good = oneContact({-1.0, 0.0, 0.0}, 0.5, 0.5);
   DelassusSolution solution;
@@ -252,6 +264,8 @@ TEST(SolveDelassus, RefusesBadInput) {
   refused(bad, fine);
   bad = good;
   bad.q[2] = std::numeric_limits<double>::infinity();
+  refused(bad, fine);
+  bad.q[2] = -1e101;  // its square would overflow, and any answer would meet the tolerance
   refused(bad, fine);
   bad = good;
   bad.q.resize(4);
