@@ -28,7 +28,6 @@ def _mesh(cells, growth, step_s):
 # estimates is part of their error here. Fitting with the model that made the data would hide it.
 FINER = _mesh([16, 16, 9], [1.15, 1.15, 1.2], 0.0025)
 TRUTH = _mesh([20, 20, 11], [1.12, 1.12, 1.15], 0.002)
-TRUTH_HZ = 500
 
 
 @dataclasses.dataclass
@@ -85,13 +84,10 @@ def truth_keys(youngs_modulus_pa, stiffness_s, static, kinetic):
             "friction.0.static": static, "friction.0.kinetic": kinetic}
 
 
-def true_forces(settings, motion, scene=SCENE, rate_hz=TRUTH_HZ):
-    """At the motion's samples, from simulated ones at `rate_hz`: forces bend little in between."""
+def true_forces(settings, motion, scene=SCENE):
+    """At the motion's samples."""
     times, positions = motion
-    every = slice(None, None, RATE_HZ // rate_hz)
-    joints = numpy.hstack([positions, numpy.zeros((len(times), 3))])[every]
-    force = forward.forces(scene, settings, TOOL, times[every], joints)[0]
-    return numpy.stack([numpy.interp(times, times[every], force[:, axis]) for axis in range(3)], axis=1)
+    return forward.forces(scene, settings, TOOL, times, numpy.hstack([positions, numpy.zeros((len(times), 3))])).force_n
 
 
 def record(name, motion, force, noise, offset_m, generator):

@@ -353,13 +353,19 @@ TEST_P(CompressedBag, CutInTheIndex) {
   }
 }
 
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::size_t kBytesApart = 13;  // it takes a hundred times as long
+#else
+constexpr std::size_t kBytesApart = 1;
+#endif
+
 /// Two bits of each byte in turn: an error that names the file, or as many joint states as there were.
 TEST_P(CompressedBag, EveryByteSpoilt) {
   const std::string bytes = sound(60, GetParam(), 4000);
   const std::string file = write("spoilt.bag", bytes);
   const MemoryLimit limit(kSmall);
-  int refused = 0;
-  for (std::size_t at = 0; at < bytes.size(); ++at) {
+  std::size_t refused = 0;
+  for (std::size_t at = 0; at < bytes.size(); at += kBytesApart) {
     if (bytes[at] == ' ') continue;  // padding of the header
     for (const char mask : {'\x01', '\x40'}) {
       spoil(file, at, static_cast<char>(bytes[at] ^ mask));
@@ -373,7 +379,7 @@ TEST_P(CompressedBag, EveryByteSpoilt) {
     spoil(file, at, bytes[at]);
   }
   EXPECT_EQ(rowsOf(file).size(), 60u);
-  EXPECT_GT(refused, 1000);  // lengths, kinds, names; what is left are values
+  EXPECT_GT(refused, 1000 / kBytesApart);  // lengths, kinds, names; what is left are values
 }
 
 }  // namespace
