@@ -80,7 +80,7 @@ def smoothing(arguments):
     windows = {None: 0.0}
     known = [measured.name_of(path) for path in arguments.measured + arguments.held_out]
     for text in arguments.smooth:
-        name, equals, seconds = text.rpartition("=")
+        name, equals, seconds = measured.printable(text).rpartition("=")
         try:
             window = float(seconds)
         except ValueError:
@@ -95,19 +95,25 @@ def smoothing(arguments):
 
 def require_each_once(paths):
     """What is fitted twice counts twice, and what is held out must not be fitted."""
-    from fitting import FitError
+    from fitting import FitError, measured
     for i, path in enumerate(paths):
         for other in paths[:i]:
+            if measured.name_of(path) == measured.name_of(other) and os.path.realpath(path) != os.path.realpath(other):
+                raise FitError("%s and %s have the same name, by which the report and --smooth know them; rename one" % (other, path))
             if os.path.exists(path) and os.path.exists(other) and os.path.samefile(path, other):
                 raise FitError("%s is given twice, as --measured or --held-out; give each recording once" % path)
 
 
-def prepared(arguments, path, tool, topics):
+def prepared(arguments, path, tool, topics, frames):
+    """frames: {--axes: name of that frame}."""
     from fitting import measured
     windows = smoothing(arguments)
     recording = measured.read(path, tool.recorded_names(), topics, arguments.force_topic)
     recording = measured.smooth(measured.tare(recording, arguments.tare), windows.get(recording.name, windows[None]))
     recording = measured.thin(recording, arguments.rate)
+    if recording.force_frame not in ("", frames[arguments.axes]):
+        print("%s: forces are in frame '%s'; they are taken to be in the axes of the %s, '%s' (--axes %s)" % (
+            recording.name, measured.printable(recording.force_frame), arguments.axes, frames[arguments.axes], arguments.axes))
     if arguments.force_on == "tissue":
         recording.force_n = -recording.force_n
     if arguments.axes == "tip":
@@ -119,7 +125,7 @@ def require_folder(folder):
     """Before the fit, which may take long; it is made after it."""
     from fitting import FitError, measured
     if folder and measured.printable(os.path.abspath(folder)) != os.path.abspath(folder):
-        raise FitError("--out %s is no UTF-8, which a scene's file must be; give another folder" % folder)
+        raise FitError("--out: %s is not UTF-8, which a scene's file must be; give another folder" % os.path.abspath(folder))
     place = os.path.abspath(folder or ".")
     while not os.path.exists(place):
         place = os.path.dirname(place)
@@ -147,7 +153,7 @@ def fit(arguments):
     length = math.sqrt(sum(x * x for x in arguments.approach))
     if not length > 1e-6:
         raise FitError("--approach %g %g %g has no direction" % tuple(arguments.approach))
-    forward.load_scene(arguments.scene)  # its own reader comes first: it bounds what it reads, and says what is wrong
+    scene = forward.load_scene(arguments.scene)  # its own reader comes first: it bounds what it reads, and says what is wrong
     keys = parameters.SceneKeys(arguments.scene)
     instrument = instrument_of(keys, arguments.instrument)
     tool = forward.Tool(arguments.scene, instrument["name"], instrument.get("joint_names") or {})
@@ -156,9 +162,10 @@ def fit(arguments):
     forward.load_scene(arguments.scene, finer)
     require_folder(arguments.out)
     require_each_once(arguments.measured + arguments.held_out)
+    frames = {"world": scene.world_frame, "tip": instrument.get("tip_link", "")}
     setup = run.Setup(arguments.scene, keys, tool, fitted, numpy.array(arguments.approach) / length, forward.Workers(arguments.workers),
                       arguments.starts, arguments.seed, lambda line: print(line, flush=True))
-    recordings, held_out = [[prepared(arguments, path, tool, joint_topics(instrument)) for path in paths]
+    recordings, held_out = [[prepared(arguments, path, tool, joint_topics(instrument), frames) for path in paths]
                             for paths in (arguments.measured, arguments.held_out)]
     for one in fitted:
         setup.say("%s from %g to %g %s" % (one.key, one.low, one.high, one.unit))

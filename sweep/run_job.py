@@ -16,6 +16,7 @@ def main(job_file, results_file):
         for result in run_all(job["program"], job["variants"], job["kept_folder"], log):
             results.write(json.dumps(result) + "\n")
             results.flush()
+            os.fsync(results.fileno())
     os.replace(results_file + ".part", results_file)
     os.remove(results_file + ".log")
 

@@ -105,7 +105,7 @@ class Folder:
         self.path = path
         for name in ["jobs", "results", "csv"]:
             os.makedirs(os.path.join(path, name), exist_ok=True)
-        self._lock = open(os.path.join(path, ".lock"), "w", encoding="utf-8")  # held by the jobs too, as long as one of them runs
+        self._lock = open(os.path.join(path, ".lock"), "w", encoding="utf-8")  # until this process ends, however it ends
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
@@ -234,16 +234,14 @@ def run(folder, study, options, keyed):
     if options.shuffle is not None:
         random.Random(options.shuffle).shuffle(missing)
     if not missing:
-        return
+        return None
     jobs = plan(folder, study, options.program, missing, study.keep_csv)
     with Progress(folder, jobs, len(dict(keyed)) - len(missing), len(dict(keyed))):
         code = snakemake(folder, options.jobs, options.profile)
     after = folder.results()
     lost = [key for key, _ in missing if key not in after]
     if not lost:
-        spent = sum(after[key]["cpu_time_s"] for key, _ in missing)
-        print("sweep: %d jobs; CPU time of replays %.1f s%s" % (len(jobs), spent, "" if options.profile else ", of all %.1f s" % cpu_seconds()))
-        return
+        return len(jobs), sum(after[key]["cpu_time_s"] for key, _ in missing)
     crashes = folder.crashes()
     first = next((crashes[key]["crashed"] for key in lost if key in crashes), None)
     if first is None:
@@ -312,9 +310,11 @@ def main(arguments):
             return describe(study, keyed, folder.results())
         if options.verify is not None:
             return 0 if verify(folder, study, options, keyed) else 1
-        run(folder, study, options, keyed)
+        costs = run(folder, study, options, keyed)
         files = write_table(folder.path, study, keyed, folder.results())
         files += write_pictures(folder.path, study, keyed, folder.results())
+        if costs:
+            print("sweep: %d jobs; CPU time of replays %.1f s%s" % (*costs, "" if options.profile else ", of all %.1f s" % cpu_seconds()))
         print("sweep: " + ", ".join(files))
         return 0
     except (StudyError, SweepError) as error:

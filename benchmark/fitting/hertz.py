@@ -42,6 +42,8 @@ class Curve:
         motion[:, 2] = RADIUS_M - depth
         settings = {E_KEY: modulus, DEEP_E_KEY: DEEP_RATIO * modulus, DEEP_TOP_KEY: HEIGHT_M - layer_m}
         done = forward.forces(SCENE, dict(settings, **mesh), study.TOOL, times, motion)
+        if done.doubts:
+            sys.exit("the curves are in doubt: %s" % dict(done.doubts))
         self.force, self.error = (PchipInterpolator(depth, values / modulus) for values in (done.force_n[:, 2], done.error_n))
 
     def at(self, modulus, depth_m):

@@ -87,7 +87,10 @@ def truth_keys(youngs_modulus_pa, stiffness_s, static, kinetic):
 def true_forces(settings, motion, scene=SCENE):
     """At the motion's samples."""
     times, positions = motion
-    return forward.forces(scene, settings, TOOL, times, numpy.hstack([positions, numpy.zeros((len(times), 3))])).force_n
+    done = forward.forces(scene, settings, TOOL, times, numpy.hstack([positions, numpy.zeros((len(times), 3))]))
+    if done.doubts:
+        sys.exit("the truth itself is in doubt: %s" % dict(done.doubts))
+    return done.force_n
 
 
 def record(name, motion, force, noise, offset_m, generator):

@@ -2,6 +2,7 @@
 Python's lock while it steps, and the same run gives the same bits whatever runs beside it."""
 import concurrent.futures
 import math
+import types
 import typing
 
 import numpy
@@ -115,7 +116,7 @@ class Simulated(typing.NamedTuple):
     """A run of the scene; arrays have a row for each sample."""
     force_n: numpy.ndarray  # what the tissue exerts on the tool, axes of the world
     error_n: numpy.ndarray  # how wrong it likely is
-    doubts: dict = {}       # what was wrong -> in how many steps
+    doubts: typing.Mapping = types.MappingProxyType({})  # field of the report -> in how many steps
 
 
 DOUBTS = {  # by the report's field

@@ -34,6 +34,7 @@ class Recording:
     positions_m: numpy.ndarray = None  # 3 columns, of the tip in the world; or else joints
     quaternions: numpy.ndarray = None  # x, y, z, w
     joints: dict = None  # recorded name -> positions, rad or m
+    force_frame: str = ""  # as a bag names it
 
     def measured(self):
         return [axis for axis in range(3) if not numpy.isnan(self.force_n[:, axis]).any()]
@@ -223,7 +224,7 @@ def _read_bag(path, joint_names, joint_topics, force_topic):
     between wrenches."""
     if not joint_topics:
         raise FitError("%s: the scene's instrument has no joint_state_topics; add the bag's topic of joint states" % path)
-    states, wrenches, topics = _bag_messages(path, joint_names, joint_topics, force_topic)
+    states, wrenches, topics, force_frame = _bag_messages(path, joint_names, joint_topics, force_topic)
     for topic in list(joint_topics[:1]) + [force_topic]:
         if not (wrenches if topic == force_topic else states.get(topic)):
             raise FitError("%s has no messages on %s; its topics are: %s" % (path, topic, ", ".join(topics)))
@@ -244,7 +245,7 @@ def _read_bag(path, joint_names, joint_topics, force_topic):
     return Recording(
         name=name_of(path), times_s=times - start,
         force_n=numpy.stack([numpy.interp(times, force_times, forces[:, axis]) for axis in range(3)], axis=1),
-        joints=_joints_at(path, times, states, joint_names))
+        joints=_joints_at(path, times, states, joint_names), force_frame=force_frame)
 
 
 def _worst(values, largest):
@@ -253,9 +254,9 @@ def _worst(values, largest):
 
 
 def _bag_messages(path, joint_names, joint_topics, force_topic):
-    """({joint topic: [(stamp (s), {joint: position})]}, [(stamp (s), force)], all topics)."""
+    """({joint topic: [(stamp (s), {joint: position})]}, [(stamp (s), force)], all topics, frame of the forces)."""
     import rosbag  # here, since tables need no ROS
-    states, wrenches = {}, []
+    states, wrenches, frame = {}, [], ""
     try:
         with rosbag.Bag(path) as bag:
             info = bag.get_type_and_topic_info().topics
@@ -269,7 +270,7 @@ def _bag_messages(path, joint_names, joint_topics, force_topic):
             for topic, message, _ in bag.read_messages(list(joint_topics) + [force_topic]):
                 stamp = message.header.stamp.to_sec()
                 if topic == force_topic:
-                    force = message.wrench.force
+                    force, frame = message.wrench.force, message.header.frame_id
                     wrenches.append((stamp, (force.x, force.y, force.z)))
                 else:
                     states.setdefault(topic, []).append((stamp, {name: at for name, at in zip(message.name, message.position) if name in joint_names}))
@@ -277,7 +278,7 @@ def _bag_messages(path, joint_names, joint_topics, force_topic):
         raise
     except Exception as error:  # rosbag raises what its parts raise
         raise FitError("%s cannot be read as a bag: %s" % (path, error)) from error
-    return states, wrenches, sorted(topics)
+    return states, wrenches, sorted(topics), frame
 
 
 def _joints_at(path, times, states, joint_names):
@@ -321,7 +322,7 @@ def smooth(recording, time_s):
     if time_s <= 0.0:
         return recording
     if samples < FEWEST_SMOOTHED:
-        raise FitError("--smooth %g s has %d samples of %s, which are %g s apart; %d or more are needed, from %.3g s on; or --smooth %s=0" %
+        raise FitError("--smooth %g s has %d samples of %s, which are %g s apart; %d or more are needed: give %.3g s, or --smooth %s=0" %
                        (time_s, samples, recording.name, interval, FEWEST_SMOOTHED, (FEWEST_SMOOTHED - 1) * interval, recording.name))
     if samples > len(recording.times_s):
         raise FitError("--smooth %g s is longer than %s" % (time_s, recording.name))

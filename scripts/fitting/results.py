@@ -45,7 +45,7 @@ def _quality(problem, answer, held_out):
         yield "fitted   %-20s RMS error %.3g N, %.1f %% of its peak force" % (run.recording.name, rms, 100.0 * rms / peak)
     for one in held_out:
         yield "held-out %-20s RMS error %.3g N, %.1f %% of the RMS force; median %.1f %% of the force; %d samples%s" % (
-            one.name, one.rms_n, 100.0 * one.share, 100.0 * one.median, one.samples, one.scene and ", by the scene %s" % one.scene)
+            one.name, one.rms_n, 100.0 * one.share, 100.0 * one.median, one.samples, ", by the scene without --finer" if one.coarse else "")
 
 
 def _doubts(problem, answer, held_out):
@@ -53,7 +53,7 @@ def _doubts(problem, answer, held_out):
     runs = [(run.recording.name, done.doubts) for run, done in zip(problem.runs, problem.forces([answer.point])[0])]
     for name, doubts in runs + [(one.name, one.doubts) for one in held_out]:
         for field, steps in doubts.items():
-            yield "do not trust the forces of %s: in %d steps %s" % (name, steps, DOUBTS[field])
+            yield "do not trust the forces of %s: in %d step%s %s" % (name, steps, "" if steps == 1 else "s", DOUBTS[field])
 
 
 def _descents(costs):
@@ -83,7 +83,7 @@ def figures(answer, problem, held_out, made_by):
         "scale_n": [{"recording": run.recording.name, "scale_n": float(run.scale_n)} for run in problem.runs],
         "doubts": list(_doubts(problem, answer, held_out)),
         "held_out": [{"recording": one.name, "rms_n": one.rms_n, "share_of_rms_force": one.share, "median_share": one.median,
-                      "samples": one.samples, "scene": one.scene or "fitted"} for one in held_out],
+                      "samples": one.samples, "without_finer": one.coarse} for one in held_out],
         "evaluations": problem.evaluations,
     }
 
@@ -130,6 +130,7 @@ def write(folder, setup, finer, answer, problem, held_out, made_by, inputs, whol
     heading = ["Fitted by %s" % made_by] + [
         "  %s %.5g %s, 95 %%: %.5g .. %.5g%s" % ((parameter.key, answer.values[i], parameter.unit) + answer.interval(i) + (
             " (of the recordings, not of this scene)" if parameter.key == OFFSET else "",)) for i, parameter in enumerate(answer.parameters)]
+    heading += list(_doubts(problem, answer, held_out))
     text = fitted_text(setup.scene, settings, folder, heading)
     names = [os.path.join(folder, name) for name in ("scene.yaml", "fit.yaml", "residuals.csv", "residuals.png")]
     with contextlib.ExitStack() as stack:

@@ -40,7 +40,7 @@ class HeldOut:
     median: float   # median of |error| over |measured|, of samples with a tenth of the peak force or more
     samples: int
     doubts: dict = dataclasses.field(default_factory=dict)  # of a run that nothing else tells of
-    scene: str = ""  # by which it was predicted, if not by the one of the answer
+    coarse: bool = False  # predicted by the scene without the finer mesh or step
 
 
 def _force_errors(run, force, rows):
@@ -48,13 +48,13 @@ def _force_errors(run, force, rows):
     return (force - run.recording.force_n)[numpy.ix_(rows, axes)], run.recording.force_n[numpy.ix_(rows, axes)]
 
 
-def prediction_error(run, force, rows, doubts=None, scene=""):
+def prediction_error(run, force, rows, doubts=None, coarse=False):
     wrong, measured = _force_errors(run, force, rows)
     size, error = numpy.linalg.norm(measured, axis=1), numpy.linalg.norm(wrong, axis=1)
     loud = size >= 0.1 * run.recording.peak_n()
     rms = float(numpy.sqrt((error ** 2).mean()))
     return HeldOut(run.recording.name, rms, rms / max(float(numpy.sqrt((size ** 2).mean())), 1e-300),
-                   float(numpy.median(error[loud] / size[loud])) if loud.any() else float("nan"), len(error), doubts or {}, scene)
+                   float(numpy.median(error[loud] / size[loud])) if loud.any() else float("nan"), len(error), doubts or {}, coarse)
 
 
 def runs_of(setup, recordings):
@@ -84,7 +84,7 @@ def fit(setup, recordings, held_out=(), cross_check=True, finer=None):
     quality = []
     if by_blocks:
         for run, done in zip(runs, problem.forces([point])[0]):
-            quality.append(prediction_error(run, done.force_n, ~run.fitted, scene="without --finer" if finer else ""))
+            quality.append(prediction_error(run, done.force_n, ~run.fitted, done.doubts if finer else {}, bool(finer)))
             run.fitted = numpy.ones(len(run.fitted), bool)
         point = solve.refine(problem, point, tolerance)
     before = point

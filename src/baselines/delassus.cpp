@@ -20,14 +20,14 @@ bool isotropic(const DelassusProblem& problem) {
 }
 
 /// Their squares, and those of a few thousand of them, are finite then. NaN is refused too.
-void requireMagnitudes(const Eigen::Ref<const Eigen::MatrixXd>& values, const char* name) {
-  constexpr double kMost = 1e100;  // 1/kg and m/s: nothing of mechanics comes near
+void requireMagnitudes(const Eigen::Ref<const Eigen::MatrixXd>& values, const char* name, const char* unit) {
+  constexpr double kMost = 1e100;  // nothing of mechanics comes near
   for (Eigen::Index j = 0; j < values.cols(); ++j) {
     for (Eigen::Index i = 0; i < values.rows(); ++i) {
       if (std::abs(values(i, j)) <= kMost) continue;
       std::ostringstream text;
       text << "contact problem: " << name << " has the entry " << values(i, j) << " in row " << i + 1
-           << "; from -1e100 to 1e100 is allowed";
+           << ", column " << j + 1 << "; from -1e100 to 1e100 " << unit << " is allowed";
       throw std::invalid_argument(text.str());
     }
   }
@@ -43,8 +43,8 @@ void requireProblem(const DelassusProblem& problem) {
                                 std::to_string(problem.was_sliding.size()) +
                                 "; W must be 3n x 3n, q 3n, was_sliding n");
   }
-  requireMagnitudes(problem.W, "W");
-  requireMagnitudes(problem.q, "q");
+  requireMagnitudes(problem.W, "W", "1/kg");
+  requireMagnitudes(problem.q, "q", "m/s");
 }
 
 void requireMethod(const DelassusProblem& problem, const SolverDescription& description) {
@@ -179,7 +179,7 @@ DelassusReport solveDelassus(const DelassusProblem& problem, const SolverDescrip
     default:
       report.iterations = solveBySweeps(problem, description, solution);
   }
-  if (!solution.r.allFinite()) {  // numbers whose quotients overflow: without an answer, but never NaN
+  if (!solution.r.allFinite() || !(problem.W * solution.r).allFinite()) {  // numbers whose quotients overflow: without an answer, but never NaN
     solution.r.setZero(problem.q.size());
     solution.u = problem.q;
     solution.states.assign(problem.laws.size(), ContactState::kOpen);

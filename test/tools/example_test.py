@@ -109,7 +109,7 @@ class ExamplePackage(unittest.TestCase):
     def test_python(self):
         messages = self.in_a_shell("%s -B -c 'from tissue_contact.msg import Status; print(Status.__module__)'" % sys.executable)
         self.assertEqual((messages.stdout, messages.stderr), ("tissue_contact.msg._Status\n", ""))
-        helped = self.in_a_shell("rosrun tissue_contact fit.py --help")
+        helped = self.in_a_shell("rosrun tissue_contact fit --help")
         self.assertIn("--held-out", helped.stdout, helped.stderr)
         modules = sorted(self.prefix.glob("lib/python3/dist-packages/tissue_contact/*.so"))
         if not modules:

@@ -216,6 +216,7 @@ class CommandTest(Folder):
         with rosbag.Bag(path, "w") as bag:
             for time, position, force in zip(recording.times_s, recording.positions_m, recording.force_n):
                 state, wrench = JointState(name=["x", "y", "z"], position=list(position)), WrenchStamped()
+                wrench.header.frame_id = "sensor"
                 wrench.wrench.force.x, wrench.wrench.force.y, wrench.wrench.force.z = force
                 for topic, message in (("/indenter/joint_states", state), ("/force_sensor", wrench)):
                     message.header.stamp = genpy.Time.from_sec(10.0 + time)
@@ -235,6 +236,7 @@ class CommandTest(Folder):
         done = self.fit(*arguments)
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertIn("held-out drag", done.stdout)
+        self.assertIn("swing: forces are in frame 'sensor'; they are taken to be in the axes of the world, 'world' (--axes world)", done.stdout)
         with open(os.path.join(out, "fit.yaml"), encoding="utf-8") as stream:
             found = {one["key"]: one["value"] for one in yaml.safe_load(stream)["parameters"]}
         self.assertLess(abs(found[E] / 6000.0 - 1.0), 0.05, found)
@@ -330,7 +332,8 @@ class CommandTest(Folder):
                                  (["--fit", "static:0.1..1", "--smooth", "press=x"], ["'press=x' is not S or RECORDING=S"]),
                                  (["--fit", "static:0.1..1", "--smooth", "press=0.005"], ["3 samples of press", "5 or more", "0.016 s"]),
                                  (["--fit", "static:0.1..1", "--held-out", os.path.join(self.folder, ".", "press.csv")], ["press.csv is given twice"]),
-                                 (["--fit", "static:0.1..1", "--out", os.fsdecode(b"/tmp/\xff")], ["\\udcff is no UTF-8"]),
+                                 (["--fit", "static:0.1..1", "--held-out", os.path.join(self.folder, "other", "press.csv")], ["have the same name"]),
+                                 (["--fit", "static:0.1..1", "--out", os.fsdecode(b"/tmp/\xff")], ["\\udcff is not UTF-8"]),
                                  (["--fit", "static:0.1..1", "--measured", "none.csv"], ["none.csv cannot be read"])]:
             with self.subTest(arguments=arguments):
                 done = self.fit(*arguments, recordings=["press.csv"])
