@@ -83,6 +83,14 @@ class ParameterTest(Folder):
         numpy.testing.assert_allclose(settings["instruments.indenter.base_pose.position_m"], [0, 0, -1e-4])
 
 
+class ExampleTest(unittest.TestCase):
+    def test_its_recordings_are_read(self):
+        for name in ("press", "swing", "drag", "deeper"):
+            recording = measured.read(os.path.join(os.path.dirname(study.SCENE), name + ".csv"), ["x", "y", "z"], [], "")
+            self.assertEqual(recording.measured(), [0, 1, 2], name)
+            self.assertGreater(recording.peak_n(), 0.1, name)
+
+
 class FittedSceneTest(Folder):
     def test_comments_stay_and_numbers_change(self):
         scene = self.write("s.yaml", "# head\ntissues:\n  - name: a  # first\n    mesh: {file: m.vtk}\n    material: liver  # by name\n    damping: {}\n"

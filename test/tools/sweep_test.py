@@ -109,6 +109,18 @@ class MeasuresTest(unittest.TestCase):
             self.assertAlmostEqual(result[name], value, delta=1e-9, msg=name)
 
 
+class JobsTest(unittest.TestCase):
+    def test_no_study_becomes_more_jobs_than_a_cluster_takes(self):
+        import math
+        from sweep import per_job
+        for variants in (1, 9, 1000, 100000, 1000000):
+            for wanted in (None, 1, 7, 2000):
+                each = per_job(variants, wanted)
+                self.assertLessEqual(math.ceil(variants / each), 4000)
+                self.assertTrue(wanted is None or each >= wanted)
+        self.assertEqual(math.ceil(100000 / per_job(100000, None)), 100)
+
+
 class SweepTest(unittest.TestCase):
     """Of whole sweeps of a small press, as users run them."""
 
