@@ -258,6 +258,22 @@ class CommandTest(Folder):
         self.assertGreater(os.path.getsize(os.path.join(out, "residuals.png")), 10000)
         self.assertEqual(len(os.listdir(out)), 4)
 
+    def test_thickness_and_poissons_ratio_are_found_where_stiffness_is_known(self):
+        """... and the height of first touch as well."""
+        known = {E: 6000.0, DAMPING: 0.015, "instruments.indenter.base_pose.position_m": [0.0, 0.0, -1e-4]}
+        self.scene = self.write("known.yaml", fitted_scene.fitted_text(self.scene, known, self.folder, []))
+        for key, text, true, within in [("tissues.phantom.thickness_m", "thickness_m:0.012..0.03:0.025", 0.018, 0.003),
+                                        ("tissues.phantom.material.poissons_ratio", "poissons_ratio:0.3..0.48:0.35", 0.45, 0.03)]:
+            out = os.path.join(self.folder, key)
+            done = self.fit("--fit", text, "--out", out, recordings=["press.csv"])
+            self.assertEqual(done.returncode, 0, done.stdout)
+            with open(os.path.join(out, "fit.yaml"), encoding="utf-8") as stream:
+                found = yaml.safe_load(stream)["parameters"][0]
+            self.assertEqual(found["key"], key)
+            self.assertLess(abs(found["value"] - true), within, found)
+            self.assertLessEqual(found["interval_95"][0], true)
+            self.assertGreaterEqual(found["interval_95"][1], true)
+
     def test_workers_change_no_bit(self):
         hashes = set()
         for workers in ("1", "2"):
