@@ -238,6 +238,27 @@ TEST_F(FillSurface, WhatPassesThroughItselfIsRefusedWithAPlace) {
                  {"surface.obj", "passes through itself", "pairs of triangles cross", ") m"});
 }
 
+// As a segmentation that has run through an organ's wall: the top is pushed in and comes out below.
+TEST_F(FillSurface, OneClosedPartThatPassesThroughItselfIsRefusedWithAPlace) {
+  TriangleMesh surface = ball(20.0);
+  for (Eigen::Index i = 0; i < surface.vertices.cols(); ++i) {
+    if (surface.vertices(2, i) > 17.0) surface.vertices(2, i) -= 50.0;
+  }
+  expectContains(
+      refusal([&] { fill(described("crossed.stl", stlText(surface))); }),
+      {"crossed.stl", "cannot be filled", "passes through itself", "pairs of triangles cross", "-0.0", ") m"});
+}
+
+// Their parts are told apart by one vertex: inside the first it makes the second look like a cavity.
+TEST_F(FillSurface, CrossingPartsWithAVertexInsideAreRefusedWithAPlace) {
+  for (const double radius : {20.0, 15.0}) {
+    const TriangleMesh second = ball(radius, {15, 0, -5 - radius / 2});
+    ASSERT_LT(second.vertices.col(0).norm(), 19.0);
+    expectContains(refusalOf(together(ball(20.0), second)),
+                   {"surface.obj", "passes through itself", "pairs of triangles cross", ") m"});
+  }
+}
+
 TEST_F(FillSurface, SeveralBodiesAreRefused) {
   expectContains(refusalOf(together(ball(20.0), ball(20.0, {60, 0, 0}))), {"2 separate parts", "(0.06", "one body"});
 }
