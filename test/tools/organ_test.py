@@ -6,6 +6,7 @@ usage: organ_test.py SOURCE_DIRECTORY PROGRAM_DIRECTORY      (in the environment
 import csv
 import math
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -101,6 +102,22 @@ class OrganTest(unittest.TestCase):
                 self.assertGreater(max(forces), 0.4 * hertz)
                 self.assertLess(max(forces), 1.3 * hertz)
                 self.assertEqual(forces[-1], 0.0, "lifted")
+
+    @unittest.skipUnless(shutil.which("gmsh"), "the program gmsh is not installed")
+    def test_the_two_commands_of_the_page(self):
+        """As doc/organ.md gives them, but for the surface and the pace."""
+        with open(os.path.join(SOURCE, "doc", "organ.md"), encoding="utf-8") as stream:
+            commands = [line.strip() for line in stream if line.startswith("    rosrun ")]
+        self.assertEqual(len(commands), 2, commands)
+        self.write("Liver.stl", stl(*ball()))
+        commands[1] = commands[1].replace("rate:=0.25", "rate:=1 rviz:=false")
+        environment = dict(os.environ, XDG_CACHE_HOME=self.folder, ROS_HOME=self.folder, ROS_HOSTNAME="localhost")
+        for command in commands:
+            done = run("/bin/sh", "-c", command, cwd=self.folder, env=environment)
+            self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertEqual(sorted(os.listdir(self.path("liver/plots"))), ["probe_force.png", "probe_friction.png"])
+        forces = re.findall(r"^t .* force probe ([\d.]+) N", done.stdout, re.MULTILINE)  # one for each second
+        self.assertGreater(max(map(float, forces), default=0.0), 0.0, done.stdout)
 
     def test_units_are_asked_for(self):
         surface = self.write("a.stl", stl(*ball()))
