@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""doc/reference.md against a running node, its refusals, the messages and the tools: each table has what there is, no more and no less."""
+"""doc/reference.md against a running node, its refusals, the messages, the launch files and the tools: each table has what there is, no more and no less."""
 import collections
 import glob
 import io
@@ -8,6 +8,7 @@ import re
 import socket
 import subprocess
 import threading
+import unittest.mock
 import xml.etree.ElementTree
 import xmlrpc.client
 
@@ -17,6 +18,7 @@ import rospy
 import yaml
 from dynamic_reconfigure.msg import Config, ConfigDescription, DoubleParameter
 from dynamic_reconfigure.srv import Reconfigure
+from roslaunch.substitution_args import resolve_args
 
 import harness
 
@@ -237,9 +239,34 @@ class Reference(harness.TestCase):
 
     # ------------------------------------------------------------------ messages, tables, programs
 
+    @staticmethod
+    def default_of(argument, display):
+        """As roslaunch finds it, `ROS_HOME` as people have it."""
+        text = argument.get("default")
+        if text is None:
+            return "must be given"
+        with unittest.mock.patch.dict(os.environ, {"ROS_HOME": "~/.ros", "DISPLAY": display}):
+            return str(resolve_args(text)) or "none"
+
+    def test_arguments_of_launch_files(self):
+        documented, found = collections.defaultdict(dict), collections.defaultdict(dict)
+        for row in TABLES["Launch files"]:
+            for name in row["launch files"].split(", "):
+                self.assertNotIn(row["argument"], documented[name])
+                documented[name][row["argument"]] = row["default"].replace("<launch file>", name)
+        for file in glob.glob(os.path.join(harness.PACKAGE, "launch", "*.launch")):
+            name = os.path.splitext(os.path.basename(file))[0]
+            for argument in xml.etree.ElementTree.parse(file).getroot().findall("arg"):  # not those it hands on
+                with_display, without = [self.default_of(argument, display) for display in (":0", "")]
+                is_by_display = (with_display, without) == ("True", "False")
+                self.assertTrue(is_by_display or with_display == without, (name, argument.attrib))
+                found[name][argument.get("name")] = "with a display" if is_by_display else without
+        self.assertEqual(set(found.pop("haptics")), {row["parameter"] for row in HAPTICS} | {"name", "wrench", "servo_cf"})
+        self.assertEqual(found, documented)
+
     def test_fields_of_messages(self):
-        files = glob.glob(os.path.join(harness.PACKAGE, "msg", "*.msg"))
-        self.assertGreaterEqual(len(files), 6)
+        files = [file for kind in ("msg", "srv") for file in glob.glob(os.path.join(harness.PACKAGE, kind, "*." + kind))]
+        self.assertGreaterEqual(len(files), 7)
         for file in files:
             name = os.path.splitext(os.path.basename(file))[0]
             with open(file, encoding="utf-8") as stream:
