@@ -34,6 +34,7 @@ class ExamplePackage(unittest.TestCase):
         cls.prefix = pathlib.Path(cls.folder.name) / prefix
         done = run("cmake", "--install", BUILD, DESTDIR=cls.folder.name)
         assert done.returncode == 0, done.stdout
+        cls.doc = cls.prefix / "share/tissue_contact/doc"
 
     @classmethod
     def tearDownClass(cls):
@@ -52,7 +53,7 @@ class ExamplePackage(unittest.TestCase):
         everything.write_text("".join('#include "%s"\n' % header for header in headers), encoding="utf-8")
         options = build.parent / "options.cmake"
         options.write_text("add_compile_options(-include %s)\n" % everything, encoding="utf-8")
-        done = self.configure(SOURCE / "doc/example", build, "-DCMAKE_PROJECT_tissue_contact_example_INCLUDE=%s" % options)
+        done = self.configure(self.doc / "example", build, "-DCMAKE_PROJECT_tissue_contact_example_INCLUDE=%s" % options)
         self.assertEqual(done.returncode, 0, done.stdout)
         done = run("cmake", "--build", build)
         self.assertEqual(done.returncode, 0, done.stdout)
@@ -76,7 +77,7 @@ class ExamplePackage(unittest.TestCase):
     def test_a_controller_is_tested_by_gtest_rostest_and_pytest(self):
         build = pathlib.Path(self.folder.name) / "controller_build"
         source = pathlib.Path(self.folder.name) / "controller"  # pytest leaves its cache beside its tests
-        shutil.copytree(SOURCE / "doc/controller_test", source)
+        shutil.copytree(self.doc / "controller_test", source)
         done = self.configure(source, build)
         self.assertEqual(done.returncode, 0, done.stdout)
         done = run("cmake", "--build", build, "--target", "press_controller", "tests")
@@ -121,10 +122,23 @@ class ExamplePackage(unittest.TestCase):
         for module in modules:  # without setup.bash as well
             self.assertIn("libtissue_contact_core.so => " + str(modules[0].parent), run("ldd", module).stdout)
 
+    def test_pages_link_to_what_is_there(self):
+        checked = 0
+        for page in self.doc.rglob("*.md"):
+            for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
+                place = pathlib.Path(os.path.normpath(page.parent / target))
+                if self.doc in place.parents:  # not into the source tree
+                    checked += 1
+                    self.assertTrue(place.exists(), "%s: %s" % (page, target))
+        self.assertGreater(checked, 100)
+
+    def test_packages_to_copy_are_no_packages_of_the_install_space(self):
+        self.assertEqual(self.in_a_shell("rospack list-names | grep ^tissue_contact").stdout, "tissue_contact\n")
+
     def test_a_later_version_is_refused(self):
         copy = pathlib.Path(self.folder.name) / "later"
         copy.mkdir()
-        for file in (SOURCE / "doc/example").iterdir():
+        for file in (self.doc / "example").iterdir():
             text = file.read_text(encoding="utf-8")
             (copy / file.name).write_text(text.replace("tissue_contact 0.1 ", "tissue_contact 99 "), encoding="utf-8")
         done = self.configure(copy, copy / "build")
