@@ -57,7 +57,7 @@ struct DelassusReport {
 
 /// Solves a Delassus problem by the method of the description (all but kImpulse, which needs a step; relaxation does
 /// not matter here, W is exact). `tolerance` is that of the scaled natural map.
-/// Where the numbers overflow on the way, the answer is r = 0, all open, and the report says that it does not meet the tolerance.
+/// Where the numbers overflow on the way, the answer is r = 0, and the report says that it does not meet the tolerance.
 /// @throws std::invalid_argument for a method that does not apply, sizes that do not match, entries of W or q that are not
 /// finite or beyond 1e100.
 DelassusReport solveDelassus(const DelassusProblem& problem, const SolverDescription& description,

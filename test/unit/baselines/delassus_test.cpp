@@ -243,7 +243,6 @@ TEST(SolveDelassus, NumbersThatOverflowGiveNoAnswerAndNoNan) {
     EXPECT_FALSE(report.converged) << solverMethodName(method);
     EXPECT_EQ(solution.r, VectorX::Zero(3)) << solverMethodName(method);
     EXPECT_EQ(solution.u, problem.q) << solverMethodName(method);
-    EXPECT_EQ(solution.states, std::vector<ContactState>{ContactState::kOpen}) << solverMethodName(method);
   }
 }
 
