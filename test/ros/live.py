@@ -13,6 +13,8 @@ import unittest
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
+from dynamic_reconfigure.msg import Config, DoubleParameter
+from dynamic_reconfigure.srv import Reconfigure
 from geometry_msgs.msg import WrenchStamped
 from rosgraph_msgs.msg import Log
 from visualization_msgs.msg import MarkerArray
@@ -193,6 +195,27 @@ class Live(harness.TestCase):
         for words in ["ms", "steps per second", "mesh", "max_step_s", "time_budget_s"]:
             self.assertIn(words, said[0])
         self.assertGreater(max(w.wrench.force.z for w in seen["wrenches"]), 0.02)  # it did press
+
+    def test_the_lag_follows_a_bound_that_is_changed(self):
+        cost = self.step_cost()
+        bound = max(0.02, 10.0 * cost)
+        with harness.node(self.scene(MAX_STEP_S=max(2e-5, 0.1 * cost), MAX_LAG_S=bound)):  # ten times the work the machine can do
+            statuses = harness.Listener("/tissue_contact/status", Status)
+            set_parameters = rospy.ServiceProxy(harness.NODE + "/set_parameters", Reconfigure)
+            driver = faults.Driver(500.0, press_at)
+            try:
+                lags = []
+                for now in [bound, 10.0 * bound, bound]:
+                    set_parameters(Config(doubles=[DoubleParameter("step/max_lag_s", now)]))
+                    seen = len(statuses.messages) + 5  # those on the way
+                    lags.append([s.lag for s in statuses.wait(lambda all, n=seen: len(all) > n + 20, "statuses")[seen:]])
+            finally:
+                driver.stop()
+        print("bound %.3f s: lags %s" % (bound, lags))
+        tight, loose, tight_again = [statistics.median(part) for part in lags]
+        self.assertLess(tight, bound)
+        self.assertGreater(loose, bound)  # of ten it aims at half
+        self.assertLess(tight_again, bound)
 
     def test_what_falls_far_behind_is_an_error(self):
         """Every state at 500 Hz, of which each costs four steps of a mesh far too fine for that."""
