@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace tissue_contact {
 namespace {
@@ -14,7 +15,7 @@ using Clock = std::chrono::steady_clock;
 class Recorder {
  public:
   explicit Recorder(Simulator& simulator) : simulator_(simulator) {
-    run_.advice = simulator.advice();
+    for (Advice& advice : simulator.advice()) run_.advice.push_back(std::move(advice.text));
     simulator_.setStepObserver([this] { step(); });
     last_ = Clock::now();
   }

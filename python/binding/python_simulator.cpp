@@ -273,7 +273,9 @@ StepReport PythonSimulator::report() const {
 
 std::vector<std::string> PythonSimulator::advice() const {
   const Use use(*this);
-  return simulator_.advice();
+  std::vector<std::string> lines;
+  for (Advice& advice : simulator_.advice()) lines.push_back(std::move(advice.text));
+  return lines;
 }
 
 long PythonSimulator::stepCount() const {

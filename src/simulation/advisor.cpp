@@ -90,22 +90,25 @@ std::string rangeText(double from, double to) {
   return twoDigits(from) + (twoDigits(to) != twoDigits(from) ? " to " + twoDigits(to) : "");
 }
 
+/// Adds what to expect of the forces, and whether that is worth a warning.
 /// @param under_smallest_m, under_largest_m edges that the smallest and the largest shape meet.
-std::string expectedErrorText(double under_smallest_m, double under_largest_m, const HalfExtents& shapes) {
-  if (!(shapes.smallest_m > 0.0)) return {};
+Advice withExpectedError(const std::string& mesh, double under_smallest_m, double under_largest_m,
+                         const HalfExtents& shapes) {
+  if (!(shapes.smallest_m > 0.0)) return {mesh};
   constexpr double kWorthAWord = 0.1;
-  constexpr double kCompared = 3.0;  // edges over half extents that expectedMeshError() was compared with
+  constexpr double kWorthAWarning = 0.5;  // good to a factor of two: off by a quarter at least
+  constexpr double kCompared = 3.0;       // edges over half extents that expectedMeshError() was compared with
   const auto error = [&](double edge_m, double half_extent_m) {
     return expectedMeshError(std::min(edge_m, kCompared * half_extent_m), half_extent_m);
   };
   const double most = error(under_smallest_m, shapes.smallest_m);
-  std::string text = "; forces on shapes of " + rangeText(1e3 * shapes.smallest_m, 1e3 * shapes.largest_m) +
-                     " mm half extent, pressed in by most of that, likely off by some " +
+  std::string text = mesh + ", under shapes of " + rangeText(1e3 * shapes.smallest_m, 1e3 * shapes.largest_m) +
+                     " mm half extent (a ball's radius): expect forces to be too large by some " +
                      rangeText(100.0 * error(under_largest_m, shapes.largest_m), 100.0 * most);
   if (under_smallest_m > kCompared * shapes.smallest_m) text += " (or more)";
-  text += " %";
-  if (most > kWorthAWord) text += ": smaller cells help (tissues[].refinement)";
-  return text;
+  text += " % when pressed in by most of that";
+  if (most > kWorthAWord) text += "; smaller cells help (tissues[].refinement)";
+  return {text, most > kWorthAWarning};
 }
 
 }  // namespace
@@ -135,27 +138,25 @@ double shortSurfaceEdge(const Tissue& tissue) {
   return *tenth;
 }
 
-std::string meshLine(const Tissue& tissue, double edge_m, const HalfExtents& shapes) {
-  std::ostringstream line;
-  line << "mesh of tissue " << quoted(tissue.name()) << ": as it is, surface edges from " << twoDigits(1e3 * edge_m)
-       << " mm" << expectedErrorText(edge_m, edge_m, shapes);
-  return line.str();
+Advice meshLine(const Tissue& tissue, double edge_m, const HalfExtents& shapes) {
+  return withExpectedError("mesh of tissue " + quoted(tissue.name()) + ": as it is, cells of " +
+                               twoDigits(1e3 * edge_m) + " mm (its shorter surface edges)",
+                           edge_m, edge_m, shapes);
 }
 
-std::string refinementLine(const TissueDescription& tissue, const std::vector<double>& cells_m, double reach_m,
-                           int nodes_at_most, const HalfExtents& shapes) {
+Advice refinementLine(const TissueDescription& tissue, const std::vector<double>& cells_m, double reach_m,
+                      int nodes_at_most, const HalfExtents& shapes) {
   std::ostringstream line;
   line << "mesh of tissue " << quoted(tissue.name) << ": ";
   if (cells_m.empty()) {
     line << "as it is, since no instrument touches; for other tissues give refinement.cell_m";
-    return line.str();
+    return {line.str()};
   }
   line.precision(3);
   line << "refined to cells of " << 1e3 * cells_m.front() << " mm, " << 1e3 * reach_m
        << " mm around what touches it, and moved along with that; at most " << nodes_at_most
-       << " nodes, for which cells grow"
-       << expectedErrorText(kEdgePerCell * cells_m.front(), kEdgePerCell * cells_m.back(), shapes);
-  return line.str();
+       << " nodes, for which cells grow";
+  return withExpectedError(line.str(), kEdgePerCell * cells_m.front(), kEdgePerCell * cells_m.back(), shapes);
 }
 
 std::string coarseCellsText(const Simulator& simulator) {
@@ -170,17 +171,16 @@ std::string coarseCellsText(const Simulator& simulator) {
   return text.str();
 }
 
-std::vector<std::string> adviceLines(const Scene& scene, const FoldWatch& folds,
-                                     const std::vector<std::string>& meshes) {
-  std::vector<std::string> lines = {sleepLine(scene)};
+std::vector<Advice> adviceLines(const Scene& scene, const FoldWatch& folds, const std::vector<Advice>& meshes) {
+  std::vector<Advice> lines = {{sleepLine(scene)}};
   for (std::size_t t = 0; t < scene.tissues.size(); ++t) {
-    lines.push_back(modelLine(scene, scene.tissues[t]));
-    if (!meshes[t].empty()) lines.push_back(meshes[t]);
+    lines.push_back({modelLine(scene, scene.tissues[t])});
+    if (!meshes[t].text.empty()) lines.push_back(meshes[t]);
   }
-  for (std::size_t p = 0; p < scene.tissue_pairs.size(); ++p) lines.push_back(pairLine(scene, p, folds));
-  for (const FrictionDescription& pair : scene.friction) lines.push_back(frictionLine(scene, pair));
-  lines.emplace_back(scene.friction.empty() ? "friction: none is listed, so nothing tangential is computed"
-                                            : "all other pairs: no friction, nothing tangential is computed");
+  for (std::size_t p = 0; p < scene.tissue_pairs.size(); ++p) lines.push_back({pairLine(scene, p, folds)});
+  for (const FrictionDescription& pair : scene.friction) lines.push_back({frictionLine(scene, pair)});
+  lines.push_back({scene.friction.empty() ? "friction: none is listed, so nothing tangential is computed"
+                                          : "all other pairs: no friction, nothing tangential is computed"});
   return lines;
 }
 

@@ -9,6 +9,7 @@
 #include "simulation/fold_watch.h"
 #include "simulation/touched_places.h"
 #include "tissue_contact/simulation/scene.h"
+#include "tissue_contact/simulation/simulator.h"
 #include "tissue_contact/tissue/tissue.h"
 
 namespace tissue_contact {
@@ -22,18 +23,17 @@ bool advisedSleep(const Scene& scene);
 bool advisedSleepByParts(const Scene& scene);
 
 /// One line per choice: what it is about, what was chosen, why.
-/// @param meshes about each tissue, empty: nothing.
-std::vector<std::string> adviceLines(const Scene& scene, const FoldWatch& folds,
-                                     const std::vector<std::string>& meshes);
+/// @param meshes about each tissue, with an empty text: nothing.
+std::vector<Advice> adviceLines(const Scene& scene, const FoldWatch& folds, const std::vector<Advice>& meshes);
 
-/// What the mesh of a volume is, and what it is likely to do to the forces of the instruments' shapes.
+/// What the mesh of a volume is, and what it is likely to do to the forces of the instruments' shapes: a warning when that is much.
 /// @param edge_m of the shorter triangles of the surface.
-std::string meshLine(const Tissue& tissue, double edge_m, const HalfExtents& shapes);
+Advice meshLine(const Tissue& tissue, double edge_m, const HalfExtents& shapes);
 
 /// The same of a mesh that follows. @param cells_m edges of the finest cells under all shapes, ascending; none: nothing asks for any.
 /// @param reach_m of the finest.
-std::string refinementLine(const TissueDescription& tissue, const std::vector<double>& cells_m, double reach_m,
-                           int nodes_at_most, const HalfExtents& shapes);
+Advice refinementLine(const TissueDescription& tissue, const std::vector<double>& cells_m, double reach_m,
+                      int nodes_at_most, const HalfExtents& shapes);
 
 /// Of a tenth of the surface's triangles the mean edge is shorter, m.
 double shortSurfaceEdge(const Tissue& tissue);

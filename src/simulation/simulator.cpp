@@ -42,9 +42,9 @@ Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 const Scene& Simulator::scene() const { return implementation_->scene; }
 const std::vector<Instrument>& Simulator::instruments() const { return implementation_->instruments; }
 const std::vector<Tissue>& Simulator::tissues() const { return implementation_->tissues; }
-std::vector<std::string> Simulator::advice() const {
+std::vector<Advice> Simulator::advice() const {
   const Implementation& all = *implementation_;
-  std::vector<std::string> meshes(all.tissues.size());
+  std::vector<Advice> meshes(all.tissues.size());
   for (std::size_t t = 0; t < meshes.size(); ++t) {
     if (!isContinuum(scene().tissues[t].material.model)) continue;
     const HalfExtents shapes = all.touched_places.halfExtents();

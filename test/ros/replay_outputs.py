@@ -27,7 +27,8 @@ class ReplayOutputs(harness.TestCase):
 
     def test_a_law_out_of_its_range_is_told_with_the_fix(self):
         errors = self.replay("out.csv")
-        self.assertEqual(errors.count("warning: "), 1, errors)
+        self.assertEqual(errors.count("warning: "), 2, errors)
+        self.assertIn("warning: advisor: mesh of tissue 'block'", errors)  # cells of 10 mm under a ball of 5 mm
         for words in ["beyond the range of the corotational law", "{model: neo_hookean, dilatation: patch}", "1 times: forces likely wrong by up to -"]:
             self.assertIn(words, errors)
         scene = self.changed_scene({"material: {": "material: {model: neo_hookean, dilatation: patch, "})

@@ -92,6 +92,12 @@ struct AdvanceLimits {
   double longest_step_s = 0.0;
 };
 
+/// What was chosen for a scene, or is to be expected of it, and why: a line for a log.
+struct Advice {
+  std::string text;
+  bool is_warning = false;  ///< forces are likely far off: to be logged as a warning
+};
+
 class Simulator {
  public:
   /// Builds every tissue and instrument.
@@ -113,7 +119,7 @@ class Simulator {
   MeshMoves meshMoves(int tissue) const;
 
   /// Which models were chosen for the scene and why, a line for each choice; for a log.
-  std::vector<std::string> advice() const;
+  std::vector<Advice> advice() const;
 
   /// Everything back to the start: tissues undeformed and at rest, instruments at their initial joint positions, no
   /// contact history, step count 0.

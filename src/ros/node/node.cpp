@@ -127,7 +127,13 @@ Node::Node(const ros::NodeHandle& node, const ros::NodeHandle& private_node, con
       services_(stepper_),
       receiver_(inbox_, node),
       updater_(node, private_node, name) {
-  for (const std::string& line : simulator_.advice()) ROS_INFO_STREAM("advisor: " << line);
+  for (const Advice& advice : simulator_.advice()) {
+    if (advice.is_warning) {
+      ROS_WARN_STREAM("advisor: " << advice.text);
+    } else {
+      ROS_INFO_STREAM("advisor: " << advice.text);
+    }
+  }
   health_.setPublishers([this](int topic) { return receiver_.publishers(topic); });
   updater_.setHardwareID("none");
   updater_.add("tissue contact", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {

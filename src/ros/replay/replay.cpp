@@ -60,7 +60,9 @@ class Replay {
         joint_names_(simulator_, player_),
         findings_(simulator_, log, kPrefix) {
     requireModelsKept(options, simulator_);
-    for (const std::string& line : simulator_.advice()) log_ << kPrefix << "advisor: " << line << "\n";
+    for (const Advice& advice : simulator_.advice()) {
+      log_ << kPrefix << (advice.is_warning ? "warning: " : "") << "advisor: " << advice.text << "\n";
+    }
     simulator_.setStepObserver([this] { stepTaken(); });
   }
 

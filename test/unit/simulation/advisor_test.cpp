@@ -73,8 +73,8 @@ TEST(Advisor, GeneralPathOfFrictionGivesTheSameAnswer) {
 
 TEST(Advisor, SaysWhatItHasChosen) {
   const auto has = [](const Simulator& simulator, const std::string& part) {
-    for (const std::string& line : simulator.advice()) {
-      if (line.find(part) != std::string::npos) return true;
+    for (const Advice& line : simulator.advice()) {
+      if (line.text.find(part) != std::string::npos) return true;
     }
     return false;
   };
@@ -82,8 +82,9 @@ TEST(Advisor, SaysWhatItHasChosen) {
   EXPECT_EQ(plain.advice().size(), 6U);
   // The shorter triangles are those of two sides, (6.67 + 5 + 8.33) / 3 mm: 0.5 (6.67 / 5)^1.8.
   EXPECT_TRUE(has(plain,
-                  "mesh of tissue 'slab': as it is, surface edges from 6.7 mm; forces on shapes of 5 mm half extent, "
-                  "pressed in by most of that, likely off by some 84 %: smaller cells help"));
+                  "mesh of tissue 'slab': as it is, cells of 6.7 mm (its shorter surface edges), under shapes of 5 mm "
+                  "half extent (a ball's radius): expect forces to be too large by some 84 % when pressed in by most "
+                  "of that; smaller cells help"));
   EXPECT_TRUE(
       has(plain, "sleep: nodes at rest away from contacts are left out while holding them takes at most 0.1 %"));
   EXPECT_TRUE(has(plain, "'slab': corotational always"));
@@ -97,6 +98,27 @@ TEST(Advisor, SaysWhatItHasChosen) {
   EXPECT_TRUE(has(other, "looked for in every step, as advisor.self_contact asks"));
   EXPECT_TRUE(has(other, "solved as if it depended on direction"));
   EXPECT_TRUE(has(makeSlab("sleep: auto", "static: 0"), "nothing tangential is computed"));
+}
+
+/// Warnings among the advice on a block of such cells under a ball of 5 mm.
+std::vector<std::string> warningsOn(const std::string& cells) {
+  const Simulator simulator =
+      makeSimulator(blockScene("[0.04, 0.04, 0.02]", cells, "poissons_ratio: 0.4") + onlyBall("[0, 0, 0.0251]"),
+                    {{"probe", probeUrdf(0.005)}});
+  std::vector<std::string> warnings;
+  for (const Advice& advice : simulator.advice()) {
+    if (advice.is_warning) warnings.push_back(advice.text);
+  }
+  return warnings;
+}
+
+TEST(Advisor, WarnsOfCellsTooCoarseForWhatTouches) {
+  const std::vector<std::string> warnings = warningsOn("[4, 4, 2]");  // of 10 mm
+  ASSERT_EQ(warnings.size(), 1U);
+  for (const char* part : {"'block'", " mm (its shorter surface edges), under shapes of 5 mm half extent", "% when"}) {
+    EXPECT_NE(warnings[0].find(part), std::string::npos) << warnings[0];
+  }
+  EXPECT_TRUE(warningsOn("[10, 10, 5]").empty());  // of 4 mm, 42 % expected
 }
 
 TEST(Advisor, RefusesWhatDoesNotGoTogether) {

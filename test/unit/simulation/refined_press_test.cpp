@@ -338,12 +338,13 @@ TEST(RefinedPress, OfTwoTissuesTheOneWithTheLongestCellsIsTold) {
 }
 
 TEST(RefinedPress, AdviceSaysWhatWasChosen) {
-  const std::vector<std::string> lines = simulatorOf("auto").advice();
-  const auto about = std::find_if(lines.begin(), lines.end(), [](const std::string& line) {
-    return line.find("mesh of tissue 'block'") != std::string::npos;
+  const std::vector<Advice> lines = simulatorOf("auto").advice();
+  const auto about = std::find_if(lines.begin(), lines.end(), [](const Advice& line) {
+    return line.text.find("mesh of tissue 'block'") != std::string::npos;
   });
   ASSERT_NE(about, lines.end());
-  expectContains(*about, {"1.47 mm", "3000 nodes"});
+  expectContains(about->text, {"1.47 mm", "3000 nodes"});
+  EXPECT_FALSE(about->is_warning) << about->text;
 }
 
 }  // namespace

@@ -67,8 +67,8 @@ TEST_P(ViscoelasticPress, GoesFromTheModulusAtOnceToTheRelaxedOne) {
 }
 
 bool says(const Simulator& simulator, const std::string& text) {
-  for (const std::string& line : simulator.advice()) {
-    if (line.find(text) != std::string::npos) return true;
+  for (const Advice& line : simulator.advice()) {
+    if (line.text.find(text) != std::string::npos) return true;
   }
   return false;
 }
