@@ -26,8 +26,8 @@ void requireMagnitudes(const Eigen::Ref<const Eigen::MatrixXd>& values, const ch
     for (Eigen::Index i = 0; i < values.rows(); ++i) {
       if (std::abs(values(i, j)) <= kMost) continue;
       std::ostringstream text;
-      text << "contact problem: " << name << " has the entry " << values(i, j) << " in row " << i + 1
-           << ", column " << j + 1 << "; from -1e100 to 1e100 " << unit << " is allowed";
+      text << "contact problem: " << name << " has the entry " << values(i, j) << " in row " << i + 1 << ", column "
+           << j + 1 << "; from -1e100 to 1e100 " << unit << " is allowed";
       throw std::invalid_argument(text.str());
     }
   }
@@ -179,7 +179,8 @@ DelassusReport solveDelassus(const DelassusProblem& problem, const SolverDescrip
     default:
       report.iterations = solveBySweeps(problem, description, solution);
   }
-  if (!solution.r.allFinite() || !(problem.W * solution.r).allFinite()) {  // numbers whose quotients overflow: without an answer, but never NaN
+  if (!solution.r.allFinite() ||
+      !(problem.W * solution.r).allFinite()) {  // numbers whose quotients overflow: without an answer, but never NaN
     solution.r.setZero(problem.q.size());
     solution.u = problem.q;
     solution.states.assign(problem.laws.size(), ContactState::kOpen);
