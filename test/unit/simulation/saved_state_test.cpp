@@ -154,6 +154,11 @@ TEST_F(RefusedState, OfAnotherSceneWithTheReason) {
             std::string::npos);
   EXPECT_NE(refusalOf(state, {"refined", kPlain.material, "    refinement: auto\n"}).find("refined"),
             std::string::npos);
+  Simulator thicker_tool = makeSimulator(
+      blockScene("[0.06, 0.06, 0.02]", "[6, 6, 3]", kPlain.material) + onlyBall("[0.001, 0.002, 0.0251]") +
+          "friction: [{instrument: probe, tissue: block, " + kPlain.friction + "}]\n",
+      {{"probe", probeUrdf(0.006)}});
+  EXPECT_NE(refusal([&] { thicker_tool.restoreState(state); }).find("another model"), std::string::npos);
   Simulator without_tool = makeSimulator(blockScene() + "instruments: []\n");
   EXPECT_NE(refusal([&] { without_tool.restoreState(state); }).find("number of instruments"), std::string::npos);
 }
