@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""One job of a sweep, as Snakemake starts it: run_job.py JOB.json RESULTS.jsonl. Each result is on the disk when the next replay begins,
+"""One job of a sweep, as Snakemake starts it: run_job.py JOB.json RESULTS.jsonl. Each result is written when the next replay begins,
 in RESULTS.jsonl.part, so that nothing is lost when the job is killed; the name is given when all are there."""
 import json
 import os
@@ -16,7 +16,6 @@ def main(job_file, results_file):
         for result in run_all(job["program"], job["variants"], job["kept_folder"], log):
             results.write(json.dumps(result) + "\n")
             results.flush()
-            os.fsync(results.fileno())
     os.replace(results_file + ".part", results_file)
     os.remove(results_file + ".log")
 

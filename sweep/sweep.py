@@ -105,7 +105,7 @@ class Folder:
         self.path = path
         for name in ["jobs", "results", "csv"]:
             os.makedirs(os.path.join(path, name), exist_ok=True)
-        self._lock = open(os.path.join(path, ".lock"), "w", encoding="utf-8")  # until this process ends, however it ends
+        self._lock = open(os.path.join(path, ".lock"), "w", encoding="utf-8")  # Snakemake inherits it: held until that has ended too
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:

@@ -4,7 +4,7 @@ a finer simulation, recorded with noise, and fitted. Prints errors and how often
 (E), 15 % (damping) or .02 (friction), or fewer than nine of ten intervals hold it. doc/calibration.md has its
 figures.
 
-  benchmark/fitting/recovery.py --trials 10             some three minutes each
+  benchmark/fitting/recovery.py --trials 10             some 100 s each on two cores
   benchmark/fitting/recovery.py --same-mesh             data of the very model that fits them: what noise alone does
   benchmark/fitting/recovery.py --write-example FOLDER  press.csv, swing.csv, drag.csv, deeper.csv of config/calibration
 """

@@ -256,7 +256,7 @@ def _worst(values, largest):
 def _bag_messages(path, joint_names, joint_topics, force_topic):
     """({joint topic: [(stamp (s), {joint: position})]}, [(stamp (s), force)], all topics, frame of the forces)."""
     import rosbag  # here, since tables need no ROS
-    states, wrenches, frame = {}, [], ""
+    states, wrenches, frames = {}, [], set()
     try:
         with rosbag.Bag(path) as bag:
             info = bag.get_type_and_topic_info().topics
@@ -270,7 +270,8 @@ def _bag_messages(path, joint_names, joint_topics, force_topic):
             for topic, message, _ in bag.read_messages(list(joint_topics) + [force_topic]):
                 stamp = message.header.stamp.to_sec()
                 if topic == force_topic:
-                    force, frame = message.wrench.force, message.header.frame_id
+                    force = message.wrench.force
+                    frames.add(message.header.frame_id.lstrip("/"))
                     wrenches.append((stamp, (force.x, force.y, force.z)))
                 else:
                     states.setdefault(topic, []).append((stamp, {name: at for name, at in zip(message.name, message.position) if name in joint_names}))
@@ -278,7 +279,7 @@ def _bag_messages(path, joint_names, joint_topics, force_topic):
         raise
     except Exception as error:  # rosbag raises what its parts raise
         raise FitError("%s cannot be read as a bag: %s" % (path, error)) from error
-    return states, wrenches, sorted(topics), frame
+    return states, wrenches, sorted(topics), ", ".join(sorted(frames))
 
 
 def _joints_at(path, times, states, joint_names):

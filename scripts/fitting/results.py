@@ -49,11 +49,12 @@ def _quality(problem, answer, held_out):
 
 
 def _doubts(problem, answer, held_out):
-    """Sentences on what the simulator itself does not believe of the answer's runs."""
-    runs = [(run.recording.name, done.doubts) for run, done in zip(problem.runs, problem.forces([answer.point])[0])]
-    for name, doubts in runs + [(one.name, one.doubts) for one in held_out]:
+    """Sentences on what the simulator itself does not believe of the answer's runs and of those that predict."""
+    runs = [(run.recording.name, done.doubts, False) for run, done in zip(problem.runs, problem.forces([answer.point])[0])]
+    for name, doubts, coarse in runs + [(one.name, one.doubts, one.coarse) for one in held_out]:
         for field, steps in doubts.items():
-            yield "do not trust the forces of %s: in %d step%s %s" % (name, steps, "" if steps == 1 else "s", DOUBTS[field])
+            yield "do not trust the forces of %s%s: in %d step%s %s" % (
+                name, " by the scene without --finer" if coarse else "", steps, "" if steps == 1 else "s", DOUBTS[field])
 
 
 def _descents(costs):

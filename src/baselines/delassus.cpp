@@ -179,14 +179,14 @@ DelassusReport solveDelassus(const DelassusProblem& problem, const SolverDescrip
     default:
       report.iterations = solveBySweeps(problem, description, solution);
   }
-  if (!solution.r.allFinite() ||
-      !(problem.W * solution.r).allFinite()) {  // numbers whose quotients overflow: without an answer, but never NaN
+  report.overflowed = !solution.r.allFinite() || !(problem.W * solution.r).allFinite();
+  if (report.overflowed) {
     solution.r.setZero(problem.q.size());
     solution.u = problem.q;
     solution.states.assign(problem.laws.size(), ContactState::kOpen);
   }
   report.residuals = computeResiduals(problem, solution.r);
-  report.converged = report.residuals.scaled_natural_map <= tolerance;
+  report.converged = !report.overflowed && report.residuals.scaled_natural_map <= tolerance;
   return report;
 }
 

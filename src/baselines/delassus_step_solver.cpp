@@ -14,7 +14,7 @@ class DelassusStepSolver : public ContactSolver {
   SolverReport solve(const ContactProblem& problem, ContactSolution& solution) override {
     try {
       return solveExactly(problem, solution);
-    } catch (const std::runtime_error&) {     // A is not positive definite
+    } catch (const std::runtime_error&) {     // A is not positive definite, or numbers overflow
     } catch (const std::invalid_argument&) {  // values that are not finite, or too many contacts for the method
     }
     // A step without a solution, not the end of the run.
@@ -32,6 +32,7 @@ class DelassusStepSolver : public ContactSolver {
     report.stop = StopReason::kTolerance;
     if (count > 0) {
       const DelassusReport solved = solveDelassus(system.problem(), description_, answer);
+      if (solved.overflowed) throw std::runtime_error("no finite answer");
       report.iterations = solved.iterations;
       if (!solved.converged) report.stop = StopReason::kIterations;
     }

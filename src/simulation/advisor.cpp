@@ -107,7 +107,7 @@ Advice withExpectedError(const std::string& mesh, double under_smallest_m, doubl
                      " mm half extent (a ball's radius): expect forces to be off (mostly too large) by some " +
                      rangeText(100.0 * least, 100.0 * most);
   if (under_smallest_m > kCompared * shapes.smallest_m) text += " (or more)";
-  text += " % when pressed in by most of that";
+  text += " % when pressed in by most of a half extent";
   if (most > kWorthAWord) text += "; smaller cells help (tissues[].refinement)";
   return {text, least > kWorthAWarning};  // a tool's small parts seldom carry the force
 }

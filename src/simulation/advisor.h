@@ -26,7 +26,8 @@ bool advisedSleepByParts(const Scene& scene);
 /// @param meshes about each tissue, with an empty text: nothing.
 std::vector<Advice> adviceLines(const Scene& scene, const FoldWatch& folds, const std::vector<Advice>& meshes);
 
-/// What the mesh of a volume is, and what it is likely to do to the forces of the instruments' shapes: a warning where even the largest shape meets coarse cells.
+/// What the mesh of a volume is, and what it is likely to do to the forces of the instruments' shapes: a warning where
+/// even the largest shape meets coarse cells.
 /// @param edge_m of the shorter triangles of the surface.
 Advice meshLine(const Tissue& tissue, double edge_m, const HalfExtents& shapes);
 

@@ -199,7 +199,7 @@ class Live(harness.TestCase):
     def test_the_lag_follows_a_bound_that_is_changed(self):
         cost = self.step_cost()
         bound = max(0.02, 10.0 * cost)
-        with harness.node(self.scene(MAX_STEP_S=max(2e-5, 0.1 * cost), MAX_LAG_S=bound)):  # ten times the work the machine can do
+        with harness.node(self.scene(MAX_STEP_S=max(2e-5, 0.1 * cost), MAX_LAG_S=bound)):  # more work than the machine can do
             statuses = harness.Listener("/tissue_contact/status", Status)
             set_parameters = rospy.ServiceProxy(harness.NODE + "/set_parameters", Reconfigure)
             driver = faults.Driver(500.0, press_at)
@@ -208,14 +208,15 @@ class Live(harness.TestCase):
                 for now in [bound, 10.0 * bound, bound]:
                     set_parameters(Config(doubles=[DoubleParameter("step/max_lag_s", now)]))
                     seen = len(statuses.messages) + 5  # those on the way
-                    lags.append([s.lag for s in statuses.wait(lambda all, n=seen: len(all) > n + 20, "statuses")[seen:]])
+                    lags.append([s.lag for s in statuses.wait(lambda all, n=seen: len(all) > n + 150, "statuses")[seen:]])
             finally:
                 driver.stop()
         print("bound %.3f s: lags %s" % (bound, lags))
         tight, loose, tight_again = [statistics.median(part) for part in lags]
-        self.assertLess(tight, bound)
-        self.assertGreater(loose, bound)  # of ten it aims at half
-        self.assertLess(tight_again, bound)
+        # Of a bound the node aims at half; others may use the processor too.
+        self.assertGreater(loose, bound)
+        self.assertLess(tight, 0.5 * loose)
+        self.assertLess(tight_again, 0.5 * loose)
 
     def test_what_falls_far_behind_is_an_error(self):
         """Every state at 500 Hz, of which each costs four steps of a mesh far too fine for that."""

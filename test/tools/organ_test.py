@@ -110,6 +110,7 @@ class OrganTest(unittest.TestCase):
             commands = [line.strip() for line in stream if line.startswith("    rosrun ")]
         self.assertEqual(len(commands), 2, commands)
         self.write("Liver.stl", stl(*ball()))
+        self.assertIn("rate:=0.25", commands[1])
         commands[1] = commands[1].replace("rate:=0.25", "rate:=1 rviz:=false")
         environment = dict(os.environ, XDG_CACHE_HOME=self.folder, ROS_HOME=self.folder, ROS_HOSTNAME="localhost")
         for command in commands:

@@ -5,6 +5,7 @@ usage: sweep_test.py SOURCE_DIRECTORY PROGRAM_DIRECTORY      (in the environment
 """
 import csv
 import hashlib
+import math
 import os
 import shutil
 import signal
@@ -61,7 +62,6 @@ class StudyTest(unittest.TestCase):
     def test_a_latin_hypercube_has_one_sample_in_each_part_of_each_range(self):
         text = "latin_hypercube: {samples: 20, seed: %d, ranges: {a: {from: 1, to: 3}, b: {from: 1, to: 1e4, spacing: log}}}\n"
         points = [[float(value) for _, value in one.settings] for one in self.study(text % 7).variants()]
-        import math
         self.assertEqual(sorted(int((a - 1) / 2 * 20) for a, _ in points), list(range(20)))
         self.assertEqual(sorted(int(math.log10(b) / 4 * 20) for _, b in points), list(range(20)))
         self.assertEqual(points, [[float(value) for _, value in one.settings] for one in self.study(text % 7).variants()])
@@ -111,7 +111,6 @@ class MeasuresTest(unittest.TestCase):
 
 class JobsTest(unittest.TestCase):
     def test_no_study_becomes_more_jobs_than_a_cluster_takes(self):
-        import math
         from sweep import per_job
         for variants in (1, 9, 1000, 100000, 1000000):
             for wanted in (None, 1, 7, 2000):

@@ -51,13 +51,13 @@ DelassusResiduals computeResiduals(const DelassusProblem& problem, const VectorX
 
 struct DelassusReport {
   int iterations = 0;
-  bool converged = false;  ///< the scaled natural map met the tolerance
+  bool converged = false;   ///< the scaled natural map met the tolerance
+  bool overflowed = false;  ///< on the way to an answer: r = 0 then, all open, and not converged
   DelassusResiduals residuals;
 };
 
 /// Solves a Delassus problem by the method of the description (all but kImpulse, which needs a step; relaxation does
 /// not matter here, W is exact). `tolerance` is that of the scaled natural map.
-/// Where the numbers overflow on the way, the answer is r = 0, and the report says that it does not meet the tolerance.
 /// @throws std::invalid_argument for a method that does not apply, sizes that do not match, entries of W or q that are not
 /// finite or beyond 1e100.
 DelassusReport solveDelassus(const DelassusProblem& problem, const SolverDescription& description,

@@ -243,6 +243,9 @@ TEST(SolveDelassus, NumbersThatOverflowGiveNoAnswerAndNoNan) {
     EXPECT_FALSE(report.converged) << solverMethodName(method);
     EXPECT_EQ(solution.r, VectorX::Zero(3)) << solverMethodName(method);
     EXPECT_EQ(solution.u, problem.q) << solverMethodName(method);
+    if (report.overflowed) {
+      EXPECT_EQ(solution.states, std::vector<ContactState>{ContactState::kOpen});
+    }
   }
 }
 

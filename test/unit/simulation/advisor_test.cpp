@@ -85,7 +85,7 @@ TEST(Advisor, SaysWhatItHasChosen) {
       plain,
       "mesh of tissue 'slab': as it is, cells of 6.7 mm (its shorter surface edges), under shapes of 5 mm "
       "half extent (a ball's radius): expect forces to be off (mostly too large) by some 84 % when pressed in by most "
-      "of that; smaller cells help"));
+      "of a half extent; smaller cells help"));
   EXPECT_TRUE(
       has(plain, "sleep: nodes at rest away from contacts are left out while holding them takes at most 0.1 %"));
   EXPECT_TRUE(has(plain, "'slab': corotational always"));
@@ -101,11 +101,14 @@ TEST(Advisor, SaysWhatItHasChosen) {
   EXPECT_TRUE(has(makeSlab("sleep: auto", "static: 0"), "nothing tangential is computed"));
 }
 
-/// Warnings among the advice on a block of such cells under a ball of 5 mm.
-std::vector<std::string> warningsOn(const std::string& cells) {
-  const Simulator simulator =
-      makeSimulator(blockScene("[0.04, 0.04, 0.02]", cells, "poissons_ratio: 0.4") + onlyBall("[0, 0, 0.0251]"),
-                    {{"probe", probeUrdf(0.005)}});
+/// Warnings among the advice on a block of such cells under a ball of 5 mm, or other shapes.
+std::vector<std::string> warningsOn(const std::string& cells,
+                                    const std::string& shapes = "{sphere: {radius_m: 0.005}}") {
+  std::string tool = onlyBall("[0, 0, 0.0251]");
+  const std::string links = "contact_links: [tip]";
+  tool.replace(tool.find(links), links.size(), "contact_links: [{link: tip, shapes: [" + shapes + "]}]");
+  const Simulator simulator = makeSimulator(blockScene("[0.04, 0.04, 0.02]", cells, "poissons_ratio: 0.4") + tool,
+                                            {{"probe", probeUrdf(0.005)}});
   std::vector<std::string> warnings;
   for (const Advice& advice : simulator.advice()) {
     if (advice.is_warning) warnings.push_back(advice.text);
@@ -120,6 +123,9 @@ TEST(Advisor, WarnsOfCellsTooCoarseForWhatTouches) {
     EXPECT_NE(warnings[0].find(part), std::string::npos) << warnings[0];
   }
   EXPECT_TRUE(warningsOn("[10, 10, 5]").empty());  // of 4 mm, 42 % expected
+  // Small parts of a tool seldom carry the force: the largest shape decides.
+  EXPECT_TRUE(warningsOn("[10, 10, 5]", "{sphere: {radius_m: 0.005}}, {sphere: {radius_m: 0.001}}").empty());
+  EXPECT_EQ(warningsOn("[10, 10, 5]", "{sphere: {radius_m: 0.001}}").size(), 1U);
 }
 
 TEST(Advisor, RefusesWhatDoesNotGoTogether) {
