@@ -58,8 +58,7 @@ struct DelassusReport {
 
 /// Solves a Delassus problem by the method of the description (all but kImpulse, which needs a step; relaxation does
 /// not matter here, W is exact). `tolerance` is that of the scaled natural map.
-/// @throws std::invalid_argument for a method that does not apply, sizes that do not match, entries of W or q that are not
-/// finite or beyond 1e100.
+/// @throws std::invalid_argument for a method that does not apply, sizes that do not match, values that are not finite.
 DelassusReport solveDelassus(const DelassusProblem& problem, const SolverDescription& description,
                              DelassusSolution& solution);
 
