@@ -164,7 +164,7 @@ DelassusReport solveDelassus(const DelassusProblem& problem, const SolverDescrip
     default:
       report.iterations = solveBySweeps(problem, description, solution);
   }
-  report.overflowed = !solution.r.allFinite() || !(problem.W * solution.r).allFinite();
+  report.overflowed = !solution.r.allFinite() || !solution.u.allFinite();
   if (report.overflowed) {
     solution.r.setZero(problem.q.size());
     solution.u = problem.q;

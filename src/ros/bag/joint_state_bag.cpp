@@ -15,7 +15,6 @@ namespace {
 
 using sensor_msgs::JointState;
 
-
 /// Velocities and efforts, which no sample has, are only passed over.
 JointState readJointState(std::string_view data) {
   MessageReader reader(data);
