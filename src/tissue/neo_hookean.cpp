@@ -1,6 +1,5 @@
 #include "tissue/neo_hookean.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 
 #include "tissue/dilatation_patches.h"
 #include "tissue/neo_hookean_kernel.h"
+#include "tissue/neo_hookean_tangent.h"
 #include "tissue/tet_elements.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
 
@@ -30,21 +30,6 @@ LameParameters shapeParameters(const MaterialDescription& material) {
 // the stiffness again would leave round-off behind that others notice.
 constexpr double kLargeDeformation = 30.0;
 
-/// Second derivative of psi in the frames U, V of F = U diag(sigma) V', without its negative eigenvalues: with
-/// X = U' dF V, dP = U Y V', Y_ii = sum_l stretch_il X_ll and, for i != j, Y_ij = direct_ij X_ij + crossed_ij X_ji.
-struct SpectralTangent {
-  Matrix3 U, V;
-  Matrix3 stretch;
-  Matrix3 direct, crossed;  ///< symmetric, diagonals unused
-};
-
-Matrix3 withoutNegativeEigenvalues(const Matrix3& symmetric) {
-  const double minor = symmetric(0, 0) * symmetric(1, 1) - symmetric(1, 0) * symmetric(1, 0);
-  if (symmetric(0, 0) > 0.0 && minor > 0.0 && symmetric.determinant() > 0.0) return symmetric;
-  const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(symmetric);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
-}
-
 /// What a patch adds to its elements.
 struct InPatch {
   double pressure = 0.0;      ///< to the factor of dJ/dF, Pa
@@ -52,62 +37,6 @@ struct InPatch {
 };
 
 InPatch inPatch(const TetElement& element, double pressure) { return {pressure, kFlatModulus * element.lame.mu}; }
-
-SpectralTangent spectralTangent(const Matrix3& F, const LameParameters& material, const InPatch& patch) {
-  // F = R S = (R V) diag(sigma) V', R a proper rotation: J = product of sigma carries the sign of det F.
-  const Matrix3 R = nearestRotation(F, Quaternion::Identity()).toRotationMatrix();
-  const Matrix3 S = R.transpose() * F;
-  const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(0.5 * (S + S.transpose()));
-  const Vector3& sigma = eigen.eigenvalues();
-  SpectralTangent tangent;
-  tangent.V = eigen.eigenvectors();
-  tangent.U = R * tangent.V;
-  const double I = sigma.squaredNorm();
-  const double along_F = material.mu - material.mu / (I + 1.0);
-  const double J = sigma.prod();
-  const double flat = J < kFlat ? patch.flat_modulus : 0.0;
-  const double along_C = material.lambda * (J - 1.0) - 0.75 * material.mu + flat * (J - kFlat) + patch.pressure;
-  const Vector3 cofactors(sigma[1] * sigma[2], sigma[2] * sigma[0], sigma[0] * sigma[1]);
-  tangent.stretch = 2.0 * material.mu / ((I + 1.0) * (I + 1.0)) * sigma * sigma.transpose() +
-                    (material.lambda + flat) * cofactors * cofactors.transpose();
-  tangent.stretch.diagonal().array() += along_F;
-  for (int k = 0; k < 3; ++k) {
-    const int i = (k + 1) % 3;
-    const int j = (k + 2) % 3;
-    tangent.stretch(i, j) += along_C * sigma[k];
-    tangent.stretch(j, i) += along_C * sigma[k];
-    const double twist = std::max(0.0, along_F + along_C * sigma[k]);
-    const double flip = std::max(0.0, along_F - along_C * sigma[k]);
-    tangent.direct(i, j) = tangent.direct(j, i) = 0.5 * (flip + twist);
-    tangent.crossed(i, j) = tangent.crossed(j, i) = 0.5 * (flip - twist);
-  }
-  tangent.stretch = withoutNegativeEigenvalues(tangent.stretch);
-  return tangent;
-}
-
-void addStiffness(const TetElements& tets, std::size_t e, const Matrix3& F, const InPatch& patch, double sign,
-                  Elasticity::State& state) {
-  const TetElement& element = tets.elements[e];
-  const SpectralTangent tangent = spectralTangent(F, element.lame, patch);
-  const Eigen::Matrix<double, 3, 4> b = tangent.V.transpose() * tets.shapeGradients(e);
-  const double volume = sign * element.volume;
-  for (int n = 0; n < 4; ++n) {
-    for (int m = n; m < 4; ++m) {
-      if (element.slots(n, m) < 0) continue;
-      Matrix3 inner;
-      for (int i = 0; i < 3; ++i) {
-        const int j = (i + 1) % 3;
-        const int k = (i + 2) % 3;
-        inner(i, i) = tangent.stretch(i, i) * b(i, n) * b(i, m) + tangent.direct(i, j) * b(j, n) * b(j, m) +
-                      tangent.direct(i, k) * b(k, n) * b(k, m);
-        inner(i, j) = tangent.stretch(i, j) * b(i, n) * b(j, m) + tangent.crossed(i, j) * b(j, n) * b(i, m);
-        inner(j, i) = tangent.stretch(i, j) * b(j, n) * b(i, m) + tangent.crossed(i, j) * b(i, n) * b(j, m);
-      }
-      const Matrix3 block = volume * tangent.U * inner * tangent.U.transpose();
-      addBlock(n == m, element.slots(n, m), block, element.damping_s, state.stiffness, state.damping);
-    }
-  }
-}
 
 /// dJ/dF.
 Matrix3 cofactors(const Matrix3& F) {
@@ -121,6 +50,70 @@ Matrix3 matrixInLane(const MatrixBatch& batch, std::size_t lane) {
   for (std::size_t i = 0; i < 9; ++i) matrix.data()[i] = batch[i][lane];
   return matrix;
 }
+
+/// Adds shares of elements to the stiffness, in the order in which they are given, four computed at a time.
+class ElementStiffness {
+ public:
+  ElementStiffness(const TetElements& tets, Elasticity::State& state) : tets_(tets), state_(state) {}
+
+  /// @param F of all elements. @param sign -1: takes the share out.
+  void add(std::size_t e, const std::vector<MatrixBatch>& F, const InPatch& patch, double sign) {
+    const TetElement& element = tets_.elements[e];
+    const std::size_t batch = e / kLanes;
+    const std::size_t lane = e % kLanes;
+    for (std::size_t i = 0; i < 9; ++i) {
+      lanes_.F[i][count_] = F[batch][i][lane];
+      lanes_.rest_inverse[i][count_] = tets_.batches[batch].rest_inverse[i][lane];
+    }
+    lanes_.volume[count_] = sign * element.volume;
+    lanes_.lambda[count_] = element.lame.lambda;
+    lanes_.mu[count_] = element.lame.mu;
+    lanes_.pressure[count_] = patch.pressure;
+    lanes_.flat_modulus[count_] = patch.flat_modulus;
+    elements_[count_++] = e;
+    if (count_ == kLanes) finish();
+  }
+
+  /// To be called at the end.
+  void finish() {
+    if (count_ == 0) return;
+    const unsigned char failed = computeTangents(lanes_);
+    for (std::size_t lane = 0; lane < count_; ++lane) {
+      addAll(elements_[lane], (failed >> lane & 1) != 0 ? simple(lane) : fast(lane));
+    }
+    count_ = 0;
+  }
+
+ private:
+  TangentBlocks fast(std::size_t lane) const {
+    TangentBlocks blocks;
+    for (std::size_t k = 0; k < kTangentBlocks; ++k) blocks[k] = matrixInLane(lanes_.blocks[k], lane);
+    return blocks;
+  }
+
+  TangentBlocks simple(std::size_t lane) const {
+    const LameParameters& material = tets_.elements[elements_[lane]].lame;
+    return tangentBlocks({matrixInLane(lanes_.F, lane), material, lanes_.pressure[lane], lanes_.flat_modulus[lane]},
+                         tets_.shapeGradients(elements_[lane]), lanes_.volume[lane]);
+  }
+
+  void addAll(std::size_t e, const TangentBlocks& blocks) {
+    const TetElement& element = tets_.elements[e];
+    std::size_t place = 0;
+    for (std::size_t n = 0; n < 4; ++n) {
+      for (std::size_t m = n; m < 4; ++m, ++place) {
+        const int slot = element.slots(n, m);
+        if (slot >= 0) addBlock(n == m, slot, blocks[place], element.damping_s, state_.stiffness, state_.damping);
+      }
+    }
+  }
+
+  const TetElements& tets_;
+  Elasticity::State& state_;
+  TangentLanes lanes_ = {};  // lanes that nobody fills have numbers, too
+  std::array<std::size_t, kLanes> elements_ = {};
+  std::size_t count_ = 0;
+};
 
 }  // namespace
 
@@ -220,12 +213,14 @@ void NeoHookean::forEachChanged(const std::vector<BatchRange>& ranges, const Def
 void NeoHookean::rebuildStiffness(DeformationState& state) const {
   state.stiffness.setZero();
   state.damping.setZero();
+  ElementStiffness elements(*tets_, state);
   for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
     InPatch patch;
     if (patches_)
       patch = inPatch(tets_->elements[e], state.tangent_pressures[patches_->of_batch[e / kLanes][e % kLanes]]);
-    addStiffness(*tets_, e, matrixInLane(state.tangent_deformations[e / kLanes], e % kLanes), patch, 1.0, state);
+    elements.add(e, state.tangent_deformations, patch, 1.0);
   }
+  elements.finish();
   for (std::size_t p = 0; patches_ && p < patches_->patches.size(); ++p) addPatchStiffness(p, 1.0, state);
 }
 
@@ -253,12 +248,14 @@ void NeoHookean::refreshStiffness(const std::vector<BatchRange>& ranges, Deforma
     cancels = cancels || matrixInLane(state.tangent_deformations[batch], lane).squaredNorm() > kLargeDeformation;
   });
   const bool rebuild = cancels || 2 * changes > tets_->elements.size();
+  ElementStiffness elements(*tets_, state);
   forEachChanged(ranges, state, [&](std::size_t batch, std::size_t lane) {
     const std::size_t e = batch * kLanes + lane;
-    if (!rebuild) addStiffness(*tets_, e, matrixInLane(state.tangent_deformations[batch], lane), {}, -1.0, state);
+    if (!rebuild) elements.add(e, state.tangent_deformations, {}, -1.0);
     for (std::size_t i = 0; i < 9; ++i) state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];
-    if (!rebuild) addStiffness(*tets_, e, matrixInLane(state.deformations[batch], lane), {}, 1.0, state);
+    if (!rebuild) elements.add(e, state.deformations, {}, 1.0);
   });
+  elements.finish();
   if (rebuild) rebuildStiffness(state);
 }
 
@@ -295,6 +292,7 @@ bool NeoHookean::rebuildsFor(const DeformationState& state) const {
 void NeoHookean::refreshPatches(DeformationState& state) const {
   const std::vector<DilatationPatches::Patch>& patches = patches_->patches;
   const bool rebuild = rebuildsFor(state);
+  ElementStiffness elements(*tets_, state);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     if (state.stale[p] == 0) continue;
     if (!rebuild) addPatchStiffness(p, -1.0, state);
@@ -302,18 +300,19 @@ void NeoHookean::refreshPatches(DeformationState& state) const {
       const std::size_t batch = member.element / kLanes;
       const std::size_t lane = member.element % kLanes;
       const TetElement& element = tets_->elements[member.element];
-      const auto add = [&](const MatrixBatch& F, double pressure, double sign) {
-        addStiffness(*tets_, member.element, matrixInLane(F, lane), inPatch(element, pressure), sign, state);
+      const auto add = [&](const std::vector<MatrixBatch>& F, double pressure, double sign) {
+        elements.add(member.element, F, inPatch(element, pressure), sign);
       };
-      if (!rebuild) add(state.tangent_deformations[batch], state.tangent_pressures[p], -1.0);
+      if (!rebuild) add(state.tangent_deformations, state.tangent_pressures[p], -1.0);
       for (std::size_t i = 0; i < 9; ++i)
         state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];
       state.changed[batch] &= static_cast<unsigned char>(~(1u << lane));
-      if (!rebuild) add(state.deformations[batch], state.pressures[p], 1.0);
+      if (!rebuild) add(state.deformations, state.pressures[p], 1.0);
     }
     state.tangent_pressures[p] = state.pressures[p];
     if (!rebuild) addPatchStiffness(p, 1.0, state);
   }
+  elements.finish();
   if (rebuild) rebuildStiffness(state);
 }
 
