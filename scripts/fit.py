@@ -46,6 +46,8 @@ def parse_arguments():
     parser.add_argument("--out", metavar="FOLDER", help="for the fitted scene, figures and plot")
     parser.add_argument("--instrument", help="whose motion and force were measured; needed where the scene has several")
     parser.add_argument("--force-topic", default="/force_sensor", help="of bags, WrenchStamped; default: %(default)s")
+    parser.add_argument("--pose-topic", metavar="TOPIC", help="of bags, PoseStamped or TransformStamped: poses of the scene's tip_link in its world, "
+                        "in place of joint states")
     parser.add_argument("--force-on", choices=["tool", "tissue"], default="tool", help="on what the measured force acts; default: %(default)s")
     parser.add_argument("--axes", choices=["world", "tip"], default="world", help="in which axes forces were measured; default: %(default)s")
     parser.add_argument("--approach", type=number(-1e6, 1e6), nargs=3, default=[0.0, 0.0, -1.0], metavar=("X", "Y", "Z"),
@@ -104,11 +106,21 @@ def require_each_once(paths):
                 raise FitError("%s is given twice, as --measured or --held-out; give each recording once" % path)
 
 
+def require_world(path, recording, world):
+    """Poses in other axes are of another place."""
+    from fitting import FitError, measured
+    if recording.pose_frame not in ("", world):
+        frame = measured.printable(recording.pose_frame)
+        raise FitError("%s: its poses are in frame '%s', the scene's world_frame is '%s'; if the scene's tissues are placed in '%s', set world_frame: %s in "
+                       "the scene; else turn the poses into the scene's world, and give them as a table" % (path, frame, world, frame, frame))
+
+
 def prepared(arguments, path, tool, topics, frames):
     """frames: {--axes: name of that frame}."""
     from fitting import measured
     windows = smoothing(arguments)
-    recording = measured.read(path, tool.recorded_names(), topics, arguments.force_topic)
+    recording = measured.read(path, tool.recorded_names(), topics, arguments.force_topic, arguments.pose_topic)
+    require_world(path, recording, frames["world"])
     recording = measured.smooth(measured.tare(recording, arguments.tare), windows.get(recording.name, windows[None]))
     recording = measured.thin(recording, arguments.rate)
     if recording.force_frame not in ("", frames[arguments.axes]):

@@ -74,7 +74,7 @@ class Tool:
         motion[:, :3] = numpy.linalg.solve(columns, (recording.positions_m - home[:3, 3]).T).T
         if recording.quaternions is not None:
             if len(zero) != 6:
-                raise FitError("%s: it has quaternions, but instrument '%s' has no joints to turn it: use urdf/indenter.urdf, or leave out qx, qy, qz, qw" %
+                raise FitError("%s: it has quaternions, but instrument '%s' has no joints to turn it: use urdf/indenter.urdf, or leave qx, qy, qz, qw out of a table" %
                                (recording.name, self.name))
             turned = numpy.stack([home[:3, :3].T @ rotation(q) for q in recording.quaternions])
             motion[:, 3] = numpy.unwrap(numpy.arctan2(turned[:, 1, 0], turned[:, 0, 0]))

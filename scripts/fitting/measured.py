@@ -35,6 +35,7 @@ class Recording:
     quaternions: numpy.ndarray = None  # x, y, z, w
     joints: dict = None  # recorded name -> positions, rad or m
     force_frame: str = ""  # as a bag names it
+    pose_frame: str = ""
 
     def measured(self):
         return [axis for axis in range(3) if not numpy.isnan(self.force_n[:, axis]).any()]
@@ -53,10 +54,10 @@ def name_of(path):
     return printable(os.path.splitext(os.path.basename(path))[0])
 
 
-def read(path, joint_names, joint_topics, force_topic):
-    """joint_names: as recorded; topics: of a bag."""
+def read(path, joint_names, joint_topics, force_topic, pose_topic=None):
+    """joint_names: as recorded; topics: of a bag, whose joint states are not looked at where it has a topic of poses."""
     is_bag = _beginning(path).startswith(b"#ROSBAG V")
-    recording = _read_bag(path, joint_names, joint_topics, force_topic) if is_bag else _read_table(path, joint_names)
+    recording = _read_bag(path, joint_names, joint_topics, force_topic, pose_topic) if is_bag else _read_table(path, joint_names)
     _require_plausible(path, recording)
     return recording
 
@@ -82,24 +83,24 @@ def _require_plausible(path, recording):
     if not numpy.ptp(force, axis=0).max() > 0.0:
         raise FitError("%s: the force is the same in every row (%s N); nothing can be fitted to it: is the sensor connected?" %
                        (path, ", ".join("%g" % one for one in force[0])))
-    _require_no_gap(path, recording.times_s)
+    require_no_gap(path, recording.times_s)
     duration = recording.times_s[-1] - recording.times_s[0]
     if not duration <= LONGEST_S:
         raise FitError("%s: it lasts %g s; up to %g s are allowed: cut it to the contact; times are in seconds" % (path, duration, LONGEST_S))
     if recording.positions_m is not None:
         span = numpy.ptp(recording.positions_m, axis=0)
         if not span.max() <= WIDEST_M:
-            raise FitError("%s: column '%s' spans %g m; up to %g m are allowed: positions are in metres; cut it to the contact" %
+            raise FitError("%s: '%s' spans %g m; up to %g m are allowed: positions are in metres; cut it to the contact" %
                            (path, POSITION[int(span.argmax())], span.max(), WIDEST_M))
 
 
-def _require_no_gap(path, times_s):
-    """The motion between samples is a spline, which swings where there are none."""
+def require_no_gap(path, times_s, where=""):
+    """The motion between samples is a spline, which swings where there are none, and forces there are made up."""
     intervals = numpy.diff(times_s)
     longest, usual = int(intervals.argmax()), float(numpy.median(intervals))
     if intervals[longest] > WIDEST_GAP * usual:
-        raise FitError("%s: nothing is recorded from %g to %g s; up to %g s are allowed, samples are usually %g s apart: cut it into two recordings, each of "
-                       "which begins off the tissue" % (path, times_s[longest], times_s[longest + 1], WIDEST_GAP * usual, usual))
+        raise FitError("%s: nothing is recorded%s from %g to %g s; up to %g s are allowed, samples are usually %g s apart: cut it into two recordings, each of "
+                       "which begins off the tissue" % (path, where, times_s[longest], times_s[longest + 1], WIDEST_GAP * usual, usual))
 
 
 def _without_flips(quaternions):
@@ -133,7 +134,7 @@ def _require_columns(path, names, joint_names):
     return joints
 
 
-def _largest(name):
+def limit_of(name):
     """Of a column's magnitude, and its unit with advice."""
     if name in POSITION:
         return FARTHEST_M, "m; positions are in metres"
@@ -149,7 +150,7 @@ def _number(path, line, name, text):
         value = float(text)
     except ValueError:
         value = math.nan
-    largest, unit = _largest(name)
+    largest, unit = limit_of(name)
     if not abs(value) <= largest:
         raise FitError("%s:%d: column '%s' is '%s'; a number from %g to %g %s" %
                        (path, line, name, text[:40], -largest, largest, unit))
@@ -216,86 +217,14 @@ def _require_unit_quaternions(path, columns):
     norms = numpy.sqrt(sum(columns[name] ** 2 for name in QUATERNION))
     worst = int(numpy.abs(norms - 1.0).argmax())
     if abs(norms[worst] - 1.0) > NORM_WITHIN:
-        raise FitError("%s: row %d: the quaternion's norm is %.4g; 1 within %g is allowed" % (path, worst + 1, norms[worst], NORM_WITHIN))
+        raise FitError("%s: sample %d: the quaternion's norm is %.4g; 1 within %g is allowed" % (path, worst + 1, norms[worst], NORM_WITHIN))
 
 
-def _read_bag(path, joint_names, joint_topics, force_topic):
-    """Joint states and wrenches by their stamps; the samples are the joint states of the first topic, and the force there is linear
-    between wrenches."""
-    if not joint_topics:
-        raise FitError("%s: the scene's instrument has no joint_state_topics; add the bag's topic of joint states" % path)
-    states, wrenches, topics, force_frame = _bag_messages(path, joint_names, joint_topics, force_topic)
-    for topic in list(joint_topics[:1]) + [force_topic]:
-        if not (wrenches if topic == force_topic else states.get(topic)):
-            raise FitError("%s has no messages on %s; its topics are: %s" % (path, topic, ", ".join(topics)))
-    for topic, messages in list(states.items()) + [(force_topic, wrenches)]:
-        times = numpy.array([message[0] for message in messages])
-        if not (numpy.diff(times) > 0.0).all():
-            at = int(numpy.argmin(numpy.diff(times) > 0.0))
-            raise FitError("%s: on %s the stamp %.6f s is not after %.6f s before it; correct header.stamp" %
-                           (path, topic, times[at + 1], times[at]))
-    force_times, forces = numpy.array([w[0] for w in wrenches]), numpy.array([w[1] for w in wrenches])
-    if not (numpy.abs(forces) <= LARGEST_N).all():
-        raise FitError("%s: on %s a force is %g N; from %g to %g N are allowed" % (path, force_topic, _worst(forces, LARGEST_N), -LARGEST_N, LARGEST_N))
-    times = numpy.array([state[0] for state in states[joint_topics[0]]])
-    times = times[(times >= force_times[0]) & (times <= force_times[-1])]
-    if not FEWEST_ROWS <= len(times) <= MOST_ROWS:
-        raise FitError("%s: %d joint states while forces were recorded; %d to %d are needed" % (path, len(times), FEWEST_ROWS, MOST_ROWS))
-    start = times[0]
-    return Recording(
-        name=name_of(path), times_s=times - start,
-        force_n=numpy.stack([numpy.interp(times, force_times, forces[:, axis]) for axis in range(3)], axis=1),
-        joints=_joints_at(path, times, states, joint_names), force_frame=force_frame)
-
-
-def _worst(values, largest):
-    """The first that is not a number of a magnitude up to `largest`."""
-    return values[~(numpy.abs(values) <= largest)].flat[0]
-
-
-def _bag_messages(path, joint_names, joint_topics, force_topic):
-    """({joint topic: [(stamp (s), {joint: position})]}, [(stamp (s), force)], all topics, frame of the forces)."""
-    import rosbag  # here, since tables need no ROS
-    states, wrenches, frames = {}, [], set()
-    try:
-        with rosbag.Bag(path) as bag:
-            info = bag.get_type_and_topic_info().topics
-            topics = {topic: one.msg_type for topic, one in info.items()}
-            for topic, kind in [(topic, "sensor_msgs/JointState") for topic in joint_topics] + [(force_topic, "geometry_msgs/WrenchStamped")]:
-                if topics.get(topic, kind) != kind:
-                    raise FitError("%s: %s has %s; %s is needed" % (path, topic, topics[topic], kind))
-                if topic in info and info[topic].message_count > MOST_ROWS:
-                    raise FitError("%s: %s has %d messages; up to %d are allowed; cut the bag with rosbag filter" %
-                                   (path, topic, info[topic].message_count, MOST_ROWS))
-            for topic, message, _ in bag.read_messages(list(joint_topics) + [force_topic]):
-                stamp = message.header.stamp.to_sec()
-                if topic == force_topic:
-                    force = message.wrench.force
-                    frames.add(message.header.frame_id.lstrip("/"))
-                    wrenches.append((stamp, (force.x, force.y, force.z)))
-                else:
-                    states.setdefault(topic, []).append((stamp, {name: at for name, at in zip(message.name, message.position) if name in joint_names}))
-    except FitError:
-        raise
-    except Exception as error:  # rosbag raises what its parts raise
-        raise FitError("%s cannot be read as a bag: %s" % (path, error)) from error
-    return states, wrenches, sorted(topics), ", ".join(sorted(frames))
-
-
-def _joints_at(path, times, states, joint_names):
-    joints = {}
-    for topic, messages in states.items():
-        for name in joint_names:
-            samples = [(stamp, state[name]) for stamp, state in messages if name in state]
-            if samples:
-                at, positions = numpy.array(samples).T
-                joints[name] = numpy.interp(times, at, positions)
-                if not (numpy.abs(joints[name]) <= LARGEST_JOINT).all():
-                    raise FitError("%s: on %s joint '%s' is %g; from %g to %g rad or m are allowed" %
-                                   (path, topic, name, _worst(joints[name], LARGEST_JOINT), -LARGEST_JOINT, LARGEST_JOINT))
-    if not joints:
-        raise FitError("%s: no joint state names a joint of the scene; those are: %s" % (path, ", ".join(joint_names)))
-    return joints
+def _read_bag(path, joint_names, joint_topics, force_topic, pose_topic):
+    from fitting import bag  # here, since tables need no ROS
+    columns, force_frame, pose_frame = bag.columns(path, joint_names, joint_topics, force_topic, pose_topic)
+    recording = _recording(path, columns, [name for name in columns if name in joint_names])
+    return dataclasses.replace(recording, force_frame=force_frame, pose_frame=pose_frame)
 
 
 def tare(recording, time_s):

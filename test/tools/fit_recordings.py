@@ -1,6 +1,8 @@
 """What fit.py reads and refuses: tables and bags. Cases of fit_test.py, which runs them."""
 import math
 import os
+import pathlib
+import shutil
 import tempfile
 import tracemalloc
 import unittest
@@ -78,7 +80,7 @@ class TableTest(Folder):
                 (self.GOOD[:6], ["5 rows", "10 or more"]),
                 (["time_s,x_m,y_m,z_m,fz_n"] + ["%d,0,0,0,0" % i for i in range(12)], ["the force is the same in every row (0 N)"]),
                 (["time_s,x_m,y_m,z_m,qx,qy,qz,qw,fz_n"] + ["%d,0,0,0,0,0,0,%g,1" % (i, 0.9 if i == 7 else 1) for i in range(12)],
-                 ["row 8", "0.9", "norm"])]:
+                 ["sample 8", "0.9", "norm"])]:
             with self.subTest(words=words):
                 self.refused(words, self.read, lines)
         for path, why in [(self.folder, "not a file"), ("/dev/zero", "not a file"), (os.path.join(self.folder, "none"), "No such file")]:
@@ -145,9 +147,147 @@ class BagTest(Folder):
         self.refused(["10 to"], self.read, self.bag(5))
         self.refused(["no joint_state_topics"], measured.read, self.bag(), ["z"], [], "/force_sensor")
         self.refused(["the force is the same in every row"], self.read, self.bag(force=lambda i: 3.0))
-        self.refused(["on /force_sensor a force is nan N; from -1000 to 1000 N"], self.read, self.bag(force=lambda i: math.nan if i == 9 else 1.0))
+        self.refused(["on /force_sensor 'fz_n' is nan; a number from -1000 to 1000 N"], self.read, self.bag(force=lambda i: math.nan if i == 9 else 1.0))
         with open(self.bag(), "rb") as stream:
             content = stream.read()
         with open(os.path.join(self.folder, "cut.bag"), "wb") as stream:
             stream.write(content[:5000])
         self.refused(["cut.bag cannot be read as a bag"], self.read, os.path.join(self.folder, "cut.bag"))
+
+
+class PoseBagTest(Folder):
+    """Bags with poses of the tip in place of joint states."""
+
+    def bag(self, **changes):
+        """Two seconds of a tool that goes down and turns. changes: of each message, by its topic, a function of it and its number."""
+        import genpy
+        import rosbag
+        from geometry_msgs.msg import PoseStamped, WrenchStamped
+        path = os.path.join(self.folder, "m.bag")
+        with rosbag.Bag(path, "w") as bag:
+            for i in range(200):
+                at, angle = 10 + 0.01 * i, 0.005 * i
+                pose, wrench = PoseStamped(), WrenchStamped()
+                pose.header.frame_id = "room"
+                pose.pose.position.x, pose.pose.position.z = 0.02, -1e-5 * i
+                pose.pose.orientation.x, pose.pose.orientation.w = math.sin(0.5 * angle), math.cos(0.5 * angle)
+                wrench.wrench.force.z = 0.02 * i
+                for topic, message in (("cp", pose), ("force", wrench)):
+                    message.header.stamp = genpy.Time.from_sec(at)
+                    message = changes.get(topic, lambda message, number: message)(message, i)
+                    if message:
+                        bag.write("/" + topic, message, genpy.Time.from_sec(at))
+        return path
+
+    @staticmethod
+    def read(path, pose_topic="/cp", force_topic="/force"):
+        return measured.read(path, ["z"], ["/js"], force_topic, pose_topic)
+
+    @staticmethod
+    def poses(change):
+        """Changes of a bag: of its poses, in place."""
+        def changed(message, number):
+            change(message, number)
+            return message
+        return {"cp": changed}
+
+    @staticmethod
+    def as_transform(message, _):
+        from geometry_msgs.msg import TransformStamped
+        transform = TransformStamped(header=message.header)
+        for name in "xyz":
+            setattr(transform.transform.translation, name, getattr(message.pose.position, name))
+        transform.transform.rotation = message.pose.orientation
+        return transform
+
+    def test_poses_and_transforms_are_the_same_motion(self):
+        count = numpy.arange(200)
+        for path in (self.bag(), self.bag(cp=self.as_transform)):
+            recording = self.read(path)
+            self.assertIsNone(recording.joints)
+            self.assertEqual(recording.pose_frame, "room")
+            numpy.testing.assert_allclose(recording.positions_m, numpy.stack([0.02 + 0 * count, 0 * count, -1e-5 * count], axis=1), atol=1e-12)
+            numpy.testing.assert_allclose(recording.quaternions[:, 0], numpy.sin(0.0025 * count), atol=1e-12)
+            numpy.testing.assert_allclose(recording.force_n[:, 2], 0.02 * count, atol=1e-6)
+
+    def test_a_rotation_that_nobody_measured_is_none(self):
+        def zero(message, _):
+            message.pose.orientation.x = message.pose.orientation.w = 0.0
+        self.assertIsNone(self.read(self.bag(**self.poses(zero))).quaternions)
+
+    def test_refused(self):
+        def moved(change):
+            return lambda message, number: change(message.pose.position, number)
+
+        def turned(message, number):
+            message.pose.orientation.w *= 0.5 if number == 7 else 1.0
+
+        def framed(message, number):
+            message.header.frame_id = "camera" if number == 3 else "room"
+
+        def child(message, number):
+            transform = self.as_transform(message, number)
+            transform.child_frame_id = "left" if number % 2 else "right"
+            return transform
+
+        def late(message, _):
+            message.header.stamp.secs += 3
+            return message
+
+        def gone(message, number):
+            return None if 80 < number < 140 else message
+
+        for changes, words in [
+                (self.poses(moved(lambda position, i: setattr(position, "z", 145.0 if i == 9 else 0.0))), ["on /cp 'z_m' is 145", "-10 to 10 m", "metres"]),
+                (self.poses(moved(lambda position, i: setattr(position, "z", 3.5 * (i % 2)))), ["'z_m' spans 3.5 m", "up to 1 m", "metres"]),
+                (self.poses(moved(lambda position, i: setattr(position, "y", math.nan if i == 9 else 0.0))), ["on /cp 'y_m' is nan"]),
+                (self.poses(turned), ["sample 8", "norm"]),
+                (self.poses(framed), ["/cp has poses in several frames ('camera', 'room')", "one tool in one frame"]),
+                ({"cp": child}, ["/cp has poses of several tools ('left', 'right')"]),
+                ({"force": late}, ["the clocks of /cp and /force differ", "-3 s", "up to 0.2 s", "header.stamp"]),
+                ({"force": gone}, ["nothing is recorded on /force from 10.8 to 11.4 s", "up to 0.2 s"]),
+                ({"force": lambda *_: None}, ["no messages on /force", "/cp; none of them has geometry_msgs/WrenchStamped, which --force-topic takes"])]:
+            with self.subTest(words=words):
+                self.refused(words, self.read, self.bag(**changes))
+        self.refused(["no messages on /tip", "--pose-topic takes: /cp"], self.read, self.bag(), "/tip")
+        self.refused(["no messages on /js", "--pose-topic takes: /cp"], self.read, self.bag(), None)
+        self.refused(["no messages on /sensor", "--force-topic takes: /force"], self.read, self.bag(), "/cp", "/sensor")
+        self.refused(["/force has geometry_msgs/WrenchStamped; geometry_msgs/PoseStamped or geometry_msgs/TransformStamped is needed"],
+                     self.read, self.bag(), "/force", "/other")
+
+
+def shared(name):
+    """A file of the data that are not in the repository, or the test is skipped."""
+    folder = os.environ.get("TISSUE_CONTACT_SHARED_DATA") or pathlib.Path(__file__).resolve().parents[2] / ".." / "shared" / "data"
+    path = os.path.join(folder, name)
+    if not os.path.exists(path):
+        raise unittest.SkipTest("no recording at %s (TISSUE_CONTACT_SHARED_DATA)" % path)
+    return path
+
+
+class RobotBagTest(Folder):
+    """A dVRK's own recording: joint states and poses, no forces."""
+
+    def test_it_has_poses_and_no_forces(self):
+        robot = shared("dvrk/psm2_classic_motion.bag")
+        self.refused(["no messages on /force_sensor", "none of them has geometry_msgs/WrenchStamped"], measured.read, robot, [], [], "/force_sensor",
+                     "/PSM2/measured_cp")
+        self.refused(["no messages on /js", "--pose-topic takes: /PSM2/measured_cp, /PSM2/setpoint_cp"], measured.read, robot, ["yaw"], ["/js"],
+                     "/force_sensor")
+
+    def test_its_poses_with_forces_beside_them(self):
+        import genpy
+        import rosbag
+        from geometry_msgs.msg import WrenchStamped
+        path, poses = os.path.join(self.folder, "robot.bag"), []
+        shutil.copy(shared("dvrk/psm2_classic_motion.bag"), path)
+        with rosbag.Bag(path, "a") as bag:
+            for _, message, recorded in bag.read_messages("/PSM2/measured_cp"):
+                poses.append(message.pose)
+                wrench = WrenchStamped()
+                wrench.header.stamp, wrench.wrench.force.z = message.header.stamp + genpy.Duration.from_sec(0.001), 1e-3 * len(poses)
+                bag.write("/force_sensor", wrench, recorded)
+        recording = measured.read(path, [], [], "/force_sensor", "/PSM2/measured_cp")
+        self.assertEqual((len(recording.times_s), recording.pose_frame), (len(poses) - 1, "ECM"))  # the first pose is before the first force
+        numpy.testing.assert_array_equal(recording.positions_m, [[one.position.x, one.position.y, one.position.z] for one in poses[1:]])
+        numpy.testing.assert_allclose(numpy.abs(recording.quaternions[:, 3]), [abs(one.orientation.w) for one in poses[1:]])

@@ -7,6 +7,7 @@ import hashlib
 import os
 import subprocess
 import sys
+import tempfile
 import unittest
 import warnings
 
@@ -19,7 +20,7 @@ for folder in (os.path.join(SOURCE, "scripts"), os.path.join(SOURCE, "benchmark"
     sys.path.insert(0, folder)
 
 import phantom_study as study  # noqa: E402 (the paths come first)
-from fit_recordings import BagTest, Folder, TableTest  # noqa: E402, F401 (unittest runs them from here)
+from fit_recordings import BagTest, Folder, PoseBagTest, RobotBagTest, TableTest  # noqa: E402, F401 (unittest runs them from here)
 from fitting import fitted_scene, forward, measured, parameters, solve, uncertainty  # noqa: E402
 
 try:
@@ -216,17 +217,20 @@ class CommandTest(Folder):
 
     @staticmethod
     def write_bag(path, recording):
-        """Poses as joint states of urdf/indenter.urdf, forces as a sensor sends them."""
+        """Poses as such and as joint states of urdf/indenter.urdf, forces as a sensor sends them."""
         import genpy
         import rosbag
-        from geometry_msgs.msg import WrenchStamped
+        from geometry_msgs.msg import PoseStamped, WrenchStamped
         from sensor_msgs.msg import JointState
         with rosbag.Bag(path, "w") as bag:
             for time, position, force in zip(recording.times_s, recording.positions_m, recording.force_n):
                 state, wrench = JointState(name=["x", "y", "z"], position=list(position)), WrenchStamped()
+                pose = PoseStamped()
+                pose.header.frame_id, pose.pose.orientation.w = "world", 1.0
+                pose.pose.position.x, pose.pose.position.y, pose.pose.position.z = position
                 wrench.header.frame_id = "sensor"
                 wrench.wrench.force.x, wrench.wrench.force.y, wrench.wrench.force.z = force
-                for topic, message in (("/indenter/joint_states", state), ("/force_sensor", wrench)):
+                for topic, message in (("/indenter/joint_states", state), ("/indenter/measured_cp", pose), ("/force_sensor", wrench)):
                     message.header.stamp = genpy.Time.from_sec(10.0 + time)
                     bag.write(topic, message, message.header.stamp)
 
@@ -273,6 +277,23 @@ class CommandTest(Folder):
             self.assertLess(abs(found["value"] - true), within, found)
             self.assertLessEqual(found["interval_95"][0], true)
             self.assertGreaterEqual(found["interval_95"][1], true)
+
+    def found(self, *arguments, **more):
+        out = tempfile.mkdtemp(dir=self.folder)
+        done = self.fit(*arguments, "--out", out, **more)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        with open(os.path.join(out, "fit.yaml"), encoding="utf-8") as stream:
+            return [one["value"] for one in yaml.safe_load(stream)["parameters"]]
+
+    def test_poses_of_a_bag_are_its_joint_states(self):
+        arguments = ["--fit", "youngs_modulus_pa"]
+        by_joints = self.found(*arguments, recordings=["swing.bag"])
+        arguments += ["--pose-topic", "/indenter/measured_cp"]
+        numpy.testing.assert_allclose(self.found(*arguments, recordings=["swing.bag"]), by_joints, rtol=1e-4)
+        self.scene = self.write("elsewhere.yaml", fitted_scene.fitted_text(self.scene, {"world_frame": "room"}, self.folder, []))
+        done = self.fit(*arguments, recordings=["swing.bag"])
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn("swing.bag: its poses are in frame 'world', the scene's world_frame is 'room'", done.stdout)
 
     def test_workers_change_no_bit(self):
         hashes = set()
