@@ -88,7 +88,8 @@ class Inputs:
                 return None, result.get("error") or result["crashed"]
             with open(file, encoding="utf-8") as stream:
                 manifest = yaml.load(stream, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-        return fold(sorted((one["role"], one["sha256"]) for part in ("program", "inputs") for one in manifest[part] if one["role"] != "--bag")), None
+        files = sorted((one["role"], one["sha256"]) for part in ("program", "inputs") for one in manifest[part] if one["role"] != "--bag")
+        return fold(files, manifest["versions"].get("gmsh")), None
 
 
 def arguments_of(study, variant):

@@ -63,6 +63,7 @@ class ReplayOutputs(harness.TestCase):
         roles = [one["role"] for one in manifest["inputs"]]
         self.assertEqual(roles[:3], ["--bag", "--scene", "the scene's URDF"])
         self.assertEqual(len(manifest["program"]), 3)
+        self.assertNotIn("gmsh", manifest["versions"])  # it filled nothing
         with open(self.path("out.csv"), "rb") as stream:
             self.assertEqual([(one["role"], one["sha256"]) for one in manifest["results"]], [("--csv", hashlib.sha256(stream.read()).hexdigest())])
         check = [harness.program("check_manifest.py"), self.path("made.yaml")]

@@ -201,10 +201,11 @@ class FilesTest(unittest.TestCase):
     def test_ended_in_mid_replay(self):
         for number in [signal.SIGINT, signal.SIGTERM, signal.SIGKILL]:
             with self.subTest(signal=number):
-                self.write("out.csv")
+                for name in ["made.yaml", "out.csv"]:
+                    self.write(name)
                 dump = self.path("p.txt")
                 child = subprocess.Popen([program("tissue_contact_replay"), "--scene", self.scene, "--bag", self.long_bag,
-                                          "--csv", self.csv, "--dump-step", "5", "--dump-file", dump],
+                                          "--csv", self.csv, "--out", self.path("out.bag"), "--manifest", self.path("made.yaml"), "--dump-step", "5", "--dump-file", dump],
                                          stderr=subprocess.DEVNULL)
                 self.addCleanup(child.kill)
                 end = time.monotonic() + DEADLINE_S
@@ -212,9 +213,13 @@ class FilesTest(unittest.TestCase):
                     time.sleep(0.001)
                 child.send_signal(number)
                 self.assertNotEqual(child.wait(DEADLINE_S), 0)
-                self.assertEqual(self.read("out.csv"), BEFORE)
+                for name in ["made.yaml", "out.csv"]:
+                    self.assertEqual(self.read(name), BEFORE)
                 os.remove(dump)
-                self.assertEqual(os.listdir(self.directory), ["out.csv"])
+                part = [] if number == signal.SIGKILL else ["out.bag.partial"]  # so called, since it is one
+                self.assertEqual(sorted(os.listdir(self.directory)), ["made.yaml", *part, "out.csv"])
+                for name in part:
+                    os.remove(self.path(name))
 
     def test_json_of_validation(self):
         validate = [program("tissue_contact_validate"), "--case", "one-contact", "--json"]

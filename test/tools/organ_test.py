@@ -14,6 +14,8 @@ import sys
 import tempfile
 import unittest
 
+import yaml
+
 SOURCE, PROGRAMS = "", ""
 DEADLINE_S = 300.0
 RADIUS_MM, RINGS = 30.0, 24
@@ -78,10 +80,10 @@ class OrganTest(unittest.TestCase):
     def make(self, surface, *more):
         return run(sys.executable, os.path.join(SOURCE, "scripts", "make_scene.py"), surface, "--out", self.path("made"), *more)
 
-    def replay(self):
+    def replay(self, *more):
         """Forces (N), and what was said."""
         result = run(os.path.join(PROGRAMS, "tissue_contact_replay"), "--scene", self.path("made/scene.yaml"), "--bag",
-                     self.path("made/probe.bag"), "--csv", self.path("out.csv"), env=dict(os.environ, XDG_CACHE_HOME=self.folder))
+                     self.path("made/probe.bag"), "--csv", self.path("out.csv"), *more, env=dict(os.environ, XDG_CACHE_HOME=self.folder))
         self.assertEqual(result.returncode, 0, result.stdout)
         with open(self.path("out.csv"), newline="") as stream:
             return [math.hypot(*(float(row["force_%s_n" % axis]) for axis in "xyz")) for row in csv.DictReader(stream)], result.stdout
@@ -119,6 +121,24 @@ class OrganTest(unittest.TestCase):
         self.assertEqual(sorted(os.listdir(self.path("liver/plots"))), ["probe_force.png", "probe_friction.png"])
         forces = re.findall(r"^t .* force probe ([\d.]+) N", done.stdout, re.MULTILINE)  # one for each second
         self.assertGreater(max(map(float, forces), default=0.0), 0.0, done.stdout)
+
+    @unittest.skipUnless(shutil.which("gmsh"), "the program gmsh is not installed")
+    def test_a_manifest_has_every_mesh_and_what_filled_them(self):
+        surface = self.write("a.stl", stl(*ball()))
+        self.write("tool.stl", stl(*ball()))
+        self.assertEqual(self.make(surface, "--scale", 0.001, "--cell-size", 0.008).returncode, 0)
+        tool = "[{link: tip, shapes: [{mesh: {file: %s, scale: 1e-4}}]}]" % self.path("tool.stl")
+        self.replay("--set", "instruments.probe.contact_links=" + tool, "--manifest", self.path("made.yaml"))
+        with open(self.path("made.yaml"), encoding="utf-8") as stream:
+            manifest = yaml.safe_load(stream)
+        self.assertEqual(manifest["versions"]["gmsh"], run("gmsh", "--version").stdout.strip())
+        files = {one["role"]: one["file"] for one in manifest["inputs"]}
+        self.assertEqual((files["the scene's tissue mesh"], files["the scene's shape"]), (surface, self.path("tool.stl")))
+        check = [sys.executable, os.path.join(SOURCE, "scripts", "check_manifest.py"), self.path("made.yaml")]
+        self.assertIn("all as they were", run(*check).stdout)
+        for name in ("a.stl", "tool.stl"):
+            self.write(name, obj(*ball()))
+        self.assertEqual(run(*check).stdout.count(".stl: has another content"), 2)
 
     def test_units_are_asked_for(self):
         surface = self.write("a.stl", stl(*ball()))

@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 import unittest
+from unittest import mock
 
 SOURCE, PROGRAMS = "", ""
 DEADLINE_S = 600.0  # for a machine that has more to do
@@ -223,6 +224,27 @@ class SweepTest(unittest.TestCase):
         with open(self.path("press.yaml"), "a", encoding="utf-8") as stream:
             stream.write("# changed\n")
         self.assertIn("9 variants, 0 of them done before", self.sweep())
+
+    @unittest.skipUnless(shutil.which("gmsh"), "the program gmsh is not installed")
+    def test_another_gmsh_makes_other_meshes(self):
+        from organ_test import ball, stl
+        with open(self.path("ball.stl"), "wb") as stream:
+            stream.write(stl(*ball()))  # of 30 mm
+        with open(self.path("press.yaml"), encoding="utf-8") as stream:
+            text = stream.read()
+        block = "block: {size_m: [0.06, 0.06, 0.02], cells: [6, 6, 2]}"
+        self.assertIn(block, text)
+        with open(self.path("press.yaml"), "w", encoding="utf-8") as stream:
+            stream.write(text.replace(block, "mesh: {file: ball.stl, scale_m_per_unit: 0.001, cell_size_m: 0.02}\n    pose: {position_m: [0, 0, -0.01]}"))
+        self.write_study()
+        self.sweep()
+        self.assertIn("1 variants, 1 of them done before", self.sweep())
+        os.mkdir(self.path("bin"))
+        with open(self.path("bin", "gmsh"), "w", encoding="utf-8") as stream:
+            stream.write('#!/bin/sh\n[ "$1" = --version ] && echo 0.0.1 || exec %s "$@"\n' % shutil.which("gmsh"))
+        os.chmod(self.path("bin", "gmsh"), 0o755)
+        with mock.patch.dict(os.environ, PATH=self.path("bin") + os.pathsep + os.environ["PATH"]):
+            self.assertIn("1 variants, 0 of them done before", self.sweep())
 
     def test_verify_finds_another_answer(self):
         self.write_study(grid=dict(self.GRID))

@@ -20,6 +20,7 @@
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/read_file.h"
 #include "tissue_contact/core/text.h"
+#include "tissue_contact/mesh/gmsh_version.h"
 
 namespace tissue_contact {
 namespace {

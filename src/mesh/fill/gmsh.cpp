@@ -8,6 +8,7 @@
 #include "mesh/fill/run_program.h"
 #include "tissue_contact/core/read_file.h"
 #include "tissue_contact/core/text.h"
+#include "tissue_contact/mesh/gmsh_version.h"
 
 namespace tissue_contact {
 namespace {

@@ -16,10 +16,6 @@ struct FillOptions {
   double inside_cell_m = 0.0;  ///< and deep inside; not below the other
 };
 
-/// What `gmsh --version` says.
-/// @throws std::invalid_argument when there is none, with how to install it.
-std::string gmshVersion();
-
 /// The text of gmsh's instructions: the surface is cut into patches at edges sharper than `edge_angle` (degrees), which are flattened,
 /// meshed anew with triangles of the asked size, and filled.
 std::string gmshScript(const FillOptions& options, double edge_angle);

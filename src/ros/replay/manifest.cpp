@@ -60,7 +60,7 @@ void addTexts(YAML::Emitter& yaml, const char* key, const std::vector<std::strin
   yaml << YAML::EndSeq;
 }
 
-void addVersions(YAML::Emitter& yaml) {
+void addVersions(YAML::Emitter& yaml, const std::string& gmsh) {
   yaml << YAML::Key << "versions" << YAML::Value << YAML::BeginMap;
   const std::pair<const char*, const char*> versions[] = {{"tissue_contact", TISSUE_CONTACT_VERSION},
                                                           {"git", TISSUE_CONTACT_COMMIT},
@@ -74,6 +74,7 @@ void addVersions(YAML::Emitter& yaml) {
   for (const auto& [name, version] : versions) {
     yaml << YAML::Key << name << YAML::Value << YAML::DoubleQuoted << (*version == '\0' ? "unknown" : version);
   }
+  if (!gmsh.empty()) yaml << YAML::Key << "gmsh" << YAML::Value << YAML::DoubleQuoted << gmsh;
   yaml << YAML::EndMap;
 }
 
@@ -84,7 +85,7 @@ void writeManifest(std::ostream& out, const ReplayOptions& options, const Manife
   yaml << YAML::BeginMap << YAML::Key << "manifest" << YAML::Value << "tissue_contact_replay 1";
   addTexts(yaml, "arguments", options.arguments);
   addTexts(yaml, "set", options.settings);
-  addVersions(yaml);
+  addVersions(yaml, content.gmsh);
   addFiles(yaml, "program", programFiles());
   addFiles(yaml, "inputs", content.inputs);
   yaml << YAML::Key << "counts" << YAML::Value << YAML::BeginMap;

@@ -22,6 +22,7 @@ struct ManifestContent {
   std::vector<NamedFile> inputs;
   std::vector<Result> results;
   std::vector<std::pair<std::string, long>> counts;
+  std::string gmsh;  ///< version of what filled a mesh; empty: none was filled
 };
 
 /// @throws std::exception naming a file that cannot be read any more.

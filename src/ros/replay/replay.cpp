@@ -35,6 +35,7 @@
 #include "tissue_contact/baselines/delassus.h"
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/core/whole_file.h"
+#include "tissue_contact/mesh/gmsh_version.h"
 #include "tissue_contact/ros/environment.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 #include "tissue_contact/simulation/simulator.h"
@@ -166,6 +167,7 @@ class Replay {
   void describe() {
     ManifestContent content;
     content.inputs = inputFiles(options_, simulator_);
+    if (fillsMesh(simulator_.scene())) content.gmsh = gmshVersion();  // a kept mesh is of this version too
     if (table_) content.results.push_back({"--csv", options_.csv_file, table_->path()});
     if (recorder_) content.results.push_back({"--out", options_.out_file, recorder_->path()});
     for (int v = 0; v < kVerdictCount; ++v) {

@@ -1,5 +1,6 @@
 #include "ros/replay/replay_files.h"
 
+#include <algorithm>
 #include <string>
 #include <variant>
 #include <vector>
@@ -70,6 +71,13 @@ Scene loadReplayedScene(const ReplayOptions& options, PublishOptions& publish) {
 
 void requireModelsKept(const ReplayOptions& options, const Simulator& simulator) {
   requireFreeOutputs(outputsOf(options), modelFiles(simulator));
+}
+
+bool fillsMesh(const Scene& scene) {
+  return std::any_of(scene.tissues.begin(), scene.tissues.end(), [](const TissueDescription& tissue) {
+    const auto* mesh = std::get_if<MeshDescription>(&tissue.geometry);
+    return mesh != nullptr && mesh->cell_size_m != 0.0;
+  });
 }
 
 std::vector<NamedFile> inputFiles(const ReplayOptions& options, const Simulator& simulator) {

@@ -20,6 +20,9 @@ Scene loadReplayedScene(const ReplayOptions& options, PublishOptions& publish);
 /// The same for the meshes that the robot models name.
 void requireModelsKept(const ReplayOptions& options, const Simulator& simulator);
 
+/// Whether gmsh fills a surface for the scene.
+bool fillsMesh(const Scene& scene);
+
 /// All files that a replay reads, by role; paths that are not given are empty.
 std::vector<NamedFile> inputFiles(const ReplayOptions& options, const Simulator& simulator);
 
