@@ -136,6 +136,8 @@ def run_all(program, variants, kept_folder=None, log=subprocess.DEVNULL):
 def read_results(file):
     """{key: result} of a file of results; a last line that a kill cut off is none."""
     results = {}
+    if not os.path.exists(file):
+        file = file.removesuffix(".part")  # a job whose sweep was killed has ended meanwhile
     with open(file, encoding="utf-8") as stream:
         for line in stream:
             if not line.endswith("\n"):

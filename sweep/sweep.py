@@ -126,6 +126,14 @@ class Folder:
             results.update((key, one) for key, one in read_results(file).items() if "crashed" not in one)
         return results
 
+    def missing(self, study, keyed):
+        """[(key, variant)] of those that are not done, or whose CSV is to be kept and is not there. A refused one has none."""
+        results, kept = self.results(), set(os.listdir(self.file("csv")))
+
+        def is_done(key):
+            return key in results and (not study.keep_csv or "error" in results[key] or key + ".csv" in kept)
+        return [(key, variant) for key, variant in dict(keyed).items() if not is_done(key)]
+
     def crashes(self):
         return {key: one for file in self.result_files() for key, one in read_results(file).items() if "crashed" in one}
 
@@ -229,9 +237,9 @@ def cpu_seconds():
 
 
 def run(folder, study, options, keyed):
-    done = folder.results()
-    missing = [(key, variant) for key, variant in dict(keyed).items() if key not in done]
-    print("sweep: %d variants, %d of them done before" % (len(keyed), len(keyed) - sum(key not in done for key, _ in keyed)))
+    missing = folder.missing(study, keyed)
+    todo = {key for key, _ in missing}
+    print("sweep: %d variants, %d of them done before" % (len(keyed), sum(key not in todo for key, _ in keyed)))
     if options.shuffle is not None:
         random.Random(options.shuffle).shuffle(missing)
     if not missing:
@@ -239,8 +247,7 @@ def run(folder, study, options, keyed):
     jobs = plan(folder, study, options.program, missing, study.keep_csv)
     with Progress(folder, jobs, len(dict(keyed)) - len(missing), len(dict(keyed))):
         code = snakemake(folder, options.jobs, options.profile)
-    after = folder.results()
-    lost = [key for key, _ in missing if key not in after]
+    after, lost = folder.results(), [key for key, _ in folder.missing(study, missing)]
     if not lost:
         return len(jobs), sum(after[key]["cpu_time_s"] for key, _ in missing)
     crashes = folder.crashes()
@@ -291,9 +298,8 @@ def parse_arguments(arguments):
     return options
 
 
-def describe(study, keyed, done):
-    missing = sum(key not in done for key in dict(keyed))
-    print("sweep: %d variants, %d to be run" % (len(keyed), missing))
+def describe(folder, study, keyed):
+    print("sweep: %d variants, %d to be run" % (len(keyed), len(folder.missing(study, keyed))))
     for _, variant in keyed[:5]:
         print("  " + " ".join(arguments_of(study, variant)))
 
@@ -308,7 +314,7 @@ def main(arguments):
         inputs = Inputs(options.program, study)
         keyed = [(inputs.key(variant), variant) for variant in study.variants()]
         if options.dry_run:
-            return describe(study, keyed, folder.results())
+            return describe(folder, study, keyed)
         if options.verify is not None:
             return 0 if verify(folder, study, options, keyed) else 1
         costs = run(folder, study, options, keyed)

@@ -177,25 +177,96 @@ class SweepTest(unittest.TestCase):
         self.assertEqual([expected], [row["sha256"] for row in rows if row["tissues.block.material.youngs_modulus_pa"] == "8000" and
                                       row["friction.0.static"] == "0.9"])
 
-    def test_a_killed_sweep_goes_on_where_it_was(self):
+    def start_and_wait(self, until=15):
+        """A sweep of 120 variants, of which some are done."""
         grid = dict(self.GRID, **{"friction.0.static": {"from": 0.45, "to": 0.9, "count": 30}})
         self.write_study(grid=grid, variants_per_job=40)
         process = self.start("--jobs=2")
+        self.wait_until(lambda: self.finished() >= until or process.poll() is not None)
+        self.assertIsNone(process.poll(), "ended before it was killed")
+        return process
+
+    def wait_until(self, condition):
         deadline = time.monotonic() + DEADLINE_S
-        while self.finished() < 15:
+        while not condition():
             self.assertLess(time.monotonic(), deadline)
-            self.assertIsNone(process.poll(), "ended before it was killed")
             time.sleep(0.02)
-        process.send_signal(signal.SIGTERM)
-        self.assertIn("the same command goes on", process.communicate(timeout=DEADLINE_S)[0])
+
+    def goes_on(self):
+        """The same command does what is left, once, to the table of a sweep that nobody killed."""
         before = self.finished()
         self.assertTrue(15 <= before < 120, before)
-        output = self.sweep("--jobs=2")
-        self.assertRegex(output, "120 variants, [1-9][0-9]+ of them done before")
+        self.assertRegex(self.sweep("--jobs=2"), "120 variants, [1-9][0-9]+ of them done before")
         self.assertEqual(self.finished(), 120)  # none was run twice
         rows = self.table()
         self.sweep("--jobs=1", "--out", self.path("whole"))
         self.assertEqual(self.table("whole"), rows)
+
+    def test_a_killed_sweep_goes_on_where_it_was(self):
+        process = self.start_and_wait()
+        process.send_signal(signal.SIGTERM)
+        self.assertIn("the same command goes on", process.communicate(timeout=DEADLINE_S)[0])
+        self.goes_on()
+
+    @staticmethod
+    def engine_of(process):
+        """Snakemake's process, which leads a group with all jobs and replays."""
+        return int(subprocess.run(["ps", "-o", "pid=", "--ppid", str(process.pid)], check=True, stdout=subprocess.PIPE, timeout=DEADLINE_S).stdout)
+
+    def test_all_of_it_killed_at_once(self):
+        """As by an empty battery: SIGKILL, which nobody can answer."""
+        process = self.start_and_wait()
+        engine = self.engine_of(process)
+        process.kill()
+        os.killpg(engine, signal.SIGKILL)
+        process.communicate(timeout=DEADLINE_S)
+        self.assertFalse(os.path.exists(self.path("study", "table.csv")))
+        self.goes_on()
+
+    def test_what_a_killed_sweep_leaves_running_is_waited_for(self):
+        process = self.start_and_wait()
+        engine = self.engine_of(process)
+        os.killpg(engine, signal.SIGSTOP)  # so that it does not end before we look
+        self.addCleanup(self.end_group, engine)
+        process.kill()
+        process.communicate(timeout=DEADLINE_S)
+        self.assertIn("another sweep still runs in", self.sweep(code=1))
+        os.killpg(engine, signal.SIGCONT)
+        self.wait_until(lambda: self.finished() == 120)
+        self.wait_until(lambda: "another sweep still runs in" not in self.start("--dry-run").communicate(timeout=DEADLINE_S)[0])
+        self.assertIn("120 variants, 120 of them done before", self.sweep())
+        self.assertEqual(len(self.table()), 120)
+
+    @staticmethod
+    def end_group(group):
+        try:
+            os.killpg(group, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+
+    def test_jobs_whose_engine_was_killed_go_on_beside_the_next_sweep(self):
+        """Twice done is done: the same results."""
+        process = self.start_and_wait()
+        os.kill(self.engine_of(process), signal.SIGKILL)
+        self.assertIn("The same command tries them again", process.communicate(timeout=DEADLINE_S)[0])
+        self.sweep("--jobs=2")
+        rows = self.table()
+        self.sweep("--jobs=1", "--out", self.path("whole"))
+        self.assertEqual(self.table("whole"), rows)
+
+    def test_csv_files_are_kept_of_what_was_done_before_as_well(self):
+        self.write_study(grid={"friction.0.kinetic": [0.2, 0.3, 5.0]})
+        self.sweep()
+        rows = self.table()
+        self.assertEqual(os.listdir(self.path("study", "csv")), [])
+        self.write_study(grid={"friction.0.kinetic": [0.2, 0.3, 5.0]}, keep_csv=True)
+        self.assertIn("3 variants, 2 to be run", self.sweep("--dry-run"))
+        self.assertIn("3 variants, 1 of them done before", self.sweep())  # a refused one has no CSV
+        self.assertEqual(self.table(), rows)
+        for row in rows[:2]:
+            with open(self.path("study", "csv", row["key"] + ".csv"), "rb") as stream:
+                self.assertEqual(hashlib.sha256(stream.read()).hexdigest(), row["sha256"])
+        self.assertIn("3 variants, 3 of them done before", self.sweep())
 
     def finished(self):
         """Lines of results."""
