@@ -1,4 +1,5 @@
 """What came out of a sweep: one table, and pictures of it."""
+import contextlib
 import csv
 import math
 import os
@@ -10,6 +11,7 @@ from replays import MEASURES
 from whole_file import whole_file
 
 SHOWN = [("peak_force_n", "peak force, N"), ("impulse_n_s", "impulse, N s"), ("contact_time_s", "time in contact, s"), ("likely_error_n", "likely error, N")]
+TEXTS = ["key", "bag", "scene", "instrument", "sha256", "error"]
 MOST_KEYS = 4  # of a picture: more is read from the table
 
 
@@ -44,11 +46,16 @@ def write_table(folder, study, keyed, results):
 def write_parquet(table, file):
     """Where pyarrow is; Debian 12 has none."""
     try:
+        import pyarrow
         from pyarrow import csv as arrow_csv, parquet
-    except ImportError:
+    except ImportError as error:
+        print("sweep: no table.parquet, which takes pyarrow: %s (Debian 12 has no package of it)" % error)
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(file)  # of a table before this one
         return []
+    texts = arrow_csv.ConvertOptions(column_types={name: pyarrow.string() for name in TEXTS})  # a hash may look like a number
     with whole_file(file) as part:
-        parquet.write_table(arrow_csv.read_csv(table), part)
+        parquet.write_table(arrow_csv.read_csv(table, convert_options=texts), part)
     return [file]
 
 

@@ -142,13 +142,16 @@ class SweepTest(unittest.TestCase):
         with open(self.path("study.yaml"), "w", encoding="utf-8") as stream:
             yaml.safe_dump(good_study(**study), stream, sort_keys=False)
 
-    def start(self, *arguments):
+    def start(self, *arguments, path=None):
+        """path: a folder in which Python looks first."""
         environment = dict(os.environ, TISSUE_CONTACT_REPLAY=os.path.join(PROGRAMS, "tissue_contact_replay"))
+        if path:
+            environment["PYTHONPATH"] = os.pathsep.join([path, environment.get("PYTHONPATH", "")])
         return subprocess.Popen(["/usr/bin/python3", os.path.join(SOURCE, "sweep", "sweep.py"), self.path("study.yaml"), *arguments], env=environment,
                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
 
-    def sweep(self, *arguments, code=0):
-        process = self.start(*arguments)
+    def sweep(self, *arguments, code=0, path=None):
+        process = self.start(*arguments, path=path)
         output = process.communicate(timeout=DEADLINE_S)[0]
         self.assertEqual(process.returncode, code, output)
         return output
@@ -295,6 +298,36 @@ class SweepTest(unittest.TestCase):
         with open(self.path("press.yaml"), "a", encoding="utf-8") as stream:
             stream.write("# changed\n")
         self.assertIn("9 variants, 0 of them done before", self.sweep())
+
+    def test_without_pyarrow_there_is_a_line_and_the_same_table(self):
+        self.write_study(grid={"friction.0.kinetic": [0.2, 0.3]})
+        os.mkdir(self.path("without"))
+        with open(self.path("without", "pyarrow.py"), "w", encoding="utf-8") as stream:
+            stream.write("raise ImportError('it was left out')\n")
+        os.mkdir(self.path("study"))
+        with open(self.path("study", "table.parquet"), "w", encoding="utf-8") as stream:
+            stream.write("of an older table")
+        output = self.sweep(path=self.path("without"))
+        self.assertEqual(output.count("pyarrow"), 1, output)
+        self.assertIn("sweep: no table.parquet, which takes pyarrow: it was left out", output)
+        self.assertEqual(len(self.table()), 2)
+        self.assertFalse(os.path.exists(self.path("study", "table.parquet")))
+
+    def test_with_pyarrow_the_table_is_there_as_parquet(self):
+        try:
+            from pyarrow import parquet
+        except ImportError as error:
+            self.skipTest("Python has no pyarrow: %s" % error)
+        self.write_study(grid={"friction.0.kinetic": [0.2, 0.3, 5.0]})
+        self.sweep()
+        with open(self.path("study", "table.csv"), newline="", encoding="utf-8") as stream:
+            rows = list(csv.DictReader(stream))
+        table = parquet.read_table(self.path("study", "table.parquet")).to_pydict()
+        self.assertEqual(list(table), list(rows[0]))
+        for name in ("key", "sha256", "error"):
+            self.assertEqual(table[name], [row[name] for row in rows])
+        for name in ("friction.0.kinetic", "peak_force_n"):
+            self.assertEqual(table[name], [float(row[name]) if row[name] else None for row in rows])
 
     @unittest.skipUnless(shutil.which("gmsh"), "the program gmsh is not installed")
     def test_another_gmsh_makes_other_meshes(self):
