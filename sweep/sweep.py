@@ -31,6 +31,7 @@ from table import write_pictures, write_table
 MOST_JOBS = 4000  # of a run: a scheduler of a cluster bears some thousand
 LOG = "snakemake.log"
 WRONG_KEY = re.compile(r'unknown key|has no element|; it has no "|is no path of keys|would undo')
+NO_STATE = re.compile("no joint state of bag")  # was accepted: the first may be of another robot
 
 
 class SweepError(Exception):
@@ -79,10 +80,14 @@ class Inputs:
 
     def _ask(self, variant):
         """(hash, what is wrong)."""
+        found, problem = self._hash_by(variant, "1e-9")
+        return self._hash_by(variant, "1e9") if problem and NO_STATE.search(problem) else (found, problem)
+
+    def _hash_by(self, variant, duration_s):
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "manifest.yaml")
-            arguments = [one for one in arguments_of(self._study, variant) if not one.startswith("--duration")]
-            arguments += ["--duration=1e-9", "--manifest=" + file]
+            arguments = [one for one in arguments_of(self._study, variant) if not one.startswith(("--from", "--duration"))]
+            arguments += ["--duration=" + duration_s, "--manifest=" + file]
             result = next(run_all(self._program, [{"key": "first", "arguments": arguments}]))
             if "sha256" not in result:
                 return None, result.get("error") or result["crashed"]

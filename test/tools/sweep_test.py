@@ -299,6 +299,26 @@ class SweepTest(unittest.TestCase):
             stream.write("# changed\n")
         self.assertIn("9 variants, 0 of them done before", self.sweep())
 
+    def test_a_part_of_a_recording_may_begin_between_its_joint_states(self):
+        self.write_study(replay={"from_s": 0.015, "duration_s": 0.1})
+        self.sweep()
+        row, = self.table()
+        self.assertGreater(float(row["contact_time_s"]), 0.0)
+        self.assertEqual(row["error"], "")
+        self.write_study(replay={"from_s": 1000})
+        self.assertIn("1 variants were refused, the first: --from 1000", self.sweep())
+
+    def test_a_first_joint_state_of_another_robot_ends_no_sweep(self):
+        import harness
+        other = harness.joint_state(harness.rospy.Time(harness.START_S - 1), [0.0], ["gripper"])
+        samples = [(harness.TOPIC, harness.joint_state(*sample), sample[0]) for sample in harness.press(20)]
+        harness.write_messages(self.path("press.bag"), [(harness.TOPIC, other, other.header.stamp)] + samples)
+        self.write_study()
+        self.sweep()
+        self.assertGreater(float(self.table()[0]["contact_time_s"]), 0.0)
+        harness.write_messages(self.path("press.bag"), [(harness.TOPIC, other, other.header.stamp)])
+        self.assertIn("no joint state of bag '%s' was accepted" % self.path("press.bag"), self.sweep(code=1))
+
     def test_without_pyarrow_there_is_a_line_and_the_same_table(self):
         self.write_study(grid={"friction.0.kinetic": [0.2, 0.3]})
         os.mkdir(self.path("without"))
