@@ -31,7 +31,7 @@ from table import write_pictures, write_table
 MOST_JOBS = 4000  # of a run: a scheduler of a cluster bears some thousand
 LOG = "snakemake.log"
 WRONG_KEY = re.compile(r'unknown key|has no element|; it has no "|is no path of keys|would undo')
-NO_STATE = re.compile("no joint state of bag")  # was accepted: the first may be of another robot
+BAD_BAG = "bag '"  # of a problem: the bag's own, not the scene's
 
 
 class SweepError(Exception):
@@ -79,9 +79,15 @@ class Inputs:
         return self._scenes[chosen]
 
     def _ask(self, variant):
-        """(hash, what is wrong)."""
-        found, problem = self._hash_by(variant, "1e-9")
-        return self._hash_by(variant, "1e9") if problem and NO_STATE.search(problem) else (found, problem)
+        """(hash, what is wrong). By another bag where one is at fault: that is for the table. By all of it where its first joint state is, which may be
+        of another robot."""
+        first = None
+        for bag, duration_s in [(variant.bag, "1e-9"), (variant.bag, "1e9")] + [(bag, "1e-9") for bag in self._study.bags if bag != variant.bag]:
+            found, problem = self._hash_by(Variant(variant.scene, bag, variant.settings), duration_s)
+            if not problem or BAD_BAG not in problem:
+                return found, problem
+            first = first or problem
+        return None, first
 
     def _hash_by(self, variant, duration_s):
         with tempfile.TemporaryDirectory() as folder:

@@ -319,6 +319,18 @@ class SweepTest(unittest.TestCase):
         harness.write_messages(self.path("press.bag"), [(harness.TOPIC, other, other.header.stamp)])
         self.assertIn("no joint state of bag '%s' was accepted" % self.path("press.bag"), self.sweep(code=1))
 
+    def test_a_bag_that_cannot_be_read_is_for_the_table_wherever_it_stands(self):
+        with open(self.path("press.bag"), "rb") as stream:
+            content = stream.read()
+        with open(self.path("cut.bag"), "wb") as stream:
+            stream.write(content[:len(content) // 2])
+        for bags in (["cut.bag", "press.bag"], ["press.bag", "cut.bag"]):
+            self.write_study(bags=bags)
+            self.assertIn("1 variants were refused, the first: bag '%s': " % self.path("cut.bag"), self.sweep())
+            self.assertEqual([row["error"] == "" for row in self.table()], [bag == "press.bag" for bag in bags])
+        self.write_study(bags=["cut.bag"])
+        self.assertIn("sweep: %s: bag '%s': " % (self.path("study.yaml"), self.path("cut.bag")), self.sweep(code=1))
+
     def test_without_pyarrow_there_is_a_line_and_the_same_table(self):
         self.write_study(grid={"friction.0.kinetic": [0.2, 0.3]})
         os.mkdir(self.path("without"))
