@@ -99,7 +99,7 @@ class Tool:
 
     def _refuse(self, recording):
         raise FitError("%s: it has poses of the tip, which instrument '%s' cannot be put into: its joints (%s) must be the pose, x, y, z and "
-                       "perhaps yaw, pitch, roll, as in urdf/probe.urdf and urdf/indenter.urdf; or give its joints' columns instead" %
+                       "perhaps yaw, pitch, roll, as in urdf/probe.urdf and urdf/indenter.urdf; or give its joints instead (columns of a table, joint states of a bag)" %
                        (recording.name, self.name, ", ".join(self.joint_names)))
 
 

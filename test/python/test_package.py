@@ -80,3 +80,7 @@ def test_friction_table(tmp_path):
     rows = [[float(number) for number in line.split()] for line in run("friction_table.py", cwd=tmp_path).splitlines()[1:]]
     assert len(rows) > 5
     assert sorted(abs(got - measured) / measured for _, measured, got in rows)[len(rows) // 2] < 0.15
+    (tmp_path / "other.csv").write_text("load_n,mu\n1,2\n")
+    with pytest.raises(subprocess.CalledProcessError) as refused:
+        run("friction_table.py", "other.csv", cwd=tmp_path)
+    assert refused.value.stderr == "friction_table.py: other.csv is no table with the columns pressure_pa,coefficient\n"

@@ -339,7 +339,7 @@ class CommandTest(Folder):
         self.refused(["turned: it has quaternions", "urdf/indenter.urdf"], forward.Tool(probe, "probe", {}).motion, recording)
         arm = os.path.join(SOURCE, "config", "psm_palpation.yaml")
         name = parameters.SceneKeys(arm).instruments()[0]["name"]
-        self.refused(["poses of the tip", "give its joints' columns instead"], forward.Tool(arm, name, {}).motion, recording)
+        self.refused(["poses of the tip", "give its joints instead"], forward.Tool(arm, name, {}).motion, recording)
 
     def test_what_the_simulator_itself_doubts_is_told(self):
         os.rename(os.path.join(self.folder, "press.csv"), os.path.join(os.fsencode(self.folder), b"\xffpress.csv"))
