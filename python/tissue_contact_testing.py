@@ -12,6 +12,7 @@ Every wait has a deadline. In one process and without a ROS master, from C++: ti
 import contextlib
 import math
 import os
+import select
 import signal
 import socket
 import struct
@@ -30,6 +31,17 @@ DEADLINE_S = 60.0  # a machine may be busy with other tests
 HASH_START, HASH_FACTOR = 0xcbf29ce484222325, 0x100000001b3  # of ContentHash in C++
 
 
+def open_connections(topic):
+    """Of a rospy.Publisher or Subscriber, those over which messages may come. Its get_num_connections() also has a subscriber's before they
+    are made, and for half a second those of a node that has ended: taken for the next one's, what is sent over them comes nowhere."""
+    sockets = [one.socket for one in topic.impl.connections if one.local_endpoint[0] is not None]
+    made = {one.fileno() for one in sockets if one is not None} - {-1}
+    poll = select.poll()
+    for one in made:
+        poll.register(one, select.POLLRDHUP)
+    return len(made) - len(poll.poll(0))
+
+
 class TissueFixture:
     """All wrenches and states of a node from here on. The scene's publish.status_rate_hz must be that of the joint states or more."""
 
@@ -45,7 +57,7 @@ class TissueFixture:
                              for name in instruments]
         self._subscribers.append(self._subscribe(node + "/status", Status, self._statuses.append))
         for subscriber in self._subscribers:
-            self._wait(lambda one=subscriber: one.get_num_connections() > 0, "a publisher of " + subscriber.name)
+            self._wait(lambda one=subscriber: open_connections(one) > 0, "a publisher of " + subscriber.name)
         self._diagnostics = rospy.Subscriber("/diagnostics", DiagnosticArray, self._diagnose)
         self._name = node.strip("/")
 

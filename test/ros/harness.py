@@ -22,6 +22,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import TransformStamped, WrenchStamped
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
+from tissue_contact_testing import open_connections
 
 SLOWNESS = float(os.environ.get("TISSUE_CONTACT_SLOWNESS", "1"))  # of builds with sanitizers
 DEADLINE_S = 120.0 * SLOWNESS  # generous: the machine may be busy with other tests
@@ -103,7 +104,7 @@ class Listener:
         self._arrived = threading.Condition()
         self._subscriber = rospy.Subscriber(topic, message_type, self._take, tcp_nodelay=True)
         if connect:
-            wait_until(lambda: self._subscriber.get_num_connections() > 0, "a publisher of " + topic)
+            wait_until(lambda: open_connections(self._subscriber) > 0, "a publisher of " + topic)
 
     def _take(self, message):
         with self._arrived:
@@ -141,7 +142,7 @@ class JointSource:
         wait_until(self.is_heard, "a subscriber of " + topic)
 
     def is_heard(self):
-        return self._publisher.get_num_connections() > 0
+        return open_connections(self._publisher) > 0
 
     def send(self, stamp, positions, names=("x", "y", "z")):
         self._publisher.publish(joint_state(stamp, positions, names))

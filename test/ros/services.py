@@ -84,6 +84,7 @@ class Services(harness.TestCase):
             self.assertGreater(wrenches.messages[-1].wrench.force.z, 0.01)  # killed in contact
             process.send_signal(signal.SIGKILL)
             process.wait()
+            self.assertFalse(source.is_heard(), "the next node would be taken for there")
         with harness.node(harness.SCENE):
             wrenches = harness.wrenches()
             source = harness.JointSource()
