@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The node as a nodelet: alone and in a manager, unloaded and loaded again; the same wrenches as the node's, bit for bit."""
 import rospy
+from rosgraph_msgs.msg import Log
 
 import harness
 
@@ -29,11 +30,19 @@ class Nodelet(harness.TestCase):
         with nodelet("standalone", TYPE, "__name:=tissue_contact", "_scene:=" + harness.SCENE):
             self.assertEqual(self.press(), expected)
         rospy.set_param(harness.NODE + "/scene", harness.SCENE)
+        log = harness.Listener("/rosout", Log, connect=False)
         with nodelet("manager", "__name:=manager"):
             for _ in range(2):
                 with nodelet("load", TYPE, "manager", "__name:=tissue_contact"):
                     self.assertEqual(self.press(), expected)
+                    log.wait(lambda all: any(m.name == "/manager" for m in all), "the log of the manager")  # from the next load on, all of it
                 harness.wait_until(lambda: not self.source.is_heard(), "the end of its connection")  # or the next one's would be taken for there
+
+        advice = [m for m in log.wait(lambda all: any("all other pairs" in m.msg for m in all), "the advice, to its last line")
+                  if m.msg.startswith("advisor: ")]
+        # Cells of 10 mm under a ball of 5 mm: a warning. What was chosen is none.
+        self.assertEqual({m.level for m in advice if "mesh of tissue 'block'" in m.msg}, {Log.WARN})
+        self.assertEqual({m.level for m in advice if "mesh of" not in m.msg}, {Log.INFO})
 
     def test_a_bad_scene_is_told(self):
         with nodelet("standalone", TYPE, "__name:=tissue_contact", "_scene:=/missing.yaml") as process:
