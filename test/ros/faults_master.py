@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""The ROS master is killed, restarted, stopped: the node goes on, and whoever comes later finds it. On a master of its
-own, since rostest's must not be killed."""
+"""The ROS master is killed, restarted, stopped: the node and the output to a haptic device go on, and whoever comes later finds them. On a
+master of its own, since rostest's must not be killed."""
 import os
 import signal
 import subprocess
 import sys
+import time
 
 import rosgraph
 import rospy
@@ -33,10 +34,26 @@ class Master:
         self._process.wait()
 
 
-def registrations():
-    """What the master knows of the node: (kind, topic or service), and where its service is."""
+# A node and a device that were not there before: a wrench of 0.5 N until it is felt.
+NEW_HAND = """
+import rospy
+from geometry_msgs.msg import WrenchStamped
+rospy.init_node("new_hand")
+wrench = WrenchStamped()
+wrench.wrench.force.z = 0.5
+source = rospy.Publisher("/new/wrench", WrenchStamped, queue_size=1)
+felt = []
+rospy.Subscriber("/new/servo_cf", WrenchStamped, lambda message: felt.append(message.wrench.force.z))
+while 0.5 not in felt:
+    source.publish(wrench)
+    rospy.sleep(0.01)
+"""
+
+
+def registrations(node=harness.NODE):
+    """What the master knows of a node: (kind, topic or service), and where its services are."""
     master = rosgraph.Master("/test")
-    known = {(kind, name) for kind, entries in enumerate(master.getSystemState()) for name, nodes in entries if harness.NODE in nodes}
+    known = {(kind, name) for kind, entries in enumerate(master.getSystemState()) for name, nodes in entries if node in nodes}
     return known | {master.lookupService(name) for kind, name in known if kind == 2}
 
 
@@ -110,6 +127,24 @@ class FaultsMaster(harness.TestCase):
                 self.master.signal(signal.SIGCONT)
         self.assertEqual(counts["received"], len(samples))
         self.assertEqual(counts["wrenches"], len(samples))
+
+    def test_a_hand_finds_the_haptic_output_at_another_master(self):
+        with harness.running([harness.program("tissue_contact_haptics"), "wrench:=/new/wrench", "servo_cf:=/new/servo_cf"]) as haptics:
+            kinds = [(0, "/new/servo_cf"), (1, "/new/wrench"), (2, "/haptics/set_logger_level")]
+            harness.wait_until(lambda: set(kinds) <= registrations("/haptics"), "haptics, registered")
+            before = registrations("/haptics")
+            self.master.kill()
+            self.master.start()
+            harness.wait_until(lambda: registrations("/haptics") == before, "haptics, registered again")
+            subprocess.run([sys.executable, "-c", NEW_HAND], check=True, timeout=harness.DEADLINE_S)
+            self.master.signal(signal.SIGSTOP)
+            try:
+                haptics.send_signal(signal.SIGINT)
+                start = time.monotonic()
+                self.assertEqual(haptics.wait(harness.DEADLINE_S), 0, harness.output_of(haptics))
+                self.assertLess(time.monotonic() - start, harness.SLOWNESS)
+            finally:
+                self.master.signal(signal.SIGCONT)
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@
 
 #include "ros/conversions.h"
 #include "ros/haptics/haptic_output.h"
+#include "ros/node/master_watch.h"
 #include "ros/node/private_parameters.h"
 #include "ros/node/shutdown_guard.h"
 #include "ros/parameter.h"
@@ -109,7 +110,7 @@ void refuseUnknown(const ros::NodeHandle& node) {
                               ". Correct it where it is set, or remove it: rosparam delete");
 }
 
-/// Two threads: roscpp's takes wrenches, the main one publishes by the clock.
+/// Three threads: roscpp's takes wrenches, the main one publishes by the clock, MasterWatch's registers again.
 class Haptics {
  public:
   Haptics()
@@ -127,6 +128,7 @@ class Haptics {
         node_.subscribe("wrench", 1, &Haptics::take, this, ros::TransportHints().tcpNoDelay());
     ros::AsyncSpinner spinner(1);
     spinner.start();
+    master_.start({});
     const Clock::duration period =
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate_hz_));
     Clock::time_point next = Clock::now();
@@ -175,6 +177,7 @@ class Haptics {
   // Const once made.
   double rate_hz_;
   std::string frame_;
+  MasterWatch master_;
 };
 
 }  // namespace

@@ -51,8 +51,7 @@ class Registrar {
  public:
   struct NoAnswer {};
 
-  Registrar(const std::atomic<bool>& stop, const std::vector<std::string>& services)
-      : stop_(stop), services_(services) {}
+  Registrar(const std::atomic<bool>& stop, const std::set<std::string>& services) : stop_(stop), services_(services) {}
 
   std::vector<Topic> own(const std::string& method) {
     std::vector<Topic> topics;
@@ -82,7 +81,6 @@ class Registrar {
     ask(own_uri_, "publisherUpdate", update);
   }
 
-  /// Those that every node has: roscpp's, and ~get_loggers in its place (see logger_service.h).
   void services() {
     for (const std::string& name : services_) {
       if (!ros::ServiceManager::instance()->lookupServicePublication(name)) continue;
@@ -111,15 +109,16 @@ class Registrar {
   }
 
   const std::atomic<bool>& stop_;
-  const std::vector<std::string>& services_;
+  const std::set<std::string>& services_;
   const std::string node_ = ros::this_node::getName();
   const std::string own_uri_ = ros::XMLRPCManager::instance()->getServerURI();
 };
 
 }  // namespace
 
-void MasterWatch::start(std::vector<std::string> services) {
-  services_ = std::move(services);
+void MasterWatch::start(const std::vector<std::string>& services) {
+  services_ = {services.begin(), services.end()};
+  for (const char* name : {"/get_loggers", "/set_logger_level"}) services_.insert(ros::this_node::getName() + name);
   thread_ = std::thread([this] { run(); });
 }
 

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -27,8 +28,8 @@ class MasterWatch {
   MasterWatch(const MasterWatch&) = delete;
   MasterWatch& operator=(const MasterWatch&) = delete;
 
-  /// @param services names, from / on, of those that this node offers: roscpp does not tell.
-  void start(std::vector<std::string> services);
+  /// @param services names, from / on, of those that this program offers beside the two of every node: roscpp does not tell.
+  void start(const std::vector<std::string>& services);
   void stop();
 
   /// OK while the master knows this node, else WARN; how often it was lost. Any thread.
@@ -43,7 +44,7 @@ class MasterWatch {
   void noteAnswer(bool came);
   bool registerAgain();  ///< @return false: not all of it, to be tried again
 
-  std::vector<std::string> services_;
+  std::set<std::string> services_;
   std::thread thread_;
   std::atomic<bool> stop_{false};
 

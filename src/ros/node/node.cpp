@@ -151,8 +151,8 @@ void Node::start() {
   loggers_ = advertiseLoggers(private_node_);
   std::vector<std::string> services = services_.names();
   services.push_back(tuning_.serviceName());
-  for (const char* name : {"get_loggers", "set_logger_level"}) services.push_back(private_node_.resolveName(name));
-  master_.start(std::move(services));
+  services.push_back(loggers_.getService());  // of a nodelet, beside those of its manager
+  master_.start(services);
   diagnostics_thread_ = std::thread([this] { tellDiagnostics(); });
 }
 
