@@ -58,6 +58,7 @@ void setConstants(const MaterialPreset& preset, MaterialDescription& material) {
   material.youngs_modulus_pa = preset.youngs_modulus_pa;
   material.poissons_ratio = preset.poissons_ratio;
   material.density_kg_per_m3 = preset.density_kg_per_m3;
+  material.preset = &preset;
 }
 
 /// What the map gives of them.

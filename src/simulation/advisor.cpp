@@ -9,6 +9,7 @@
 #include "tissue_contact/simulation/simulator.h"
 #include "tissue_contact/tissue/element_materials.h"
 #include "tissue_contact/tissue/make_elasticity.h"
+#include "tissue_contact/tissue/material_preset.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 namespace tissue_contact {
@@ -56,6 +57,44 @@ std::string modelLine(const Scene& scene, const TissueDescription& tissue) {
     line << " always: rotations cost little beside the solver";
   }
   return line.str();
+}
+
+/// One constant, and where the scene has given another than the preset, both.
+void writeConstant(std::ostream& line, const char* name, double value, double of_preset, const char* unit) {
+  line << name << value << unit;
+  if (value != of_preset) line << " (as the scene says; by name " << of_preset << ")";
+}
+
+/// Of a material by name. @param damping_stiffness_s null where it is not the preset's to give.
+std::string presetLine(const std::string& owner, const MaterialDescription& material,
+                       const double* damping_stiffness_s) {
+  const MaterialPreset& preset = *material.preset;
+  std::ostringstream line;
+  line << "material of " << owner << ": " << preset.name;
+  writeConstant(line, ", E ", material.youngs_modulus_pa, preset.youngs_modulus_pa, " Pa");
+  if (preset.lowest_pa < preset.highest_pa) {
+    line << " (range of the source: " << preset.lowest_pa << " to " << preset.highest_pa << ")";
+  }
+  writeConstant(line, ", nu ", material.poissons_ratio, preset.poissons_ratio, "");
+  writeConstant(line, ", density ", material.density_kg_per_m3, preset.density_kg_per_m3, " kg/m^3");
+  if (damping_stiffness_s != nullptr) {
+    writeConstant(line, ", damping.stiffness_s ", *damping_stiffness_s, preset.damping_stiffness_s, " s");
+  }
+  line << "; " << preset.basis << "; source: " << preset.source;
+  return line.str();
+}
+
+/// Of a tissue and of those of its regions that name another.
+void addPresetLines(const TissueDescription& tissue, std::vector<Advice>& lines) {
+  const std::string owner = "tissue " + quoted(tissue.name);
+  if (tissue.material.preset != nullptr) {
+    lines.push_back({presetLine(owner, tissue.material, &tissue.damping.stiffness_s)});
+  }
+  for (const TissueRegion& region : tissue.regions) {
+    const MaterialPreset* preset = region.material.preset;
+    if (preset == nullptr || preset == tissue.material.preset) continue;
+    lines.push_back({presetLine("region " + quoted(region.name) + " of " + owner, region.material, nullptr)});
+  }
 }
 
 std::string pairLine(const Scene& scene, std::size_t pair, const FoldWatch& folds) {
@@ -175,6 +214,7 @@ std::string coarseCellsText(const Simulator& simulator) {
 std::vector<Advice> adviceLines(const Scene& scene, const FoldWatch& folds, const std::vector<Advice>& meshes) {
   std::vector<Advice> lines = {{sleepLine(scene)}};
   for (std::size_t t = 0; t < scene.tissues.size(); ++t) {
+    addPresetLines(scene.tissues[t], lines);
     lines.push_back({modelLine(scene, scene.tissues[t])});
     if (!meshes[t].text.empty()) lines.push_back(meshes[t]);
   }

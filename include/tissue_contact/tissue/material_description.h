@@ -35,6 +35,8 @@ struct PronyTerm {
   double time_s = 0.0;         ///< in which its stress falls to 1/e while the strain is held
 };
 
+struct MaterialPreset;
+
 struct MaterialDescription {
   static constexpr Range kPoissonsRatio{-1.0, 0.5, "", "0.5 itself (incompressible) cannot be simulated, 0.49 can",
                                         true, true};
@@ -49,6 +51,8 @@ struct MaterialDescription {
   /// Volumes but for mass-spring: stress relaxation of the deviator. Young's modulus is then that of the relaxed body. The
   /// terms are those of the whole tissue, times the modulus of each region.
   std::vector<PronyTerm> prony_series = {};
+  /// Of materialPresets(), by whose name the scene has its constants, all or some; null: none. To be told, not computed with.
+  const MaterialPreset* preset = nullptr;
 };
 
 /// Damping matrix D = mass_per_s * M + stiffness_s * K (Rayleigh; the second part is Kelvin-Voigt's, with

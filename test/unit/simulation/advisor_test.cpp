@@ -101,6 +101,46 @@ TEST(Advisor, SaysWhatItHasChosen) {
   EXPECT_TRUE(has(makeSlab("sleep: auto", "static: 0"), "nothing tangential is computed"));
 }
 
+/// Lines about materials by name of a block of such a material, one part of it another's.
+std::vector<std::string> presetLines(const std::string& material) {
+  std::string scene = blockScene("[0.04, 0.04, 0.02]", "[4, 4, 2]", "poissons_ratio: 0.4");
+  const std::size_t begin = scene.find("material: {");
+  scene.replace(begin, scene.find('}', begin) + 1 - begin,
+                material +
+                    "\n    regions:\n      - {name: stone, where: [sphere: {center_m: [0, 0, 0.01], radius_m: 0.01}], "
+                    "material: liver_tumour}");
+  const Simulator simulator = makeSimulator(scene + onlyBall("[0, 0, 0.0251]"), {{"probe", probeUrdf(0.005)}});
+  std::vector<std::string> lines;
+  for (const Advice& advice : simulator.advice()) {
+    if (advice.text.rfind("material of ", 0) == 0) lines.push_back(advice.text);
+  }
+  return lines;
+}
+
+TEST(Advisor, TellsMaterialsByNameWithTheirSources) {
+  EXPECT_EQ(presetLines("material: {youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}").size(), 1U)
+      << "the region's alone";
+  const std::string source = "; source: Phys. Med. Biol. 64 (2019) 225001, table 1; doi:10.1088/1361-6560/ab5010";
+  const std::vector<std::string> named = presetLines("material: liver");
+  ASSERT_EQ(named.size(), 2U);
+  EXPECT_EQ(
+      named[0],
+      "material of tissue 'block': liver, E 5400 Pa (range of the source: 4200 to 6600), nu 0.45, density 1060 kg/m^3, "
+      "damping.stiffness_s 0.003 s; G = 1.8 ± 0.4 kPa, quasistatic; E = 3 G" +
+          source);
+  EXPECT_EQ(
+      named[1],
+      "material of region 'stone' of tissue 'block': liver_tumour, E 70200 Pa (range of the source: 59400 to 70200), "
+      "nu 0.45, density 1060 kg/m^3; G = 23.4 kPa (hepatocellular carcinoma), 19.8 kPa (diseased liver); E = 3 G" +
+          source);
+  const std::vector<std::string> changed = presetLines("material: {preset: liver, youngs_modulus_pa: 6000}");
+  ASSERT_EQ(changed.size(), 2U);
+  EXPECT_NE(changed[0].find(
+                "liver, E 6000 Pa (as the scene says; by name 5400) (range of the source: 4200 to 6600), nu 0.45"),
+            std::string::npos)
+      << changed[0];
+}
+
 /// Warnings among the advice on a block of such cells under a ball of 5 mm, or other shapes.
 std::vector<std::string> warningsOn(const std::string& cells,
                                     const std::string& shapes = "{sphere: {radius_m: 0.005}}") {
