@@ -7,6 +7,11 @@
 
 #include "tissue_contact/tissue/tet_elasticity.h"
 
+// Lanes are returned below by functions that are all inlined: no call passes them.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
 namespace tissue_contact {
 namespace {
 
