@@ -29,7 +29,9 @@ from whole_file import whole_file
 
 # Of the angle RViz opens to both sides of the view, 22.5 degrees: a ball of that radius fills the height of the window at
 # 2.6 radii. What is looked at is a box, and mostly lower than long.
-RADII_AWAY = 2.3
+RADII_AWAY = 2.3  # at least: where that would cut something off, as of a high tissue, so far that it does not
+PITCH = 0.45
+EDGE = 0.93 * math.tan(math.pi / 8.0)  # of a square picture, over the distance; within it, since letters have a height as well
 TIP_AWAY = 0.6  # a tip that is farther from the middle, and than it was at first, takes the view along; in radii
 CLOSE = 3.0  # times nearer than all: the view of one tip
 TIP = "/tip"  # ends the names of markers at tips
@@ -80,9 +82,17 @@ class Picture:
         points += [text for text in texts if numpy.linalg.norm(text[0] - middle) < size]
         self.focus = self.middle(points)
         self.radius = max(numpy.linalg.norm(numpy.ptp(numpy.concatenate(points), axis=0)) / 2.0, 1e-6)
+        self.distance = max(RADII_AWAY * self.radius, self.shows(numpy.concatenate(points) - self.focus))
 
         nearest = min((numpy.linalg.norm(tip - self.focus) for tip in tips_of(markers).values()), default=0.0)
         self.reach = max(TIP_AWAY * self.radius, nearest if nearest < self.radius else 0.0)
+
+    def shows(self, points):
+        """From how far the view has all these in it; relative to its focus."""
+        back = numpy.array([math.cos(self.yaw) * math.cos(PITCH), self.up * math.sin(self.yaw) * math.cos(PITCH), self.up * math.sin(PITCH)])
+        right = numpy.cross([0.0, 0.0, self.up], back) / math.cos(PITCH)
+        aside = numpy.abs(points @ numpy.stack((right, numpy.cross(back, right)), axis=1)).max(axis=1)
+        return (aside / EDGE + points @ back).max()
 
     def follow(self, tips):
         """Where the middle of the view is to be: that of the scene, or so far from there that the nearest tip is in the picture."""
@@ -103,7 +113,7 @@ def tips_of(markers):
 
 def view_at(name, frame, distance, picture, focus=(0.0, 0.0, 0.0)):
     return {"Class": "rviz/Orbit", "Name": name, "Distance": float(distance), "Focal Point": dict(zip("XYZ", map(float, focus))),
-            "Near Clip Distance": float(picture.radius / 100.0), "Pitch": 0.45, "Yaw": picture.yaw, "Invert Z Axis": picture.up < 0.0,
+            "Near Clip Distance": float(picture.radius / 100.0), "Pitch": PITCH, "Yaw": picture.yaw, "Invert Z Axis": picture.up < 0.0,
             "Target Frame": frame, "Value": "Orbit (rviz)"}
 
 
@@ -123,7 +133,7 @@ def configuration(picture, tips, node, follows):
             display["Plane Cell Count"] = 2 * math.ceil(1.5 * picture.radius / cell)
             corner = [cell * round(float(c) / cell) for c in picture.focus[:2]]
             display["Offset"] = dict(zip("XYZ", corner + [float(picture.ground)]))
-    away = RADII_AWAY * picture.radius
+    away = picture.distance
     manager["Views"] = {"Current": view_at("All", "<Fixed Frame>", away, picture, picture.focus)}
     if follows:
         manager["Views"] = {"Current": view_at("All", VIEW, away, picture),

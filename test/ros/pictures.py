@@ -10,6 +10,7 @@ import roslib.message
 import rospy
 import yaml
 from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import Marker, MarkerArray
 
 import harness
 
@@ -35,11 +36,11 @@ class Pictures(harness.TestCase):
         self.assertNotIn("Traceback", output)
         return output
 
-    def configuration(self, scene):
+    def configuration(self, scene, instrument="probe"):
         """RViz's, of a node that has had no joint state yet."""
         file = self.path("view.rviz")
         with harness.node(scene):
-            harness.wrenches().close()  # waits for the publisher
+            harness.wrenches(instrument).close()  # waits for the publisher
             self.run_program("open_rviz.py", "--write", file)
         with open(file, encoding="utf-8") as stream:
             manager = yaml.safe_load(stream)["Visualization Manager"]
@@ -66,6 +67,25 @@ class Pictures(harness.TestCase):
         self.assertTrue(0.5 < view["Distance"] / before["Distance"] < 2.0, view)
         for axis, place in zip("XYZ", (3.0, -2.0, 1.0)):
             self.assertAlmostEqual(view["Focal Point"][axis], place, delta=0.1)
+
+    def test_nothing_of_the_first_picture_is_cut_off(self):
+        """Of a flap that stands upright, and the force above the jaws that are to grasp it."""
+        scene = os.path.join(harness.PACKAGE, "config", "grasp.yaml")
+        _, view, _ = self.configuration(scene, "psm")
+        with harness.node(scene):
+            markers = harness.Listener(harness.NODE + "/markers", MarkerArray).wait(len, "markers")[0].markers
+        force = next(m for m in markers if m.ns == "force_texts")
+        edges = next(m for m in markers if m.ns == "flap" and m.type == Marker.LINE_LIST)
+        top = force.pose.position.z + force.scale.z / 2
+        points = [(p.x, p.y, p.z) for p in edges.points] + [(force.pose.position.x, force.pose.position.y, top)]
+        focus, yaw, pitch = [view["Focal Point"][axis] for axis in "XYZ"], view["Yaw"], view["Pitch"]
+        for point in points:
+            x, y, z = (a - b for a, b in zip(point, focus))
+            level = x * math.cos(yaw) + y * math.sin(yaw)  # towards the eye
+            depth = view["Distance"] - level * math.cos(pitch) - z * math.sin(pitch)
+            half = depth * math.tan(math.radians(22.5))
+            self.assertLess(abs(y * math.cos(yaw) - x * math.sin(yaw)), half, point)
+            self.assertLess(abs(z * math.cos(pitch) - level * math.sin(pitch)), half, point)
 
     @staticmethod
     def view_frames(tf):
