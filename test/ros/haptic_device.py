@@ -11,6 +11,7 @@ from xmlrpc.client import ServerProxy
 import rosgraph
 import rospy
 from geometry_msgs.msg import WrenchStamped
+from roscpp.srv import GetLoggers
 
 import harness
 
@@ -110,6 +111,15 @@ class Haptics(harness.TestCase):
                 harness.wait_until(lambda child=node: child.poll() is not None, "the end of the node")
                 self.assertEqual(node.returncode, 0, harness.output_of(node))
                 self.commands.wait(lambda all: is_zero(all[-1]), "a last zero")
+
+    def test_loggers_are_listed_more_than_once(self):
+        """rosconsole's own service ends the process at the second call."""
+        with self.haptics() as node:
+            self.commands.wait(len, "a command")
+            list_loggers = rospy.ServiceProxy("/haptics/get_loggers", GetLoggers)
+            for _ in range(3):
+                self.assertIn("ros.roscpp", [logger.name for logger in list_loggers().loggers])
+            self.assertIsNone(node.poll())
 
     def test_bad_parameters(self):
         for bad, complaint in [("_rate_hz:=0", "rate_hz' is 0"), ("_max_force_n:=-1", "max_force_n' is -1"),

@@ -5,6 +5,7 @@
 #include <ros/console.h>
 #include <ros/init.h>
 #include <ros/node_handle.h>
+#include <ros/service_server.h>
 #include <ros/spinner.h>
 #include <ros/xmlrpc_manager.h>
 
@@ -21,6 +22,7 @@
 
 #include "ros/conversions.h"
 #include "ros/haptics/haptic_output.h"
+#include "ros/node/logger_service.h"
 #include "ros/node/master_watch.h"
 #include "ros/node/private_parameters.h"
 #include "ros/node/shutdown_guard.h"
@@ -128,6 +130,7 @@ class Haptics {
         node_.subscribe("wrench", 1, &Haptics::take, this, ros::TransportHints().tcpNoDelay());
     ros::AsyncSpinner spinner(1);
     spinner.start();
+    const ros::ServiceServer loggers = advertiseLoggers(private_node_);
     master_.start({});
     const Clock::duration period =
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate_hz_));
