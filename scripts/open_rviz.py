@@ -29,9 +29,9 @@ from whole_file import whole_file
 
 # Of the angle RViz opens to both sides of the view, 22.5 degrees: a ball of that radius fills the height of the window at
 # 2.6 radii. What is looked at is a box, and mostly lower than long.
-RADII_AWAY = 2.3  # at least: where that would cut something off, as of a high tissue, so far that it does not
+RADII_AWAY = 2.3  # or farther, where what stands high would be cut off
 PITCH = 0.45
-EDGE = 0.93 * math.tan(math.pi / 8.0)  # of a square picture, over the distance; within it, since letters have a height as well
+EDGE = 0.93 * math.tan(math.pi / 8.0)  # of a square picture, over the distance; 7 % inside, for letters have a height as well
 TIP_AWAY = 0.6  # a tip that is farther from the middle, and than it was at first, takes the view along; in radii
 CLOSE = 3.0  # times nearer than all: the view of one tip
 TIP = "/tip"  # ends the names of markers at tips
@@ -82,12 +82,12 @@ class Picture:
         points += [text for text in texts if numpy.linalg.norm(text[0] - middle) < size]
         self.focus = self.middle(points)
         self.radius = max(numpy.linalg.norm(numpy.ptp(numpy.concatenate(points), axis=0)) / 2.0, 1e-6)
-        self.distance = max(RADII_AWAY * self.radius, self.shows(numpy.concatenate(points) - self.focus))
+        self.distance = max(RADII_AWAY * self.radius, self.distance_for(numpy.concatenate(points) - self.focus))
 
         nearest = min((numpy.linalg.norm(tip - self.focus) for tip in tips_of(markers).values()), default=0.0)
         self.reach = max(TIP_AWAY * self.radius, nearest if nearest < self.radius else 0.0)
 
-    def shows(self, points):
+    def distance_for(self, points):
         """From how far the view has all these in it; relative to its focus."""
         back = numpy.array([math.cos(self.yaw) * math.cos(PITCH), self.up * math.sin(self.yaw) * math.cos(PITCH), self.up * math.sin(PITCH)])
         right = numpy.cross([0.0, 0.0, self.up], back) / math.cos(PITCH)

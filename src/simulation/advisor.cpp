@@ -84,15 +84,19 @@ std::string presetLine(const std::string& owner, const MaterialDescription& mate
   return line.str();
 }
 
-/// Of a tissue and of those of its regions that name another.
+bool haveSameConstants(const MaterialDescription& a, const MaterialDescription& b) {
+  return a.preset == b.preset && a.youngs_modulus_pa == b.youngs_modulus_pa && a.poissons_ratio == b.poissons_ratio &&
+         a.density_kg_per_m3 == b.density_kg_per_m3;
+}
+
+/// Of a tissue and of those of its regions that have another.
 void addPresetLines(const TissueDescription& tissue, std::vector<Advice>& lines) {
   const std::string owner = "tissue " + quoted(tissue.name);
   if (tissue.material.preset != nullptr) {
     lines.push_back({presetLine(owner, tissue.material, &tissue.damping.stiffness_s)});
   }
   for (const TissueRegion& region : tissue.regions) {
-    const MaterialPreset* preset = region.material.preset;
-    if (preset == nullptr || preset == tissue.material.preset) continue;
+    if (region.material.preset == nullptr || haveSameConstants(region.material, tissue.material)) continue;
     lines.push_back({presetLine("region " + quoted(region.name) + " of " + owner, region.material, nullptr)});
   }
 }

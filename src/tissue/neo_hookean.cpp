@@ -55,6 +55,9 @@ Matrix3 matrixInLane(const MatrixBatch& batch, std::size_t lane) {
 class ElementStiffness {
  public:
   ElementStiffness(const TetElements& tets, Elasticity::State& state) : tets_(tets), state_(state) {}
+  ~ElementStiffness() { addAll(); }  // those that did not make four
+  ElementStiffness(const ElementStiffness&) = delete;
+  ElementStiffness& operator=(const ElementStiffness&) = delete;
 
   /// @param F of all elements. @param sign -1: takes the share out.
   void add(std::size_t e, const std::vector<MatrixBatch>& F, const InPatch& patch, double sign) {
@@ -71,15 +74,14 @@ class ElementStiffness {
     lanes_.pressure[count_] = patch.pressure;
     lanes_.flat_modulus[count_] = patch.flat_modulus;
     elements_[count_++] = e;
-    if (count_ == kLanes) finish();
+    if (count_ == kLanes) addAll();
   }
 
-  /// To be called at the end.
-  void finish() {
+  void addAll() {
     if (count_ == 0) return;
     const unsigned char failed = computeTangents(lanes_);
     for (std::size_t lane = 0; lane < count_; ++lane) {
-      addAll(elements_[lane], (failed >> lane & 1) != 0 ? simple(lane) : fast(lane));
+      addTo(elements_[lane], (failed >> lane & 1) != 0 ? simple(lane) : fast(lane));
     }
     count_ = 0;
   }
@@ -97,7 +99,7 @@ class ElementStiffness {
                          tets_.shapeGradients(elements_[lane]), lanes_.volume[lane]);
   }
 
-  void addAll(std::size_t e, const TangentBlocks& blocks) {
+  void addTo(std::size_t e, const TangentBlocks& blocks) {
     const TetElement& element = tets_.elements[e];
     std::size_t place = 0;
     for (std::size_t n = 0; n < 4; ++n) {
@@ -220,7 +222,6 @@ void NeoHookean::rebuildStiffness(DeformationState& state) const {
       patch = inPatch(tets_->elements[e], state.tangent_pressures[patches_->of_batch[e / kLanes][e % kLanes]]);
     elements.add(e, state.tangent_deformations, patch, 1.0);
   }
-  elements.finish();
   for (std::size_t p = 0; patches_ && p < patches_->patches.size(); ++p) addPatchStiffness(p, 1.0, state);
 }
 
@@ -255,7 +256,6 @@ void NeoHookean::refreshStiffness(const std::vector<BatchRange>& ranges, Deforma
     for (std::size_t i = 0; i < 9; ++i) state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];
     if (!rebuild) elements.add(e, state.deformations, {}, 1.0);
   });
-  elements.finish();
   if (rebuild) rebuildStiffness(state);
 }
 
@@ -312,7 +312,6 @@ void NeoHookean::refreshPatches(DeformationState& state) const {
     state.tangent_pressures[p] = state.pressures[p];
     if (!rebuild) addPatchStiffness(p, 1.0, state);
   }
-  elements.finish();
   if (rebuild) rebuildStiffness(state);
 }
 

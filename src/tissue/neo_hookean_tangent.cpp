@@ -73,7 +73,7 @@ TISSUE_CONTACT_INLINE Lanes root(const Lanes& a) {
 TISSUE_CONTACT_INLINE Lanes positive(const Lanes& a) { return a > 0.0 ? a : Lanes{}; }
 
 /// Jacobi's rotation that makes A_pq zero, also of the columns p and q of V; r is the third place. Where A_pq is round-off beside the
-/// diagonal the lane stays as it is, to the bit, so that other lanes may go on.
+/// diagonal the lane stays as it is, so that other lanes may go on.
 TISSUE_CONTACT_INLINE Mask turn(Lanes& pp, Lanes& qq, Lanes& pq, Lanes& rp, Lanes& rq, Lanes* Vp, Lanes* Vq) {
   constexpr double kRoundOffSquared = 1e-32;
   const Mask active = pq * pq > kRoundOffSquared * (pp * pp + qq * qq);
@@ -132,7 +132,8 @@ TISSUE_CONTACT_INLINE void longerFirst(std::size_t a, std::size_t b, LaneMatrix&
 /// @return lanes where it is not so.
 TISSUE_CONTACT_INLINE Mask decompose(const LaneMatrix& F, LaneMatrix& U, Lanes* sigma, LaneMatrix& V) {
   constexpr double kLineSquared = 1e-8;  // second to first singular value: below, V is lost to the round-off of F'F
-  constexpr double kMostSquared = 1e100;
+  constexpr double kMostSquared = 1e60;  // fourth powers, squared, are numbers
+  constexpr double kLeastSquared = 1e-60;
   const Lanes *const x = F.m, *const y = F.m + 3, *const z = F.m + 6;
   LaneSymmetric A = {dot(x, x), dot(y, y), dot(z, z), dot(x, y), dot(y, z), dot(z, x)};
   diagonalise(A, V);
@@ -162,7 +163,7 @@ TISSUE_CONTACT_INLINE Mask decompose(const LaneMatrix& F, LaneMatrix& U, Lanes* 
   sigma[0] = length;
   sigma[1] = second_length;
   sigma[2] = dot(U.m + 6, B.m + 6);
-  return ~((second_squared > kLineSquared * squared) & (squared < kMostSquared));
+  return ~((second_squared > kLineSquared * squared) & (squared > kLeastSquared) & (squared < kMostSquared));
 }
 
 TISSUE_CONTACT_INLINE void dropNegativeEigenvalues(LaneSymmetric& A) {

@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "core/lanes.h"
+#include "tissue/lanes.h"
 #include "tissue/neo_hookean_kernel.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/tissue/element_materials.h"
@@ -43,8 +43,8 @@ struct TangentLanes {
   std::array<MatrixBatch, kTangentBlocks> blocks;  ///< out, N/m
 };
 
-/// The fast version: computes `blocks`, by Jacobi rotations of F'F. What a lane gets does not depend on the others, to the bit.
-/// @return a bit for each lane whose F is too near to a line or a point, or beyond all numbers: its blocks mean nothing.
+/// The fast version: computes `blocks`, by Jacobi rotations of F'F. What a lane gets does not depend on the others.
+/// @return a bit for each lane whose F is too near to a line or a point, or too large for its powers: its blocks mean nothing.
 unsigned char computeTangents(TangentLanes& lanes);
 
 }  // namespace tissue_contact

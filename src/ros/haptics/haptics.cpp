@@ -124,13 +124,13 @@ class Haptics {
   }
 
   void run(const ShutdownGuard& guard) {
+    const ros::ServiceServer loggers = advertiseLoggers(private_node_);
     publisher_ = node_.advertise<geometry_msgs::WrenchStamped>("servo_cf", 1);
     // The newest alone: what has waited is not to be felt.
     const ros::Subscriber wrenches =
         node_.subscribe("wrench", 1, &Haptics::take, this, ros::TransportHints().tcpNoDelay());
     ros::AsyncSpinner spinner(1);
     spinner.start();
-    const ros::ServiceServer loggers = advertiseLoggers(private_node_);
     master_.start({});
     const Clock::duration period =
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate_hz_));
@@ -143,6 +143,7 @@ class Haptics {
       next = std::max(next + period, Clock::now());  // a late one is not made up for by a burst
       std::this_thread::sleep_until(std::min(next, end));
     }
+    master_.stop();  // before what it would register again is unregistered
   }
 
  private:
@@ -173,6 +174,7 @@ class Haptics {
   ros::NodeHandle node_;
   ros::NodeHandle private_node_;
   ros::Publisher publisher_;
+  MasterWatch master_;
   std::mutex mutex_;  ///< guards what follows
   HapticOutput output_;
   geometry_msgs::WrenchStamped command_;
@@ -180,7 +182,6 @@ class Haptics {
   // Const once made.
   double rate_hz_;
   std::string frame_;
-  MasterWatch master_;
 };
 
 }  // namespace

@@ -157,11 +157,11 @@ void Node::start() {
 }
 
 void Node::stop() {
+  master_.stop();  // before what it would register again is unregistered
   tuning_.stop();
   stepper_.stop();
   services_.stop();
   receiver_.stop();
-  master_.stop();
   {
     const std::lock_guard<std::mutex> lock(diagnostics_mutex_);
     diagnostics_stop_ = true;

@@ -102,13 +102,14 @@ TEST(Advisor, SaysWhatItHasChosen) {
 }
 
 /// Lines about materials by name of a block of such a material, one part of it another's.
-std::vector<std::string> presetLines(const std::string& material) {
+std::vector<std::string> presetLines(const std::string& material, const std::string& of_part = "liver_tumour") {
   std::string scene = blockScene("[0.04, 0.04, 0.02]", "[4, 4, 2]", "poissons_ratio: 0.4");
   const std::size_t begin = scene.find("material: {");
   scene.replace(begin, scene.find('}', begin) + 1 - begin,
                 material +
                     "\n    regions:\n      - {name: stone, where: [sphere: {center_m: [0, 0, 0.01], radius_m: 0.01}], "
-                    "material: liver_tumour}");
+                    "material: " +
+                    of_part + "}");
   const Simulator simulator = makeSimulator(scene + onlyBall("[0, 0, 0.0251]"), {{"probe", probeUrdf(0.005)}});
   std::vector<std::string> lines;
   for (const Advice& advice : simulator.advice()) {
@@ -139,6 +140,10 @@ TEST(Advisor, TellsMaterialsByNameWithTheirSources) {
                 "liver, E 6000 Pa (as the scene says; by name 5400) (range of the source: 4200 to 6600), nu 0.45"),
             std::string::npos)
       << changed[0];
+  EXPECT_EQ(presetLines("material: liver", "liver").size(), 1U) << "nothing else";
+  const std::vector<std::string> stiff = presetLines("material: liver", "{preset: liver, youngs_modulus_pa: 20000}");
+  ASSERT_EQ(stiff.size(), 2U);
+  EXPECT_NE(stiff[1].find("liver, E 20000 Pa (as the scene says; by name 5400)"), std::string::npos) << stiff[1];
 }
 
 /// Warnings among the advice on a block of such cells under a ball of 5 mm, or other shapes.

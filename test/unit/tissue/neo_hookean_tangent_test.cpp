@@ -58,6 +58,8 @@ std::vector<Case> cases() {
   add("swollen", 1.4 * randomRotation(random));
   add("turned inside out", Vector3(1.0, 1.0, -1.0).asDiagonal() * randomRotation(random));
   add("flat", randomRotation(random) * Vector3(1.0, 0.8, 0.0).asDiagonal() * randomRotation(random));
+  add("tiny", 1e-29 * randomRotation(random) * Vector3(1.0, 0.5, 0.7).asDiagonal() * randomRotation(random));
+  add("huge", 1e29 * randomRotation(random) * Vector3(1.0, 0.5, 0.7).asDiagonal() * randomRotation(random));
   add("nearly a line", randomRotation(random) * Vector3(3.0, 1e-3, -1e-3).asDiagonal() * randomRotation(random));
   for (int k = 0; k < 100; ++k) {
     add("a little deformed", randomRotation(random) * (Matrix3::Identity() + randomMatrix(random, 0.01)));
@@ -139,7 +141,7 @@ TEST(NeoHookeanTangent, HasNoNegativeEigenvalue) {
 }
 
 // What is added is taken out again, four others beside it.
-TEST(NeoHookeanTangent, OfALaneIsTheSameToTheBitWhateverTheOthersAre) {
+TEST(NeoHookeanTangent, OfALaneIsTheSameWhateverTheOthersAre) {
   const std::vector<Case> all = cases();
   for (std::size_t k = 0; k < all.size(); ++k) {
     TangentLanes together = {};
@@ -159,7 +161,7 @@ TEST(NeoHookeanTangent, TellsWhereItMeansNothing) {
   const Matrix3 line = Vector3(1.0, 0.2, -0.4) * Vector3(0.3, 1.0, 0.1).transpose();
   TangentLanes lanes = {};
   const double infinity = std::numeric_limits<double>::infinity();
-  const std::vector<Matrix3> gradients = {line, Matrix3::Zero(), 1e60 * Matrix3::Identity(),
+  const std::vector<Matrix3> gradients = {line, Matrix3::Zero(), 1e31 * Matrix3::Identity(),
                                           infinity * Matrix3::Ones()};
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     place({"", {gradients[lane], {16000.0, kMu}, 0.0, 0.0}, randomRestInverse(random)}, lane, lanes);
