@@ -99,7 +99,7 @@ def require_no_gap(path, times_s, where=""):
     intervals = numpy.diff(times_s)
     longest, usual = int(intervals.argmax()), float(numpy.median(intervals))
     if intervals[longest] > WIDEST_GAP * usual:
-        raise FitError("%s: nothing is recorded%s from %g to %g s; up to %g s are allowed, samples are usually %g s apart: cut it into two recordings, each of "
+        raise FitError("%s: nothing is recorded%s from %.3f to %.3f s; up to %g s are allowed, samples are usually %g s apart: cut it into two recordings, each of "
                        "which begins off the tissue" % (path, where, times_s[longest], times_s[longest + 1], WIDEST_GAP * usual, usual))
 
 
