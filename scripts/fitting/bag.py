@@ -34,6 +34,9 @@ def columns(path, joint_names, joint_topics, force_topic, pose_topic):
     if not motion_topics:
         raise FitError("%s: the scene's instrument has no joint_state_topics; add the bag's topic of joint states, or give one of poses of the "
                        "tip by --pose-topic" % path)
+    if force_topic in motion_topics:
+        raise FitError("%s: %s is the topic of the motion (%s) and of the forces (--force-topic); give each its own" %
+                       (path, force_topic, "--pose-topic" if pose_topic else "the scene's joint_state_topics"))
     kinds = dict({topic: POSES if pose_topic else STATES for topic in motion_topics}, **{force_topic: WRENCHES})
     series = _series(path, kinds, motion_topics[0], joint_names)
     motion, force = series[motion_topics[0]], series[force_topic]

@@ -146,6 +146,8 @@ class BagTest(Folder):
         self.refused(["is not after", "header.stamp"], self.read, self.bag(stamps=0.0))
         self.refused(["10 to"], self.read, self.bag(5))
         self.refused(["no joint_state_topics"], measured.read, self.bag(), ["z"], [], "/force_sensor")
+        self.refused(["/js is the topic of the motion (the scene's joint_state_topics) and of the forces (--force-topic)", "give each its own"],
+                     measured.read, self.bag(), ["z"], ["/other", "/js"], "/js")
         self.refused(["the force is the same in every row"], self.read, self.bag(force=lambda i: 3.0))
         self.refused(["on /force_sensor 'fz_n' is nan; a number from -1000 to 1000 N"], self.read, self.bag(force=lambda i: math.nan if i == 9 else 1.0))
         with open(self.bag(), "rb") as stream:
@@ -252,6 +254,8 @@ class PoseBagTest(Folder):
         self.refused(["no messages on /tip", "--pose-topic takes: /cp"], self.read, self.bag(), "/tip")
         self.refused(["no messages on /js", "--pose-topic takes: /cp"], self.read, self.bag(), None)
         self.refused(["no messages on /sensor", "--force-topic takes: /force"], self.read, self.bag(), "/cp", "/sensor")
+        self.refused(["/cp is the topic of the motion (--pose-topic) and of the forces (--force-topic)"], self.read, self.bag(), "/cp", "/cp")
+        self.refused(["/force is the topic of the motion"], self.read, self.bag(), "/force")
         self.refused(["/force has geometry_msgs/WrenchStamped; geometry_msgs/PoseStamped or geometry_msgs/TransformStamped is needed"],
                      self.read, self.bag(), "/force", "/other")
 
