@@ -1,4 +1,5 @@
 """Measured motion of a tool with measured forces, from a bag: poses of the tip or joint states, and wrenches, matched by their stamps."""
+import bisect
 import dataclasses
 
 import numpy
@@ -19,12 +20,17 @@ class Series:
     stamps_s: list = dataclasses.field(default_factory=list)
     recorded_s: list = dataclasses.field(default_factory=list)  # by the recorder's clock
     values: list = dataclasses.field(default_factory=list)
-    frames: set = dataclasses.field(default_factory=set)
-    children: set = dataclasses.field(default_factory=set)  # whose pose it is, where it is said
+    frames: list = dataclasses.field(default_factory=list)
+    children: list = dataclasses.field(default_factory=list)  # whose pose it is, where it is said
 
     def age_s(self):
         """How far its clock is behind the recorder's, and what the way took."""
         return float(numpy.median(numpy.subtract(self.recorded_s, self.stamps_s)))
+
+    def within(self, times_s):
+        """Its messages from the first to the last of the times, and one more on each side where none is at that very time: what is looked at of it."""
+        part = slice(max(bisect.bisect_right(self.stamps_s, times_s[0]) - 1, 0), bisect.bisect_left(self.stamps_s, times_s[-1]) + 1)
+        return Series(self.topic, *(rows[part] for rows in (self.stamps_s, self.recorded_s, self.values, self.frames, self.children)))
 
 
 def columns(path, joint_names, joint_topics, force_topic, pose_topic):
@@ -44,13 +50,15 @@ def columns(path, joint_names, joint_topics, force_topic, pose_topic):
         _require_ascending(path, one)
     _require_one_clock(path, motion, force)
     times = _sampled(path, motion, force)
+    motion, force = motion.within(times), force.within(times)
+    require_no_gap(path, numpy.array(force.stamps_s), " on " + force.topic)
     forces = _checked(path, force, FORCE)
     found = dict({"time_s": times - times[0]}, **{name: numpy.interp(times, force.stamps_s, row) for name, row in zip(FORCE, forces)})
     if pose_topic:
-        found.update(_poses_at(path, times, motion))
+        found.update(_poses(path, motion))
     else:
         found.update(_joints_at(path, times, [series[topic] for topic in motion_topics if topic in series], joint_names))
-    return found, ", ".join(sorted(force.frames)), ", ".join(sorted(motion.frames)) if pose_topic else ""
+    return found, ", ".join(sorted(set(force.frames))), ", ".join(sorted(set(motion.frames))) if pose_topic else ""
 
 
 def _series(path, kinds, needed, joint_names):
@@ -65,8 +73,8 @@ def _series(path, kinds, needed, joint_names):
                 one.stamps_s.append(message.header.stamp.to_sec())
                 one.recorded_s.append(recorded.to_sec())
                 one.values.append(_values(message, joint_names))
-                one.frames.add(message.header.frame_id.lstrip("/"))
-                one.children.add(getattr(message, "child_frame_id", "").lstrip("/"))
+                one.frames.append(message.header.frame_id.lstrip("/"))
+                one.children.append(getattr(message, "child_frame_id", "").lstrip("/"))
             return series
     except FitError:
         raise
@@ -125,7 +133,6 @@ def _sampled(path, motion, force):
     if not FEWEST_ROWS <= len(times) <= MOST_ROWS:
         raise FitError("%s: %d messages of %s (%.3f to %.3f s) while forces were recorded (%.3f to %.3f s); %d to %d are needed" % (
             path, len(times), motion.topic, motion.stamps_s[0], motion.stamps_s[-1], force.stamps_s[0], force.stamps_s[-1], FEWEST_ROWS, MOST_ROWS))
-    require_no_gap(path, numpy.array(force.stamps_s), " on " + force.topic)
     return times
 
 
@@ -140,12 +147,12 @@ def _checked(path, series, names):
     return rows
 
 
-def _poses_at(path, times, series):
+def _poses(path, series):
     for names, what in ((series.frames, "in several frames"), (series.children, "of several tools")):
-        if len(names) > 1:
+        if len(set(names)) > 1:
             raise FitError("%s: %s has poses %s (%s); give a topic of one tool in one frame" %
-                           (path, series.topic, what, ", ".join("'%s'" % name for name in sorted(names))))
-    rows = _checked(path, series, POSITION + QUATERNION)[:, numpy.isin(series.stamps_s, times)]
+                           (path, series.topic, what, ", ".join("'%s'" % name for name in sorted(set(names)))))
+    rows = _checked(path, series, POSITION + QUATERNION)
     turned = rows[len(POSITION):].any()  # all zero is how a message says nothing of it
     return dict(zip(POSITION + QUATERNION if turned else POSITION, rows))
 

@@ -217,6 +217,25 @@ class PoseBagTest(Folder):
             message.pose.orientation.x = message.pose.orientation.w = 0.0
         self.assertIsNone(self.read(self.bag(**self.poses(zero))).quaternions)
 
+    def test_what_is_before_and_after_the_motion_does_no_harm(self):
+        def force(message, number):
+            """From half a second before the poses to half a second after them, with a hiccup in each."""
+            message.wrench.force.x = math.nan if number in (20, 180) else 0.0
+            return None if 20 < number < 45 or 155 < number < 180 else message
+
+        def pose(message, number):
+            return message if 50 <= number < 150 else None
+        recording = self.read(self.bag(force=force, cp=pose))
+        numpy.testing.assert_allclose(recording.force_n[:, 2], 0.02 * numpy.arange(50, 150), atol=1e-6)
+
+        def earlier(message, number):
+            """Poses in another frame, and one that is none, while no force is recorded yet."""
+            message.header.frame_id = "camera" if number < 50 else "room"
+            message.pose.position.x = math.nan if number == 10 else 0.02
+            return message
+        recording = self.read(self.bag(cp=earlier, force=lambda message, number: message if number >= 50 else None))
+        self.assertEqual((len(recording.times_s), recording.pose_frame), (150, "room"))
+
     def test_refused(self):
         def moved(change):
             return lambda message, number: change(message.pose.position, number)
