@@ -35,7 +35,7 @@ class Series:
 
 def columns(path, joint_names, joint_topics, force_topic, pose_topic):
     """(columns as a table has them, frame of the forces, frame of the poses). The samples are the poses, or the joint states of the first
-    topic; the force there is linear between wrenches."""
+    topic; forces and other joints there are linear between theirs."""
     motion_topics = [pose_topic] if pose_topic else list(joint_topics)
     if not motion_topics:
         raise FitError("%s: the scene's instrument has no joint_state_topics; add the bag's topic of joint states, or give one of poses of the "
@@ -48,16 +48,17 @@ def columns(path, joint_names, joint_topics, force_topic, pose_topic):
     motion, force = series[motion_topics[0]], series[force_topic]
     for one in series.values():
         _require_ascending(path, one)
-    _require_one_clock(path, motion, force)
-    times = _sampled(path, motion, force)
+        if one is not force:
+            _require_one_clock(path, one, force)
+    joints = {} if pose_topic else _joints(path, [series[topic] for topic in motion_topics if topic in series], joint_names)
+    times = _sampled(path, motion, force, joints.values())
     motion, force = motion.within(times), force.within(times)
-    require_no_gap(path, numpy.array(force.stamps_s), " on " + force.topic)
     forces = _checked(path, force, FORCE)
     found = dict({"time_s": times - times[0]}, **{name: numpy.interp(times, force.stamps_s, row) for name, row in zip(FORCE, forces)})
     if pose_topic:
         found.update(_poses(path, motion))
     else:
-        found.update(_joints_at(path, times, [series[topic] for topic in motion_topics if topic in series], joint_names))
+        found.update({name: _joint_at(path, times, joint, name) for name, joint in joints.items()})
     return found, ", ".join(sorted(set(force.frames))), ", ".join(sorted(set(motion.frames))) if pose_topic else ""
 
 
@@ -126,14 +127,34 @@ def _require_one_clock(path, motion, force):
                        (path, motion.topic, force.topic, motion.age_s(), force.age_s(), MOST_CLOCK_S))
 
 
-def _sampled(path, motion, force):
-    """Stamps of the motion while forces were recorded."""
-    times = numpy.array(motion.stamps_s)
-    times = times[(times >= force.stamps_s[0]) & (times <= force.stamps_s[-1])]
-    if not FEWEST_ROWS <= len(times) <= MOST_ROWS:
-        raise FitError("%s: %d messages of %s (%.3f to %.3f s) while forces were recorded (%.3f to %.3f s); %d to %d are needed" % (
-            path, len(times), motion.topic, motion.stamps_s[0], motion.stamps_s[-1], force.stamps_s[0], force.stamps_s[-1], FEWEST_ROWS, MOST_ROWS))
+def _sampled(path, motion, force, joints):
+    """Stamps of the motion while forces were recorded. Each joint is to be there all along, too; what it is short of at the ends, by less
+    than a gap, is left out."""
+    times = _shared(path, motion, numpy.array(motion.stamps_s), force)
+    for one in (force, *joints):
+        _require_recorded(path, one, times)
+    for joint in joints:
+        times = _shared(path, motion, times, joint)
     return times
+
+
+def _shared(path, motion, times, other):
+    """Those of the times at which the other was recorded."""
+    times = times[(times >= other.stamps_s[0]) & (times <= other.stamps_s[-1])]
+    if not FEWEST_ROWS <= len(times) <= MOST_ROWS:
+        raise FitError("%s: %d messages of %s (%.3f to %.3f s) while there were some of %s (%.3f to %.3f s); %d to %d are needed" % (
+            path, len(times), motion.topic, motion.stamps_s[0], motion.stamps_s[-1], other.topic, other.stamps_s[0], other.stamps_s[-1], FEWEST_ROWS,
+            MOST_ROWS))
+    return times
+
+
+def _require_recorded(path, series, times):
+    """From the first to the last of the times."""
+    stamps = numpy.array(series.within(times).stamps_s)
+    if len(stamps) < FEWEST_ROWS:
+        raise FitError("%s: %d messages of %s from %.3f to %.3f s, while the tool moved; %d or more are needed" %
+                       (path, len(stamps), series.topic, times[0], times[-1], FEWEST_ROWS))
+    require_no_gap(path, numpy.concatenate([times[:1][times[:1] < stamps[0]], stamps, times[-1:][times[-1:] > stamps[-1]]]), " on " + series.topic)
 
 
 def _checked(path, series, names):
@@ -157,14 +178,19 @@ def _poses(path, series):
     return dict(zip(POSITION + QUATERNION if turned else POSITION, rows))
 
 
-def _joints_at(path, times, all_series, joint_names):
+def _joints(path, all_series, joint_names):
+    """{name: Series of its positions alone}: a message need not have all joints."""
     joints = {}
     for series in all_series:
         for name in joint_names:
-            samples = [(stamp, state[name]) for stamp, state in zip(series.stamps_s, series.values) if name in state]
+            samples = [(stamp, (state[name],)) for stamp, state in zip(series.stamps_s, series.values) if name in state]
             if samples:
-                at, positions = numpy.array(samples).T
-                joints[name] = _checked(path, dataclasses.replace(series, values=numpy.interp(times, at, positions)[:, None]), [name])[0]
+                joints[name] = Series("%s (joint '%s')" % (series.topic, name), stamps_s=[stamp for stamp, _ in samples], values=[at for _, at in samples])
     if not joints:
         raise FitError("%s: no joint state names a joint of the scene; those are: %s" % (path, ", ".join(joint_names)))
     return joints
+
+
+def _joint_at(path, times, joint, name):
+    joint = joint.within(times)
+    return numpy.interp(times, joint.stamps_s, _checked(path, joint, [name])[0])

@@ -157,6 +157,55 @@ class BagTest(Folder):
         self.refused(["cut.bag cannot be read as a bag"], self.read, os.path.join(self.folder, "cut.bag"))
 
 
+class JointBagTest(Folder):
+    """Joints of which not every message has all, or that have a topic of their own."""
+
+    def bag(self, jaw, topic="/jaw", late_s=0.0):
+        """Two seconds of z; jaw: its position at a count of samples, or None."""
+        import genpy
+        import rosbag
+        from geometry_msgs.msg import WrenchStamped
+        from sensor_msgs.msg import JointState
+        path = os.path.join(self.folder, "m.bag")
+        with rosbag.Bag(path, "w") as bag:
+            for i in range(200):
+                state, wrench, other = JointState(name=["z"], position=[1e-5 * i]), WrenchStamped(), jaw(i)
+                wrench.wrench.force.z = 0.02 * i
+                messages = [("/js", state, 0.0), ("/force_sensor", wrench, 0.0)]
+                if other is not None and topic == "/js":
+                    state.name.append("jaw")
+                    state.position.append(other)
+                elif other is not None:
+                    messages.append((topic, JointState(name=["jaw"], position=[other]), 0.003 + late_s))
+                for name, message, after in messages:
+                    message.header.stamp = genpy.Time.from_sec(1.7e9 + 0.01 * i + after)
+                    bag.write(name, message, genpy.Time.from_sec(1.7e9 + 0.01 * i))
+        return path
+
+    @staticmethod
+    def read(path):
+        return measured.read(path, ["z", "jaw"], ["/js", "/jaw"], "/force_sensor")
+
+    def test_a_joint_between_its_own_samples(self):
+        for topic, first, early in (("/js", 0, 0.0), ("/jaw", 1, 0.3)):  # those of /jaw come 3 ms later, the first after the first state
+            recording = self.read(self.bag(lambda i: 0.01 * i if i % 6 == 0 else None, topic))
+            numpy.testing.assert_allclose(recording.joints["jaw"], 0.01 * (numpy.arange(first, 199) - early), atol=1e-6)
+
+    def test_one_that_nobody_recorded_stays(self):
+        self.assertEqual(list(self.read(self.bag(lambda i: None)).joints), ["z"])
+
+    def test_refused(self):
+        for topic, late_s, jaw, words in [
+                ("/jaw", 0.0, lambda i: 0.1 if i < 100 else None, ["nothing is recorded on /jaw (joint 'jaw') from 1700000000.993 to 1700000001.990 s"]),
+                ("/jaw", 0.0, lambda i: 0.1 if i > 100 else None, ["nothing is recorded on /jaw (joint 'jaw') from 1700000000.000 to 1700000001.013 s"]),
+                ("/js", 0.0, lambda i: None if 80 < i < 140 else 0.1, ["nothing is recorded on /js (joint 'jaw') from 1700000000.800 to 1700000001.400 s"]),
+                ("/js", 0.0, lambda i: 0.1 if i in (0, 199) else None, ["2 messages of /js (joint 'jaw')", "10 or more"]),
+                ("/jaw", 0.0, lambda i: math.nan if i == 9 else 0.1, ["on /jaw (joint 'jaw') 'jaw' is nan"]),
+                ("/jaw", 0.5, lambda i: 0.1, ["the clocks of /jaw and /force_sensor differ", "up to 0.2 s"])]:
+            with self.subTest(words=words):
+                self.refused(words, self.read, self.bag(jaw, topic, late_s))
+
+
 class PoseBagTest(Folder):
     """Bags with poses of the tip in place of joint states."""
 
