@@ -217,7 +217,7 @@ class SweepTest(unittest.TestCase):
         return int(subprocess.run(["ps", "-o", "pid=", "--ppid", str(process.pid)], check=True, stdout=subprocess.PIPE, timeout=DEADLINE_S).stdout)
 
     def test_all_of_it_killed_at_once(self):
-        """As by an empty battery: SIGKILL, which nobody can answer."""
+        """By SIGKILL, which nobody can answer."""
         process = self.start_and_wait()
         engine = self.engine_of(process)
         process.kill()
