@@ -18,10 +18,14 @@ ABOVE_M, AREA_M2 = 0.001, 0.004 ** 2  # of the plate at joints 0; its face
 def main():
     name = sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).with_name("pla_on_silicone.csv")
     try:
-        table = np.genfromtxt(name, delimiter=",", names=True)
+        table = np.atleast_1d(np.genfromtxt(name, delimiter=",", names=True))
         pressures, coefficients = table["pressure_pa"], table["coefficient"]
-    except ValueError:
+    except OSError as error:
+        sys.exit("friction_table.py: %s cannot be read: %s" % (name, error))
+    except (ValueError, IndexError):
         sys.exit("friction_table.py: %s is no table with the columns pressure_pa,coefficient" % name)
+    if not (table.size and np.isfinite([pressures, coefficients]).all()):
+        sys.exit("friction_table.py: %s needs rows with a finite number in each cell" % name)
     law = {"friction.0.static": 1.0,  # the factors are the coefficients themselves
            "friction.0.pressures_pa": [0.0, *pressures],  # below the first it is held
            "friction.0.pressure_factors": [coefficients[0], *coefficients],

@@ -80,7 +80,23 @@ def test_friction_table(tmp_path):
     rows = [[float(number) for number in line.split()] for line in run("friction_table.py", cwd=tmp_path).splitlines()[1:]]
     assert len(rows) > 5
     assert sorted(abs(got - measured) / measured for _, measured, got in rows)[len(rows) // 2] < 0.15
-    (tmp_path / "other.csv").write_text("load_n,mu\n1,2\n")
+
+
+OTHER_COLUMNS, OTHER_CELLS = "is no table with the columns pressure_pa,coefficient", "needs rows with a finite number in each cell"
+
+
+@pytest.mark.parametrize("table, what", [
+    ("load_n,mu\n1,2\n", OTHER_COLUMNS), ("pressure_pa,coefficient\n100\n", OTHER_COLUMNS), ("", OTHER_COLUMNS), (None, "cannot be read"),
+    ("pressure_pa,coefficient\n100,0.5\n200,\n", OTHER_CELLS), ("pressure_pa,coefficient\n100,inf\n", OTHER_CELLS), ("pressure_pa,coefficient\n", OTHER_CELLS)])
+def test_a_friction_table_of_another_form(tmp_path, table, what):
+    if table is not None:
+        (tmp_path / "other.csv").write_text(table)
     with pytest.raises(subprocess.CalledProcessError) as refused:
         run("friction_table.py", "other.csv", cwd=tmp_path)
-    assert refused.value.stderr == "friction_table.py: other.csv is no table with the columns pressure_pa,coefficient\n"
+    assert refused.value.stderr.splitlines()[-1].startswith("friction_table.py: other.csv " + what)
+
+
+def test_a_friction_table_of_one_row(tmp_path):
+    (tmp_path / "one.csv").write_text("pressure_pa,coefficient\n1000,0.5\n")
+    rows = [line.split() for line in run("friction_table.py", "one.csv", cwd=tmp_path).splitlines()[1:]]
+    assert {measured for _, measured, _ in rows} == {"0.50"}
