@@ -136,9 +136,11 @@ def run_all(program, variants, kept_folder=None, log=subprocess.DEVNULL):
 def read_results(file):
     """{key: result} of a file of results; a last line that a kill cut off is none."""
     results = {}
-    if not os.path.exists(file):
-        file = file.removesuffix(".part")  # a job whose sweep was killed has ended meanwhile
-    with open(file, encoding="utf-8") as stream:
+    try:
+        stream = open(file, encoding="utf-8")
+    except FileNotFoundError:  # a job whose sweep was killed has ended meanwhile
+        stream = open(file.removesuffix(".part"), encoding="utf-8")
+    with stream:
         for line in stream:
             if not line.endswith("\n"):
                 continue

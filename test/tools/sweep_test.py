@@ -111,6 +111,15 @@ class MeasuresTest(unittest.TestCase):
 
 
 class JobsTest(unittest.TestCase):
+    def test_results_that_a_job_gives_their_name_meanwhile(self):
+        """As they are about to be opened, after a look whether they are there."""
+        from replays import read_results
+        with tempfile.TemporaryDirectory() as folder, mock.patch("os.path.exists", return_value=True):
+            file = os.path.join(folder, "0001-00000.jsonl")
+            with open(file, "w", encoding="utf-8") as stream:
+                stream.write('{"key": "a"}\n{"key": "b')
+            self.assertEqual(read_results(file + ".part"), {"a": {"key": "a"}})
+
     def test_no_study_becomes_more_jobs_than_a_cluster_takes(self):
         from sweep import per_job
         for variants in (1, 9, 1000, 100000, 1000000):
