@@ -34,7 +34,8 @@ HASH_START, HASH_FACTOR = 0xcbf29ce484222325, 0x100000001b3  # of ContentHash in
 def open_connections(topic):
     """Of a rospy.Publisher or Subscriber, those over which messages may come. Its get_num_connections() also has a subscriber's before they
     are made, and for half a second those of a node that has ended: taken for the next one's, what is sent over them comes nowhere."""
-    sockets = [one.socket for one in topic.impl.connections if one.local_endpoint[0] is not None]
+    impl = topic.impl  # None once it is unregistered
+    sockets = [one.socket for one in (impl.connections if impl else []) if one.local_endpoint[0] is not None]
     made = {one.fileno() for one in sockets if one is not None} - {-1}
     poll = select.poll()
     for one in made:

@@ -54,8 +54,8 @@ def sha256_of(file):
 
 
 class Inputs:
-    """Hashes of all that a replay reads, by asking the replay for the manifest of its first moment: of each scene with each choice of
-    settings that are no numbers, since such a setting may name another file."""
+    """Hashes of all that a replay reads, by asking the replay for the manifest of its first moment, or of all where that has nothing of the
+    robot: of each scene with each choice of settings that are no numbers, since such a setting may name another file."""
 
     def __init__(self, program, study):
         self._program, self._study = program, study
@@ -83,6 +83,8 @@ class Inputs:
         of another robot."""
         first = None
         for bag, duration_s in [(variant.bag, "1e-9"), (variant.bag, "1e9")] + [(bag, "1e-9") for bag in self._study.bags if bag != variant.bag]:
+            if duration_s == "1e9":
+                print("sweep: %s tells nothing of the scene by its first moment: it is replayed whole" % bag, flush=True)
             found, problem = self._hash_by(Variant(variant.scene, bag, variant.settings), duration_s)
             if not problem or BAD_BAG not in problem:
                 return found, problem
