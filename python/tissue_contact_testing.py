@@ -35,7 +35,10 @@ def open_connections(topic):
     """Of a rospy.Publisher or Subscriber, those over which messages may come. Its get_num_connections() also has a subscriber's before they
     are made, and for half a second those of a node that has ended: taken for the next one's, what is sent over them comes nowhere."""
     impl = topic.impl  # None once it is unregistered
-    sockets = [one.socket for one in (impl.connections if impl else []) if one.local_endpoint[0] is not None]
+    # What a subscriber is sent before the publisher has answered with its header is lost; a publisher adds connections after that.
+    answers = isinstance(topic, rospy.Subscriber)
+    sockets = [one.socket for one in (impl.connections if impl else [])
+               if one.local_endpoint[0] is not None and (one.header is not None or not answers)]
     made = {one.fileno() for one in sockets if one is not None} - {-1}
     poll = select.poll()
     for one in made:
