@@ -97,8 +97,9 @@ class FaultsConnections(harness.TestCase):
                     connection.sendall(framed(samples[i]))
                     source.send(*samples[i + 1])
                     if i % 10 == 0:
+                        # Of one clock: neither runs far ahead. rospy sends from a thread of its own, which may be long in coming.
+                        wrenches.wait_for_stamp(samples[i + 1][0])
                         connection.sendall(framed(samples[i + 1]))
-                        wrenches.wait_for_stamp(samples[i + 1][0])  # of one clock: neither runs far ahead
                 while connection.recv(1000):
                     pass
             other = tcpros.Publisher("/other", harness.TOPIC, JointState, send)
