@@ -76,7 +76,16 @@ def drag(depth_mm=2.0, way_mm=5.0, speed_mm_per_s=5.0):
                  (there + 0.1, 0.5 * way_mm, depth_mm), (back, -0.5 * way_mm, depth_mm)])
 
 
+def breakaway(depth_mm=2.0, way_mm=3.0, speed_mm_per_s=2.0, still_s=0.4):
+    """Drags that begin slowly, from rest."""
+    half, takes = 0.5 * way_mm, way_mm / speed_mm_per_s
+    there = 0.5 + still_s + takes
+    return path([(0, -half, -0.5), (0.5, -half, depth_mm), (0.5 + still_s, -half, depth_mm), (there, half, depth_mm), (there + still_s, half, depth_mm),
+                 (there + still_s + takes, -half, depth_mm)])
+
+
 PROTOCOL = {"press": press, "swing": swing, "drag": drag}
+MOTIONS = dict(PROTOCOL, breakaway=breakaway, deeper=lambda: press(4.0, 8.0))
 
 
 def truth_keys(youngs_modulus_pa, stiffness_s, static, kinetic):

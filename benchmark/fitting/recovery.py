@@ -5,6 +5,7 @@ a finer simulation, recorded with noise, and fitted. Prints errors and how often
 figures.
 
   benchmark/fitting/recovery.py --trials 10             some 100 s each on two cores
+  benchmark/fitting/recovery.py --static                drags that begin from rest as well, and static friction fitted: what they tell of it
   benchmark/fitting/recovery.py --same-mesh             data of the very model that fits them: what noise alone does
   benchmark/fitting/recovery.py --write-example FOLDER  press.csv, swing.csv, drag.csv, deeper.csv of config/calibration
 """
@@ -19,8 +20,10 @@ sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 import phantom_study as study  # noqa: E402 (the path comes first)
 from fitting import forward, run  # noqa: E402
 
-FITS = ["youngs_modulus_pa:1e3..1e5", "stiffness_s:1e-3..1e-1", "kinetic:0.05..1.2", "offset_m:-5e-4..5e-4"]
-NAMES = ["E", "damping", "kinetic", "offset"]  # static friction is what a drag does not tell: the fit has the scene's, the truth another
+# Without --static the fit has the scene's static friction, the truth another: what a drag of the protocol does not tell.
+FITS = {"E": "youngs_modulus_pa:1e3..1e5", "damping": "stiffness_s:1e-3..1e-1", "kinetic": "kinetic:0.05..1.2", "offset": "offset_m:-5e-4..5e-4",
+        "static": "static:0.05..1.4"}
+NAMES = ["E", "damping", "kinetic", "offset"]
 WANTED = {"E": 0.03, "damping": 0.15, "kinetic": 0.02}  # largest errors that are allowed; and nine of ten truths inside
 EXAMPLE = {"youngs_modulus_pa": 7000.0, "stiffness_s": 0.014, "static": 0.45, "kinetic": 0.3}
 
@@ -32,7 +35,7 @@ def random_truth(generator):
 
 
 def recordings(truth, noise, generator, names, workers, settings):
-    motions = {name: study.PROTOCOL.get(name, lambda: study.press(4.0, 8.0))() for name in names}
+    motions = {name: study.MOTIONS[name]() for name in names}
     keys = dict(study.truth_keys(**truth), **settings)
     forces = workers.map(study.true_forces, [(keys, motion) for motion in motions.values()])
     offset_m = noise.offset_m * generator.standard_normal(3)
@@ -45,14 +48,18 @@ def trial(seed, noise, arguments, workers):
     generator = numpy.random.default_rng(seed)
     truth = random_truth(generator)
     settings = {} if arguments.same_mesh else study.TRUTH
-    raw, offset_m = recordings(truth, noise, generator, study.PROTOCOL, workers, settings)
-    setup = study.setup(FITS, workers, starts=0, seed=seed, say=print if arguments.verbose else lambda line: None)
+    names = NAMES + ["static"] * arguments.static
+    motions = [*study.PROTOCOL] + ["breakaway"] * arguments.static
+    raw, offset_m = recordings(truth, noise, generator, motions, workers, settings)
+    setup = study.setup([FITS[name] for name in names], workers, starts=0, seed=seed, say=print if arguments.verbose else lambda line: None)
     finer = {} if arguments.same_mesh else study.FINER
     answer, _, problem, _ = run.fit(setup, [study.as_fit_sees(one) for one in raw], cross_check=False, finer=finer)
     for sentence in answer.unidentified:
         print("trial %d: %s" % (seed, sentence))
-    true_values = [truth["youngs_modulus_pa"], truth["stiffness_s"], truth["kinetic"], offset_m[2]]
-    for i, (name, true) in enumerate(zip(NAMES, true_values)):
+    true_values = {"E": truth["youngs_modulus_pa"], "damping": truth["stiffness_s"], "kinetic": truth["kinetic"], "static": truth["static"],
+                   "offset": offset_m[2]}
+    for i, name in enumerate(names):
+        true = true_values[name]
         slope = answer.parameters[i].slope(answer.point[i])
         yield [seed, name, true, answer.values[i], *answer.interval(i), slope * answer.noise_half[i], slope * answer.model_half[i],
                problem.evaluations]
@@ -61,7 +68,7 @@ def trial(seed, noise, arguments, workers):
 def summary(rows):
     print("| parameter | error: median, largest | 95 % interval: median half width | truth inside | by noise alone |\n|---|---|---|---|---|")
     good = True
-    for name in NAMES:
+    for name in dict.fromkeys(row[1] for row in rows):
         mine = numpy.array([row[2:8] for row in rows if row[1] == name], float)
         scale = mine[:, 0] if name in ("E", "damping") else numpy.full(len(mine), 1e-3 if name == "offset" else 1.0)
         error, half = numpy.abs(mine[:, 1] - mine[:, 0]) / scale, 0.5 * (mine[:, 3] - mine[:, 2]) / scale
@@ -90,6 +97,7 @@ def main():
     parser.add_argument("--trials", type=int, default=10, help="default: %(default)s")
     parser.add_argument("--first-seed", type=int, default=1, help="default: %(default)s")
     parser.add_argument("--no-pose-noise", action="store_true", help="poses are off by the session's constant alone")
+    parser.add_argument("--static", action="store_true")
     parser.add_argument("--same-mesh", action="store_true")
     parser.add_argument("--csv", help="table of every trial")
     parser.add_argument("--verbose", action="store_true", help="the fits' progress")
@@ -102,7 +110,7 @@ def main():
     noise, rows = study.Noise(pose_m=0.0 if arguments.no_pose_noise else 1e-4), []
     for seed in range(arguments.first_seed, arguments.first_seed + arguments.trials):
         rows += list(trial(seed, noise, arguments, workers))
-        for row in rows[-len(NAMES):]:
+        for row in [row for row in rows if row[0] == seed]:
             print("trial %d %-8s truth %.5g found %.5g  95 %%: %.5g .. %.5g  noise ± %.3g model ± %.3g  %d evaluations" % tuple(row), flush=True)
     good = summary(rows)
     if arguments.csv:

@@ -30,12 +30,6 @@ LameParameters shapeParameters(const MaterialDescription& material) {
 // the stiffness again would leave round-off behind that others notice.
 constexpr double kLargeDeformation = 30.0;
 
-/// What a patch adds to its elements.
-struct InPatch {
-  double pressure = 0.0;      ///< to the factor of dJ/dF, Pa
-  double flat_modulus = 0.0;  ///< where J is below kFlat, Pa; 0: no patch
-};
-
 InPatch inPatch(const TetElement& element, double pressure) { return {pressure, kFlatModulus * element.lame.mu}; }
 
 /// dJ/dF.
@@ -95,7 +89,7 @@ class ElementStiffness {
 
   TangentBlocks simple(std::size_t lane) const {
     const LameParameters& material = tets_.elements[elements_[lane]].lame;
-    return tangentBlocks({matrixInLane(lanes_.F, lane), material, lanes_.pressure[lane], lanes_.flat_modulus[lane]},
+    return tangentBlocks({matrixInLane(lanes_.F, lane), material, {lanes_.pressure[lane], lanes_.flat_modulus[lane]}},
                          tets_.shapeGradients(elements_[lane]), lanes_.volume[lane]);
   }
 

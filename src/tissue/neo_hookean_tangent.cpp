@@ -41,8 +41,8 @@ SpectralTangent spectralTangent(const TangentPoint& point) {
   const double I = sigma.squaredNorm();
   const double along_F = material.mu - material.mu / (I + 1.0);
   const double J = sigma.prod();
-  const double flat = J < kFlat ? point.flat_modulus : 0.0;
-  const double along_C = material.lambda * (J - 1.0) - 0.75 * material.mu + flat * (J - kFlat) + point.pressure;
+  const double flat = J < kFlat ? point.patch.flat_modulus : 0.0;
+  const double along_C = material.lambda * (J - 1.0) - 0.75 * material.mu + flat * (J - kFlat) + point.patch.pressure;
   const Vector3 cofactors(sigma[1] * sigma[2], sigma[2] * sigma[0], sigma[0] * sigma[1]);
   tangent.stretch = 2.0 * material.mu / ((I + 1.0) * (I + 1.0)) * sigma * sigma.transpose() +
                     (material.lambda + flat) * cofactors * cofactors.transpose();

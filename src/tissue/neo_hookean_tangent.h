@@ -17,12 +17,17 @@
 
 namespace tissue_contact {
 
+/// What a patch adds to its elements.
+struct InPatch {
+  double pressure = 0.0;      ///< to the factor of dJ/dF, Pa
+  double flat_modulus = 0.0;  ///< where J is below kFlat, Pa; 0: no patch
+};
+
 /// What the stiffness of an element is made from.
 struct TangentPoint {
   Matrix3 F;
-  LameParameters material;    ///< lambda and mu of the model, Pa
-  double pressure = 0.0;      ///< of its patch: adds to the factor of dJ/dF, Pa
-  double flat_modulus = 0.0;  ///< resists where J is below kFlat, Pa; 0: no patch
+  LameParameters material;  ///< lambda and mu of the model, Pa
+  InPatch patch;
 };
 
 constexpr std::size_t kTangentBlocks = 10;
