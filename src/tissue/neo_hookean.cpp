@@ -71,6 +71,7 @@ class ElementStiffness {
     if (count_ == kLanes) addAll();
   }
 
+ private:
   void addAll() {
     if (count_ == 0) return;
     const unsigned char failed = computeTangents(lanes_);
@@ -80,7 +81,6 @@ class ElementStiffness {
     count_ = 0;
   }
 
- private:
   TangentBlocks fast(std::size_t lane) const {
     TangentBlocks blocks;
     for (std::size_t k = 0; k < kTangentBlocks; ++k) blocks[k] = matrixInLane(lanes_.blocks[k], lane);
