@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "support/text_scene.h"
+#include "tissue_contact/tissue/material_preset.h"
 
 namespace tissue_contact {
 namespace {
@@ -127,7 +129,7 @@ TEST(Advisor, TellsMaterialsByNameWithTheirSources) {
   EXPECT_EQ(
       named[0],
       "material of tissue 'block': liver, E 5400 Pa (range of the source: 4200 to 6600), nu 0.45, density 1060 kg/m^3, "
-      "damping.stiffness_s 0.003 s; G = 1.8 ± 0.4 kPa, quasistatic; E = 3 G" +
+      "damping.stiffness_s 0.003 s; G = 1.8 +- 0.4 kPa, quasistatic; E = 3 G" +
           source);
   EXPECT_EQ(
       named[1],
@@ -141,6 +143,11 @@ TEST(Advisor, TellsMaterialsByNameWithTheirSources) {
             std::string::npos)
       << changed[0];
   EXPECT_EQ(presetLines("material: liver", "liver").size(), 1U) << "nothing else";
+  for (const MaterialPreset& preset :
+       materialPresets()) {  // rosconsole writes other characters as ? where the locale is C
+    const std::string line = presetLines("material: " + std::string(preset.name)).at(0);
+    EXPECT_TRUE(std::all_of(line.begin(), line.end(), [](char c) { return c >= ' ' && c <= '~'; })) << line;
+  }
   const std::vector<std::string> stiff = presetLines("material: liver", "{preset: liver, youngs_modulus_pa: 20000}");
   ASSERT_EQ(stiff.size(), 2U);
   EXPECT_NE(stiff[1].find("liver, E 20000 Pa (as the scene says; by name 5400)"), std::string::npos) << stiff[1];
