@@ -72,7 +72,9 @@ std::vector<Settings> peerSizes(const ScenePlan& plan, const SceneOptions& optio
     longer.dt_s *= 2.0;
     Settings finer = sizes.front();
     finer.cells = plan.meshes.front();
-    sizes.insert(sizes.end(), {longer, finer});
+    Settings finest = finer;  // how far it comes with nodes everywhere
+    finest.cells = plan.meshes.back();
+    sizes.insert(sizes.end(), {longer, finer, finest});
   }
   return sizes;
 }

@@ -21,7 +21,7 @@ struct PeerResult {
 /// @param damped false: without the tissue's damping, which costs the peer most of its time and changes a slow press little.
 PeerResult runPeer(const BenchmarkScene& scene, const Settings& settings, const PressDragMotion& motion, bool damped);
 
-/// The meshes and steps the peer is run at: the shipped one, and in a full run twice the step and the next finer mesh.
+/// The meshes and steps the peer is run at: the shipped one, and in a full run twice the step, the next finer mesh and the finest.
 std::vector<Settings> peerSizes(const ScenePlan& plan, const SceneOptions& options);
 
 }  // namespace tissue_contact

@@ -87,9 +87,9 @@ Motion PressDragMotion::motion() const {
   };
 }
 
-PressDragMotion pressDragMotion(const SceneOptions& options) {
+PressDragMotion pressDragMotion(const SceneOptions& options, bool beginning) {
   PressDragMotion motion;
-  if (options.quick) motion.drag_m = 0.004;
+  if (options.quick || beginning) motion.drag_m = 0.004;
   return motion;
 }
 
@@ -103,9 +103,7 @@ ScenePlan pressDragPlan(const SceneOptions& options) {
   plan.scene.environment.urdf_text = [](const std::string&) { return probeUrdf(kProbeRadius); };
   plan.scene.scene = parseScene(pressDragYaml(), "press-drag", plan.scene.environment.package_path);
   plan.scene.motion = motion.motion();
-  PressDragMotion beginning = motion;
-  beginning.drag_m = 0.004;
-  plan.short_motion = beginning.motion();
+  plan.short_motion = pressDragMotion(options, true).motion();
   plan.duration_s = motion.duration_s();
   plan.has_peer = true;
   plan.steps_s = {0.0005, 0.002, 0.005, 0.01};

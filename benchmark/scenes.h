@@ -53,7 +53,8 @@ struct PressDragMotion {
 };
 constexpr double kPressDragMu = 0.4;
 constexpr double kProbeRadius = 0.005;  ///< m, urdf/probe.urdf
-PressDragMotion pressDragMotion(const SceneOptions& options);
+/// @param beginning only its first 4 mm of drag, as short_motion has them
+PressDragMotion pressDragMotion(const SceneOptions& options, bool beginning = false);
 Vector3 pressDragBase();  ///< of the probe, m
 
 ScenePlan pressDragPlan(const SceneOptions& options);

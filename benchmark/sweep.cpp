@@ -207,7 +207,8 @@ class Sweep {
 
   void addPeer(const SceneOptions& options, const Settings& settings, bool damped) {
     progress_.begin(describe(settings) + ": bullet", 0.5 * workOf(plan_, settings));
-    const PeerResult peer = runPeer(plan_.scene, settings, pressDragMotion(options), damped);
+    const PressDragMotion motion = pressDragMotion(options, nodesOf(settings) > kLargeMesh);
+    const PeerResult peer = runPeer(plan_.scene, settings, motion, damped);
     progress_.end();
     BenchmarkRow row = timed(peer.run.step_s, peer.run.simulated_s);
     row.method = peer.name;

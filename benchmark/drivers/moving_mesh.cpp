@@ -1,8 +1,10 @@
 /// A ball wanders over a block whose mesh follows it: prints what the steps cost in which the mesh moves and the others, and how
 /// much the force turns in either; of the stepping thread, and by the clock on the wall, which also has in it what steps wait for the
-/// worker that prepares meshes. The ball (5 mm) is pressed 2 mm deep and slides along a figure of eight.
-/// usage: moving_mesh [--speed M_PER_S] [--length M] [--refinement never|auto|MAP] [--tolerance T] [--trace FILE] [--surfaces FILE]
-///   --trace: every step as CSV; --surfaces: the surface at six moments, for plot_moving_mesh.py
+/// worker that prepares meshes. The ball is pressed .4 of its radius deep and slides along a figure of eight.
+/// usage: moving_mesh [--speed M_PER_S] [--length M] [--radius M] [--block X_M,Y_M,Z_M,CELLS_X,CELLS_Y,CELLS_Z] [--mesh FILE]
+///                    [--refinement never|auto|MAP] [--tolerance T] [--trace FILE] [--surfaces FILE]
+///   --mesh: the same block from a Gmsh file (roam.py); --trace: every step as CSV; --surfaces: the surface at six moments, for
+///   plot_moving_mesh.py
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -24,7 +26,7 @@ namespace {
 using namespace tissue_contact;
 
 constexpr double kStep = 0.001;    // s
-constexpr double kDown = 0.0021;   // m, of which .1 mm through air
+constexpr double kAir = 0.0001;    // m, between ball and block at the start
 constexpr double kDownTime = 0.1;  // s
 constexpr double kRest = 0.1;      // s
 constexpr int kMoments = 6;
@@ -33,14 +35,17 @@ using Arguments = std::map<std::string, std::string>;
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 Arguments parse(int argc, char** argv) {
-  Arguments arguments = {{"--speed", "0.02"},     {"--length", "0.2"}, {"--refinement", "auto"},
-                         {"--tolerance", "1e-4"}, {"--trace", ""},     {"--surfaces", ""}};
+  Arguments arguments = {
+      {"--speed", "0.02"}, {"--length", "0.2"},      {"--radius", "0.005"},   {"--block", "0.1,0.1,0.04,10,10,4"},
+      {"--mesh", ""},      {"--refinement", "auto"}, {"--tolerance", "1e-4"}, {"--trace", ""},
+      {"--surfaces", ""}};
   for (int i = 1; i < argc; i += 2) {
     const auto value = arguments.find(argv[i]);
     if (value == arguments.end() || i + 1 == argc) {
       throw std::invalid_argument(
-          "usage: moving_mesh [--speed M_PER_S] [--length M] [--refinement never|auto|MAP] [--tolerance T] "
-          "[--trace FILE] [--surfaces FILE]");
+          "usage: moving_mesh [--speed M_PER_S] [--length M] [--radius M] [--block "
+          "X_M,Y_M,Z_M,CELLS_X,CELLS_Y,CELLS_Z] "
+          "[--mesh FILE] [--refinement never|auto|MAP] [--tolerance T] [--trace FILE] [--surfaces FILE]");
     }
     value->second = argv[i + 1];
   }
@@ -62,15 +67,27 @@ File open(const Arguments& arguments, const std::string& name) {
 }
 
 Simulator makeScene(const Arguments& arguments) {
+  double x, y, z;
+  int cells[3];
+  if (std::sscanf(arguments.at("--block").c_str(), "%lf,%lf,%lf,%d,%d,%d", &x, &y, &z, cells, cells + 1, cells + 2) !=
+      6)
+    throw std::invalid_argument("--block: '" + arguments.at("--block") +
+                                "'; give three lengths and three numbers of cells");
+  const std::string geometry = arguments.at("--mesh").empty()
+                                   ? "block: {size_m: [" + std::to_string(x) + ", " + std::to_string(y) + ", " +
+                                         std::to_string(z) + "], cells: [" + std::to_string(cells[0]) + ", " +
+                                         std::to_string(cells[1]) + ", " + std::to_string(cells[2]) + "]}"
+                                   : "mesh: {file: " + arguments.at("--mesh") + ", remove_unreferenced_nodes: true}";
+  const double radius = positive(arguments, "--radius");
   const std::string yaml =
-      "tissues:\n  - name: block\n    block: {size_m: [0.10, 0.10, 0.04], cells: [10, 10, 4]}\n"
-      "    refinement: " +
-      arguments.at("--refinement") +
+      "tissues:\n  - name: block\n    " + geometry + "\n    refinement: " + arguments.at("--refinement") +
       "\n    material: {model: corotational, youngs_modulus_pa: 5000, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n"
       "    damping: {stiffness_s: 0.003}\n    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
       "instruments:\n  - name: probe\n    urdf: package://tissue_contact/urdf/probe.urdf\n    tip_link: tip\n"
-      "    joint_state_topics: [/probe/joint_states]\n    base_pose: {position_m: [0, 0, 0.0451]}\n"
-      "    contact_links: [{link: tip, shapes: [{sphere: {radius_m: 0.005}}]}]\n"
+      "    joint_state_topics: [/probe/joint_states]\n    base_pose: {position_m: [0, 0, " +
+      std::to_string(z + radius + kAir) +
+      "]}\n    contact_links: [{link: tip, shapes: [{sphere: {radius_m: " + std::to_string(radius) +
+      "}}]}]\n"
       "solver: {tolerance: " +
       arguments.at("--tolerance") +
       ", iterations: 100}\n"
@@ -88,17 +105,17 @@ double wallSeconds() {
 Vector3 eight(double angle) { return {0.033 * std::sin(angle), 0.033 * std::sin(2.0 * angle), 0.0}; }
 
 /// Joint positions of every step.
-std::vector<Vector3> pathOf(double speed, double length) {
+std::vector<Vector3> pathOf(double speed, double length, double depth) {
   std::vector<Vector3> path;
   for (int k = 1; kStep * k <= kDownTime + kRest; ++k) {
-    path.emplace_back(0.0, 0.0, -kDown * std::min(1.0, kStep * k / kDownTime));
+    path.emplace_back(0.0, 0.0, -depth * std::min(1.0, kStep * k / kDownTime));
   }
   const auto steps = static_cast<long>(length / (speed * kStep));
   double angle = 0.0;
   for (long k = 0; k < steps; ++k) {
     constexpr double kSmall = 1e-6;  // for the derivative of the path
     angle += speed * kStep * kSmall / (eight(angle + kSmall) - eight(angle)).norm();
-    path.emplace_back(eight(angle) - Vector3(0.0, 0.0, kDown));
+    path.emplace_back(eight(angle) - Vector3(0.0, 0.0, depth));
   }
   return path;
 }
@@ -130,7 +147,8 @@ void print(const char* name, const Steps& steps) {
 }
 
 void run(const Arguments& arguments) {
-  const std::vector<Vector3> path = pathOf(positive(arguments, "--speed"), positive(arguments, "--length"));
+  const std::vector<Vector3> path = pathOf(positive(arguments, "--speed"), positive(arguments, "--length"),
+                                           0.4 * positive(arguments, "--radius") + kAir);
   const File trace = open(arguments, "--trace");
   const File surfaces = open(arguments, "--surfaces");
   Simulator simulator = makeScene(arguments);
