@@ -4,7 +4,8 @@ processor. What stands below its first heading of the second order is written by
 
 usage, after scripts/build and `make -C "$(scripts/build --where)" step_costs memory`:
     scripts/make_performance_doc.py --before DIR [--before-name NAME] [--no-counts]
-  --before DIR        where the libtissue_contact_core.so to compare with lies (<build>/devel/lib of an older checkout)
+  --before DIR        build directory of an older checkout. Has it no step_costs, that of the first commit with one serves (567058a: put
+                      benchmark/drivers/step_costs.cpp there and make it): programs and libraries of two states do not mix
   --before-name NAME  what to call it (default: its directory)
   --no-counts         without instruction counts (valgrind), which take most of the time
 Needs gmsh (and valgrind). Half an hour.
@@ -68,8 +69,12 @@ def run(command, **more):
     return checked(command, result.returncode, result.stdout, result.stderr)
 
 
-def environment(library):
-    return dict(os.environ, LD_LIBRARY_PATH=library + ":" + os.environ.get("LD_LIBRARY_PATH", ""))
+def step_costs(build):
+    return os.path.join(build, "benchmark", "drivers", "step_costs")
+
+
+def environment(build):
+    return dict(os.environ, LD_LIBRARY_PATH=os.path.join(build, "devel", "lib") + ":" + os.environ.get("LD_LIBRARY_PATH", ""))
 
 
 def figures(text):
@@ -91,26 +96,26 @@ def solver_error(trace, converged):
     return math.sqrt(off / sum(b[0] ** 2 + b[1] ** 2 for _, b in steps))
 
 
-def converged_trace(program, library, mesh, arguments, scratch):
+def converged_trace(build, mesh, arguments, scratch):
     """Of the same motion with every step solved to the end."""
     values = dict(zip(arguments[::2], arguments[1::2]), **CONVERGED)
     trace = os.path.join(scratch, "converged.csv")
-    run([program, mesh, "--trace", trace] + [word for pair in values.items() for word in pair], env=environment(library))
+    run([step_costs(build), mesh, "--trace", trace] + [word for pair in values.items() for word in pair], env=environment(build))
     return trace
 
 
-def pair(program, libraries, arguments, traces):
+def pair(builds, arguments, traces):
     """Both at once on one processor, so that both meet the same disturbances."""
-    both = [subprocess.Popen(["taskset", "-c", "0", program] + arguments + ["--trace", trace], env=environment(library),
+    both = [subprocess.Popen(["taskset", "-c", "0", step_costs(build)] + arguments + ["--trace", trace], env=environment(build),
                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
-            for library, trace in zip(libraries, traces)]
+            for build, trace in zip(builds, traces)]
     return [figures(checked(process.args, process.returncode, *said))
             for process, said in [(process, process.communicate()) for process in both]]
 
 
-def growth_table(program, library):
+def growth_table(build):
     """Median step over nodes, and the exponent of a power law through all of them."""
-    rows = [figures(run([program, mesh] + GROWTH_ARGUMENTS, env=environment(library))) for mesh in GROWTH]
+    rows = [figures(run([step_costs(build), mesh] + GROWTH_ARGUMENTS, env=environment(build))) for mesh in GROWTH]
     logs = [(math.log(nodes), math.log(median)) for nodes, median, _ in rows]
     mean = [sum(column) / len(logs) for column in zip(*logs)]
     exponent = sum((x - mean[0]) * (y - mean[1]) for x, y in logs) / sum((x - mean[0]) ** 2 for x, _ in logs)
@@ -118,12 +123,12 @@ def growth_table(program, library):
         "| %d | %.2f | %.2f |" % (nodes, median, 1e3 * median / nodes) for nodes, median, _ in rows]
 
 
-def count(program, library, mesh, scratch):
+def count(build, mesh, scratch):
     """Instructions per step: in all, and of each part."""
     out = os.path.join(scratch, "callgrind")
     run(["valgrind", "--tool=callgrind", "--callgrind-out-file=" + out,
-         "--toggle-collect=tissue_contact::Simulator::advance*", program, mesh, "--drag", str(COUNTED_DRAG)],
-        env=environment(library))
+         "--toggle-collect=tissue_contact::Simulator::advance*", step_costs(build), mesh, "--drag", str(COUNTED_DRAG)],
+        env=environment(build))
     lines = re.findall(r"^ *([\d,]+) \([ \d.]+%\) +(.*)$", run(["callgrind_annotate", "--threshold=100", out]), re.M)
     numbers = [(int(number.replace(",", "")), what) for number, what in lines]
     total = numbers[0][0]
@@ -143,8 +148,10 @@ def main():
     parser.add_argument("--no-counts", action="store_true")
     options = parser.parse_args()
     build = run([os.path.join(PACKAGE, "scripts", "build"), "--where"]).strip()
-    program = os.path.join(build, "benchmark", "drivers", "step_costs")
-    libraries = [options.before, os.path.join(build, "devel", "lib")]
+    builds = [options.before, build]
+    for needed in builds:
+        if not os.access(step_costs(needed), os.X_OK):
+            sys.exit("make_performance_doc.py: %s is not built" % step_costs(needed))
     before = options.before_name or options.before
     commit = run(["git", "-C", PACKAGE, "rev-parse", "--short", "HEAD"]).strip()
     with open(DOC, encoding="utf-8") as old:  # what stands there by hand
@@ -167,22 +174,22 @@ def main():
                 "|---|---|---|---|---|---|---|---|---|"]
         for name, mesh, arguments, wanted, wanted_error in ROWS:
             traces = [os.path.join(scratch, which + ".csv") for which in ("before", "after")]
-            (nodes, *old), (_, *new) = pair(program, libraries, [mesh_of(mesh)] + arguments, traces)
-            error = solver_error(traces[1], converged_trace(program, libraries[1], mesh_of(mesh), arguments, scratch))
+            (nodes, *old), (_, *new) = pair(builds, [mesh_of(mesh)] + arguments, traces)
+            error = solver_error(traces[1], converged_trace(build, mesh_of(mesh), arguments, scratch))
             settings = dict(zip(arguments[::2], arguments[1::2]))
             text.append("| %s | %s (%s) | %d | %.2f / %.2f | %.2f / %.2f | %.2f | %s | %.2f %% | %s |"
                         % (name, settings["--tolerance"], settings.get("--iterations", "30"), nodes, *old, *new, old[0] / new[0], wanted, 100 * error,
                            wanted_error))
             print(text[-1], flush=True)
-        text += growth_table(program, libraries[1])
+        text += growth_table(build)
         text += ["", "Memory (`benchmark/drivers/memory.cpp`; 1.5 kB per node wanted with Gauss–Seidel):", ""]
-        text += ["    " + line for line in run([os.path.join(os.path.dirname(program), "memory")]).splitlines()]
+        text += ["    " + line for line in run([os.path.join(os.path.dirname(step_costs(build)), "memory")], env=environment(build)).splitlines()]
         if not options.no_counts:
             text += ["", "Instructions (callgrind), millions per step, and the shares of its parts:", "",
                      "| | in all | " + " | ".join(name for name, _ in PARTS) + " | rest |", "|---" * (len(PARTS) + 3) + "|"]
             for name, mesh in COUNTED:
-                for which, library in zip(("before", "after"), libraries):
-                    total, parts = count(program, library, mesh_of(mesh), scratch)
+                for which, counted in zip(("before", "after"), builds):
+                    total, parts = count(counted, mesh_of(mesh), scratch)
                     text.append("| %s, %s | %.2f | " % (name, which, total / 1e6)
                                 + " | ".join("%.0f %%" % (100 * part) for part in parts) + " |")
     text += ["", notes]
