@@ -111,6 +111,15 @@ class ReplayOutputs(harness.TestCase):
             self.assertIn(words, errors)
         self.assertNotIn("its refinement asks", self.replay("enough.csv", scene=self.refined_scene(name="auto.yaml")))
 
+    def test_grips_that_are_not_solved_to_the_end_are_told(self):
+        errors = self.replay("cut.csv", "--set", "solver.iterations=1", "--set", "solver.tolerance=1e-9")
+        told = re.search(r"static friction held in (\d+) intervals, of which (\d+) ended before the solver's tolerance", errors)
+        rows = [row for row in harness.read_table(self.path("cut.csv")) if int(row["static_contacts"]) > 0]
+        self.assertEqual(int(told[1]), len(rows), errors)
+        self.assertEqual(int(told[2]), len(rows), errors)
+        self.assertIn("--set solver.iterations=10 (now 1)", errors)
+        self.assertNotIn("ended before", self.replay("out.csv"))
+
     def test_times_go_to_a_file_of_their_own(self):
         self.replay("out.csv", "--timing", self.path("timing.csv"))
         self.replay("without.csv")

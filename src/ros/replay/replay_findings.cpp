@@ -1,9 +1,11 @@
 #include "ros/replay/replay_findings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <ostream>
 #include <sstream>
 
+#include "scene/scene_ranges.h"
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/tissue/element_materials.h"
 
@@ -20,7 +22,12 @@ void ReplayFindings::note(const PlayedSample& played, long steps) {
   const StepReport& report = simulator_.report();
   jumps_ += static_cast<long>(report.jumped);
   discarded_ += static_cast<long>(report.discarded);
-  not_converged_ += static_cast<long>(report.stop != StopReason::kTolerance);
+  const auto missed = static_cast<long>(report.stop != StopReason::kTolerance);
+  not_converged_ += missed;
+  if (report.static_contacts > 0) {
+    ++sticking_;
+    sticking_not_converged_ += missed;
+  }
   pinched_ += static_cast<long>(report.pinched_contacts > 0);
   noteLaw(played);
   noteCells(played);
@@ -71,6 +78,7 @@ void ReplayFindings::summarize() const {
   summarizeForceErrors();
   summarizeLaw();
   summarizeCells();
+  summarizeGrips();
 }
 
 void ReplayFindings::summarizeForceErrors() const {
@@ -94,6 +102,22 @@ void ReplayFindings::summarizeCells() const {
   log_ << prefix_ << "cells of tissue '" << simulator_.scene().tissues[tissue].name << "' up to "
        << coarsest_cells_.factor << " times as long as its refinement asks for, to keep to nodes_at_most; such "
        << "cells in " << coarse_ << " intervals\n";
+}
+
+// A step that is cut short leaves contacts static that would slip if it were solved to the end: config/two_psm.yaml held a flap so with a coefficient of
+// friction with which it slips.
+void ReplayFindings::summarizeGrips() const {
+  constexpr long kFew = 10;  // single steps are cut short wherever contact begins
+  constexpr double kSmallShare = 0.05;
+  if (sticking_not_converged_ < kFew ||
+      static_cast<double>(sticking_not_converged_) < kSmallShare * static_cast<double>(sticking_)) {
+    return;
+  }
+  const int iterations = simulator_.scene().solver.iterations;
+  log_ << prefix_ << "static friction held in " << sticking_ << " intervals, of which " << sticking_not_converged_
+       << " ended before the solver's tolerance: what is held there may slip when solved to the end. See whether it "
+          "does with --set solver.iterations="
+       << std::min(10 * iterations, kMaxIterations) << " (now " << iterations << ")\n";
 }
 
 }  // namespace tissue_contact

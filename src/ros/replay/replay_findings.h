@@ -34,7 +34,8 @@ class ReplayFindings {
   std::vector<std::pair<std::string, long>> counts() const;
   /// The same in a sentence: "3 jumps, 0 intervals not converged, ...".
   std::string countsText() const;
-  /// Lines on likely errors of forces, on a law beyond its range and on coarse cells, where there is something to tell.
+  /// Lines on likely errors of forces, on a law beyond its range, on coarse cells and on grips that are not solved to the end, where there is
+  /// something to tell.
   void summarize() const;
 
  private:
@@ -44,6 +45,7 @@ class ReplayFindings {
   void summarizeForceErrors() const;
   void summarizeLaw() const;
   void summarizeCells() const;
+  void summarizeGrips() const;
 
   const Simulator& simulator_;
   std::ostream& log_;
@@ -52,6 +54,8 @@ class ReplayFindings {
   long jumps_ = 0;
   long discarded_ = 0;
   long not_converged_ = 0;
+  long sticking_ = 0;                ///< intervals in which static friction held something
+  long sticking_not_converged_ = 0;  ///< of these, those that missed the tolerance
   long implausible_ = 0;
   long pinched_ = 0;
   std::vector<ForceErrorSummary> force_errors_;  ///< per instrument
