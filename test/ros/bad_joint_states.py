@@ -63,6 +63,9 @@ class BadJointStates(harness.TestCase):
             self.assertTrue(any(words in w for w in warnings), (words, warnings))
         self.assertLess(len(warnings), bad)  # throttled
 
+        source.send(last + rospy.Duration(0.01), (0.0, 0.0, 10.0))  # taken, but is no metre of this robot
+        log.wait(lambda messages: any("z at 10 (-1 to 1)" in m.msg for m in messages), "a warning of far outside limits")
+
 
 if __name__ == "__main__":
     harness.main(BadJointStates)

@@ -32,6 +32,7 @@ Stepper::Stepper(Simulator& simulator, JointStatePlayer& player, JointStateInbox
       chooser_(simulator.scene().step.joint_states, simulated_time),
       pacing_(simulator.scene().step.max_lag_s),
       receipts_(player.topics().size()),
+      joint_watch_(simulator, player),
       requests_([&inbox] { inbox.wake(); }) {
   simulator_.setStepObserver([this] { noteStep(); });
   player_.setLimits(limits(0));
@@ -99,8 +100,14 @@ void Stepper::takeReceived() {
     if (player_.triggers(state->topic)) {
       receipts_.note(state->topic, {state->sample.stamp_ns, state->received_s, state->age_s});
     }
-    player_.push(state->topic, std::move(state->sample));
+    push(std::move(*state));
   }
+}
+
+void Stepper::push(ReceivedState state) {
+  joint_watch_.note(state.topic, state.sample);
+  for (const std::string& line : joint_watch_.takeNews(state.received_s)) ROS_WARN_STREAM(line);
+  player_.push(state.topic, std::move(state.sample));
 }
 
 /// Between two moments: goes on with what people have changed.

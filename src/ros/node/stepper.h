@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "ros/joint_watch.h"
 #include "ros/node/health.h"
 #include "ros/node/joint_state_inbox.h"
 #include "ros/node/joint_state_policy.h"
@@ -55,6 +56,7 @@ class Stepper {
   void run();
   AdvanceLimits limits(int most_steps) const;
   void takeReceived();
+  void push(ReceivedState state);
   bool playNext();
   void retune();
   void publish(const PlayedSample& played, const std::optional<Receipt>& receipt, int steps, double step_time_s);
@@ -77,6 +79,7 @@ class Stepper {
   PolicyChooser chooser_;
   LivePacing pacing_;
   ReceiptTimes receipts_;
+  JointWatch joint_watch_;
   bool newest_state_ = false;
   double newest_received_s_ = 0.0;  ///< of the last state handed to the player
   std::int64_t played_stamp_ns_ = 0;

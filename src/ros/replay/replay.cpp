@@ -22,9 +22,9 @@
 #include "ros/bag/joint_state_bag.h"
 #include "ros/bag/recorded_changes.h"
 #include "ros/conversions.h"
+#include "ros/joint_watch.h"
 #include "ros/replay/bag_recorder.h"
 #include "ros/replay/interruption.h"
-#include "ros/replay/joint_names.h"
 #include "ros/replay/manifest.h"
 #include "ros/replay/replay_batch.h"
 #include "ros/replay/replay_files.h"
@@ -58,7 +58,7 @@ class Replay {
         scene_(loadReplayedScene(options, publish_)),
         simulator_(scene_, bagEnvironment(scene_, options.bag_file, options.urdf_file)),
         player_(simulator_),
-        joint_names_(simulator_, player_),
+        joint_watch_(simulator_, player_),
         findings_(simulator_, log, kPrefix) {
     requireModelsKept(options, simulator_);
     for (const Advice& advice : simulator_.advice()) {
@@ -135,7 +135,7 @@ class Replay {
     const auto take = [&](int topic, JointStateSample sample, ros::Time recorded) {
       played_s_ = recorded.toSec() - window.from.toSec();  // a ros::Duration ends after 68 years
       recorded_ = recorded;
-      joint_names_.note(topic, sample.names);
+      joint_watch_.note(topic, sample);
       player_.push(topic, std::move(sample));
       playAll();
     };
@@ -281,7 +281,7 @@ class Replay {
   }
 
   void summarize() const {
-    for (const std::string& line : joint_names_.findings()) log_ << kPrefix << "warning: " << line << "\n";
+    for (const std::string& line : joint_watch_.findings()) log_ << kPrefix << "warning: " << line << "\n";
     log_ << kPrefix << player_.count(Verdict::kAccepted) << " joint states accepted";
     for (int v = 1; v < kVerdictCount; ++v) {
       const auto verdict = static_cast<Verdict>(v);
@@ -317,7 +317,7 @@ class Replay {
   std::optional<RecordedChanges> changes_;
   std::optional<std::int64_t> played_ns_;  ///< stamp of the moment played last
   std::optional<ReplayTable> table_;
-  JointNames joint_names_;
+  JointWatch joint_watch_;
   ReplayFindings findings_;
   std::optional<TimingTable> timing_;
   std::unique_ptr<BagRecorder> recorder_;

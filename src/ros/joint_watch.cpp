@@ -1,0 +1,123 @@
+#include "ros/joint_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <utility>
+
+#include "tissue_contact/core/text.h"
+
+namespace tissue_contact {
+namespace {
+
+constexpr std::size_t kMostForeign = 12;  // told; a message may name a million
+constexpr double kHearing_s = 5.0;        // a jaw's topic may begin some seconds after its arm's
+
+bool isFarOutside(const IndependentJoint& joint, double position) {
+  const double range = joint.upper - joint.lower;
+  return range > 0.0 && std::isfinite(position) && (position > joint.upper + range || position < joint.lower - range);
+}
+
+}  // namespace
+
+JointWatch::JointWatch(const Simulator& simulator, const JointStatePlayer& player)
+    : simulator_(simulator), topics_(player.topics().size()), seen_(simulator.instruments().size()) {
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    for (const JointStateTopic& described : simulator.scene().instruments[i].joint_state_topics) {
+      const auto at = std::find(player.topics().begin(), player.topics().end(), described.name);
+      topics_[static_cast<std::size_t>(at - player.topics().begin())].listeners.push_back(static_cast<int>(i));
+    }
+  }
+}
+
+void JointWatch::note(int topic, const JointStateSample& sample) {
+  if (sample.names.size() != sample.positions.size()) return;  // the player refuses it
+  Topic& heard = topics_[static_cast<std::size_t>(topic)];
+  if (sample.names != heard.last_names) noteNames(heard, sample.names);
+  for (const Known& known : heard.known) {
+    const auto i = static_cast<std::size_t>(known.instrument);
+    const double position = sample.positions[known.place];
+    const RobotModel& model = simulator_.instruments()[i].model();
+    if (isFarOutside(model.joints()[static_cast<std::size_t>(known.joint)], position)) {
+      seen_[i].outside.emplace(known.joint, position);
+    }
+  }
+}
+
+void JointWatch::noteNames(Topic& heard, const std::vector<std::string>& names) {
+  heard.last_names = names;
+  heard.known.clear();
+  for (const int i : heard.listeners) {
+    Seen& seen = seen_[static_cast<std::size_t>(i)];
+    std::set<int> known_here;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const int joint = simulator_.instruments()[static_cast<std::size_t>(i)].jointOfRecordedName(names[k]);
+      if (joint >= 0) {
+        seen.joints.insert(joint);
+        if (known_here.insert(joint).second)
+          heard.known.push_back({k, i, joint});  // a message may name one a million times
+      } else if (seen.foreign.size() < kMostForeign &&
+                 std::find(seen.foreign.begin(), seen.foreign.end(), names[k]) == seen.foreign.end()) {
+        seen.foreign.push_back(names[k]);
+      }
+    }
+  }
+}
+
+std::vector<std::string> JointWatch::findings() const {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    for (std::string& line : std::vector<std::string>{namesText(i), limitsText(i)}) {
+      if (!line.empty()) lines.push_back(std::move(line));
+    }
+  }
+  return lines;
+}
+
+std::vector<std::string> JointWatch::takeNews(double now_s) {
+  std::vector<std::string> lines;
+  if (!began_s_) began_s_ = now_s;
+  const bool has_heard = now_s - *began_s_ >= kHearing_s;
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    if (has_heard && !std::exchange(seen_[i].told_names, true)) lines.push_back(namesText(i));
+    if (!seen_[i].outside.empty() && !std::exchange(seen_[i].told_limits, true)) lines.push_back(limitsText(i));
+  }
+  lines.erase(std::remove(lines.begin(), lines.end(), std::string()), lines.end());
+  return lines;
+}
+
+/// Empty where names are as they should be.
+std::string JointWatch::namesText(std::size_t instrument) const {
+  const std::vector<IndependentJoint>& joints = simulator_.instruments()[instrument].model().joints();
+  const Seen& seen = seen_[instrument];
+  std::vector<std::string> still;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (seen.joints.count(static_cast<int>(j)) == 0) still.push_back(joints[j].name);
+  }
+  if (still.empty() || seen.foreign.empty()) return {};
+  return "no joint state names these joints of '" + simulator_.instruments()[instrument].name() +
+         "', which stay where the scene puts them: " + listOf(still) +
+         "; those that come name others, which are none of its joints: " + listOf(seen.foreign) +
+         ". If they are the same, map them by joint_names";
+}
+
+/// Empty where no joint was far outside its limits.
+std::string JointWatch::limitsText(std::size_t instrument) const {
+  std::vector<std::string> outside;
+  for (const auto& [joint, position] : seen_[instrument].outside) {
+    const IndependentJoint& limited =
+        simulator_.instruments()[instrument].model().joints()[static_cast<std::size_t>(joint)];
+    std::ostringstream text;
+    text << std::setprecision(4) << limited.name << " at " << position << " (" << limited.lower << " to "
+         << limited.upper << ")";
+    outside.push_back(text.str());
+  }
+  if (outside.empty()) return {};
+  return "joints of '" + simulator_.instruments()[instrument].name() +
+         "' are far outside the limits of their URDF: " + listOf(outside) +
+         ". Positions are taken in rad and m; look whether they come in degrees or millimetres, and whether "
+         "joint_names maps each to its joint";
+}
+
+}  // namespace tissue_contact

@@ -1,0 +1,83 @@
+/// @file
+/// Joint states that would move a tool silently to a wrong place: other names, other units.
+#include "ros/joint_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "support/text_scene.h"
+
+namespace tissue_contact {
+namespace {
+
+/// A slide x of 0 to 0.2 m, a hinge y without limits worth the name, and a continuous joint z.
+const char kRobot[] =
+    "<robot name='r'><link name='a'/><link name='b'/><link name='c'/><link name='tip'><collision><geometry>"
+    "<sphere radius='0.005'/></geometry></collision></link>"
+    "<joint name='x' type='prismatic'><parent link='a'/><child link='b'/>"
+    "<limit lower='0' upper='0.2' effort='1' velocity='1'/></joint>"
+    "<joint name='y' type='revolute'><parent link='b'/><child link='c'/>"
+    "<limit lower='0' upper='0' effort='0' velocity='0'/></joint>"
+    "<joint name='z' type='continuous'><parent link='c'/><child link='tip'/></joint></robot>";
+
+class JointWatchOfOneArm : public testing::Test {
+ protected:
+  void hear(const std::vector<std::string>& names, const std::vector<double>& positions) {
+    watch.note(0, {1, names, positions});
+  }
+
+  Simulator simulator = makeSimulator(blockScene() + onlyBall("[0, 0, 0.5]"), {{"probe", kRobot}});
+  JointStatePlayer player{simulator};
+  JointWatch watch{simulator, player};
+};
+
+TEST_F(JointWatchOfOneArm, UsualStatesAreNoFinding) {
+  hear({"x", "y", "z"}, {0.1, 0.0, 0.0});
+  hear({"x", "y", "z"}, {-0.19, 90.0, 1e6});  // just within one more range; joints without limits
+  hear({"x", "y", "z", "other_arm"}, {0.39, 0.0, 0.0, 1e9});
+  hear({"x"}, {});
+  EXPECT_EQ(watch.findings(), std::vector<std::string>());
+  EXPECT_EQ(watch.takeNews(0.0), std::vector<std::string>());
+  EXPECT_EQ(watch.takeNews(100.0), std::vector<std::string>());
+}
+
+TEST_F(JointWatchOfOneArm, MillimetresAreFarOutsideTheLimits) {
+  hear({"z", "x", "y"}, {0.0, 120.0, 0.0});
+  hear({"z", "x", "y"}, {0.0, 130.0, 0.0});
+  const std::vector<std::string> lines = watch.findings();
+  ASSERT_EQ(lines.size(), 1U);
+  for (const char* words : {"'probe'", "x at 120 (0 to 0.2)", "rad and m", "joint_names"}) {
+    EXPECT_NE(lines[0].find(words), std::string::npos) << words << " in: " << lines[0];
+  }
+  EXPECT_EQ(watch.takeNews(0.0), lines);
+  EXPECT_EQ(watch.takeNews(1.0), std::vector<std::string>()) << "told twice";
+}
+
+TEST_F(JointWatchOfOneArm, APositionThatIsNoNumberIsNotOutside) {
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) hear({"x", "y", "z"}, {bad, 0.0, 0.0});
+  EXPECT_EQ(watch.findings(), std::vector<std::string>());
+}
+
+TEST_F(JointWatchOfOneArm, AJointThatGoesByAnotherNameIsFoundOnceEveryTopicHadTime) {
+  hear({"x", "y", "wrist"}, {0.1, 0.0, 0.0});
+  const std::vector<std::string> lines = watch.findings();
+  ASSERT_EQ(lines.size(), 1U);
+  for (const char* words : {"'probe'", "puts them: z", "none of its joints: wrist", "joint_names"}) {
+    EXPECT_NE(lines[0].find(words), std::string::npos) << words << " in: " << lines[0];
+  }
+  EXPECT_EQ(watch.takeNews(10.0), std::vector<std::string>());
+  EXPECT_EQ(watch.takeNews(14.9), std::vector<std::string>());
+  EXPECT_EQ(watch.takeNews(15.0), lines);
+  EXPECT_EQ(watch.takeNews(30.0), std::vector<std::string>()) << "told twice";
+}
+
+TEST_F(JointWatchOfOneArm, AJawThatWasNotRecordedIsNoFinding) {
+  hear({"x", "y"}, {0.1, 0.0});
+  EXPECT_EQ(watch.findings(), std::vector<std::string>());
+}
+
+}  // namespace
+}  // namespace tissue_contact
