@@ -4,12 +4,14 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
 
 #include "core/descriptor.h"
+#include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 namespace {
@@ -50,8 +52,28 @@ std::string standInProblem(const std::string& file) {
   throw std::invalid_argument(what + " '" + file + "' " + why);
 }
 
+/// The name of a file beside `file` that differs in capitals alone (CAD programs write .STL); empty if there is none.
+std::string otherCapitals(const std::string& file) {
+  const auto lower = [](std::string name) {
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    return name;
+  };
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::absolute(file, error);
+  for (std::filesystem::directory_iterator at(path.parent_path(), error), end; !error && at != end;
+       at.increment(error)) {
+    const std::string name = at->path().filename().string();
+    if (name != path.filename() && lower(name) == lower(path.filename().string())) return name;
+  }
+  return {};
+}
+
 [[noreturn]] void refuseUnreadable(const std::string& file, const std::string& what, int error) {
-  if (error == ENOENT || error == ENOTDIR) refuse(file, what, "does not exist; correct the path");
+  if (error == ENOENT || error == ENOTDIR) {
+    const std::string other = otherCapitals(file);
+    refuse(file, what,
+           "does not exist; correct the path" + (other.empty() ? "" : " ('" + printable(other) + "' lies there)"));
+  }
   refuse(file, what, "cannot be read: " + std::generic_category().message(error));
 }
 

@@ -23,7 +23,8 @@ fs::path inPackage(const std::string& uri, const std::string& rest, const Packag
   const std::string directory = package_path ? package_path(package) : "";
   if (directory.empty()) {
     refuse(uri, "names the ROS package \"" + package +
-                    "\", which is not known; install it, source its setup file, or give a plain path");
+                    "\", which is not known; install it, source its setup file, name the folder it lies in in "
+                    "ROS_PACKAGE_PATH, or give a plain path");
   }
   return fs::path(directory) / rest.substr(start);
 }

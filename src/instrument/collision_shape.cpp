@@ -8,6 +8,7 @@
 
 #include "mesh/edge_table.h"
 #include "tissue_contact/core/check.h"
+#include "tissue_contact/core/resolve_path.h"
 #include "tissue_contact/instrument/instrument_description.h"
 #include "tissue_contact/mesh/triangle_mesh.h"
 
@@ -25,12 +26,13 @@ void check(const CylinderGeometry& cylinder) {
   requirePositive("cylinder length", cylinder.length_m, "m");
 }
 
+/// A path that is not absolute is one that could not be resolved when the URDF was read (meshPath() in parse_urdf.cpp).
 void check(const MeshGeometry& mesh) {
   if (std::filesystem::path(mesh.file).is_absolute()) return;
-  throw std::invalid_argument(
-      "mesh '" + mesh.file +
-      "' was not found: its ROS package is unknown, its scheme is not package:// or file://, or "
-      "it is a relative path in a URDF that is not a file");
+  resolvePath(mesh.file, "", nullptr);  // tells what is wrong with a URI
+  throw std::invalid_argument("mesh '" + mesh.file +
+                              "' was not found: it is relative, and the URDF is the text of a parameter, in no folder; "
+                              "give the URDF's file as urdf in the scene, or package:// paths in the URDF");
 }
 
 /// Contact needs to know which side is inside. Meshes as they come have small holes; an open sheet is mostly border.

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "instrument/urdfdom_document.h"
+#include "instrument/xml_tags.h"
 #include "tissue_contact/core/read_file.h"
 
 namespace tissue_contact {
@@ -98,8 +99,10 @@ class UrdfReader {
                        : joint.type == urdf::Joint::UNKNOWN  ? "unknown"
                                                              : nullptr;
     if (type != nullptr) {
-      refuse("joint '" + joint.name + "' has the unsupported type '" + type +
-             "'; use fixed, revolute, continuous or prismatic");
+      refuse(
+          "joint '" + joint.name + "' has the unsupported type '" + type +
+          "'; use fixed, revolute, continuous or prismatic (for a base that moves: fixed, and tf_frame in the scene's "
+          "base_pose)");
     }
   }
 
@@ -225,13 +228,14 @@ class UrdfReader {
   std::map<std::string, Drive> drives_;
 };
 
-/// Whether a xacro element stands outside comments, which xacro copies to what it expands.
+/// Whether xacro has yet to expand it: a xacro element, or a ${...} in a tag, as the oldest files have without any such element. Comments
+/// do not count, since xacro copies them to what it expands.
 bool needsXacro(const std::string& xml) {
-  std::size_t at = 0;
-  while ((at = xml.find('<', at)) != std::string::npos) {
-    if (xml.compare(at, 7, "<xacro:") == 0) return true;
-    at = xml.compare(at, 4, "<!--") == 0 ? xml.find("-->", at) : at + 1;
-    if (at == std::string::npos) break;
+  XmlTagScanner scanner(xml);
+  for (XmlTag tag; scanner.next(tag);) {
+    if (tag.name.substr(0, 6) == "xacro:") return true;
+    const std::string_view text = std::string_view(xml).substr(tag.position);
+    if (text.substr(0, text.find('>')).find("${") != std::string_view::npos) return true;
   }
   return false;
 }

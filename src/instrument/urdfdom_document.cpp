@@ -99,7 +99,8 @@ urdf::ModelInterfaceSharedPtr parseWithUrdfdom(const std::string& xml, const std
   if (model && !captured.lostSomething()) return model;
   if (!captured.errors().empty()) reason += (reason.empty() ? "" : "; ") + captured.errors();
   if (reason.empty()) reason = "no reason given";
-  throw std::invalid_argument(source + ": urdfdom refuses this URDF: " + reason);
+  throw std::invalid_argument(source + ": urdfdom refuses this URDF: " + reason +
+                              "; correct or delete what it names, which check_urdf finds as well");
 }
 
 }  // namespace tissue_contact

@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/simulation/joint_state_player.h"
@@ -94,7 +95,13 @@ Verdict JointStatePlayer::judgeJoints(const JointStateSample& sample, const Topi
   }
   if (any_known) return Verdict::kAccepted;
   detail = "none of its joints (" + listOf(sample.names) +
-           ") is a joint of an instrument on this topic, neither by its " + "URDF name nor through joint_names";
+           ") is a joint of an instrument on this topic; map them by joint_names";
+  for (const Listener& listener : topic.listeners) {
+    const Instrument& instrument = simulator_.instruments()[static_cast<std::size_t>(listener.instrument)];
+    std::vector<std::string> own;
+    for (const IndependentJoint& joint : instrument.model().joints()) own.push_back(joint.name);
+    detail += "; those of '" + instrument.name() + "': " + listOf(own);
+  }
   return Verdict::kNoKnownJoint;
 }
 

@@ -167,13 +167,14 @@ void report(const std::string& name, std::size_t triangles, const MeshField& fie
                 1e3 * field.rms_deviation, 1e3 * field.median_deviation);
   preparation.say("mesh " + name + text.data() + origin);
   reportJump(name, grid, preparation);
-  constexpr double kLargeTool = 2.0;  // m
+  constexpr double kLargeTool = 2.0;   // m
+  constexpr double kSmallTool = 1e-3;  // m
   const double extent = (field.high - field.low).maxCoeff();
-  if (extent > kLargeTool) {
-    std::snprintf(text.data(), text.size(), ": it is %.3g m long; is it in millimetres? then give it scale 0.001",
-                  extent);
-    preparation.say("mesh " + name + text.data());
-  }
+  if (extent < kLargeTool && extent > kSmallTool) return;
+  std::snprintf(text.data(), text.size(), ": it is %.3g m long; %s", extent,
+                extent > kSmallTool ? "is it in millimetres? then give it scale 0.001"
+                                    : "is it in metres already? then give it scale 1");
+  preparation.say("mesh " + name + text.data());
 }
 
 }  // namespace

@@ -142,6 +142,17 @@ std::string openingIn(const TriangleMesh& mesh, const std::string& name) {
   return "";
 }
 
+TEST(MeshField, AsksWhetherTheScaleIsRightWhereAToolIsTooLargeOrTooSmall) {
+  const auto asked = [](double scale) {
+    std::string lines;
+    for (const std::string& line : saidOf(boxMesh(scale * Vector3(0.01, 0.006, 0.02), 2), "tool")) lines += line + "\n";
+    return lines;
+  };
+  EXPECT_EQ(asked(1.0).find(" m long"), std::string::npos) << asked(1.0);
+  EXPECT_NE(asked(1e3).find("it is 40 m long; is it in millimetres? then give it scale 0.001"), std::string::npos);
+  EXPECT_NE(asked(1e-3).find("it is 4e-05 m long; is it in metres already? then give it scale 1"), std::string::npos);
+}
+
 /// Without the triangles that lie wholly in a box.
 TriangleMesh withoutTrianglesIn(const Eigen::AlignedBox3d& box, TriangleMesh mesh) {
   const auto is_in = [&](const Triangle& t) {

@@ -79,6 +79,14 @@ TEST_F(ReadFile, NothingButRegularFilesIsOpened) {
   EXPECT_NE(refusal(path("round")).find("Too many levels of symbolic links"), std::string::npos);
 }
 
+TEST_F(ReadFile, TellsOfAFileWhoseNameDiffersInCapitalsAlone) {
+  write("tool.stl", "x");
+  EXPECT_EQ(refusal(path("tool.STL")),
+            "test file '" + path("tool.STL") + "' does not exist; correct the path ('tool.stl' lies there)");
+  fs::create_symlink("nowhere", directory_ / "dangling");
+  EXPECT_EQ(refusal(path("dangling")), "test file '" + path("dangling") + "' does not exist; correct the path");
+}
+
 TEST_F(ReadFile, StandInsAreCalledThat) {
   const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 1\n";
   EXPECT_NE(refusal(write("a", pointer)).find("git lfs pull"), std::string::npos);

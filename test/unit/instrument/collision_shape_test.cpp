@@ -57,8 +57,10 @@ TEST(MakeCollisionShape, RefusesBadOrigins) {
 
 TEST(MakeCollisionShape, RefusesMeshesWithoutAPlace) {
   expectContains(refusalOf(MeshGeometry{"package://ghost/a.stl", Vector3::Ones()}),
-                 {"package://ghost/a.stl", "ROS package is unknown"});
-  expectContains(refusalOf(MeshGeometry{"a.stl", Vector3::Ones()}), {"'a.stl'", "relative path"});
+                 {"package://ghost/a.stl", "ROS package \"ghost\"", "ROS_PACKAGE_PATH"});
+  expectContains(refusalOf(MeshGeometry{"a.stl", Vector3::Ones()}), {"'a.stl'", "it is relative", "urdf"});
+  expectContains(refusalOf(MeshGeometry{"http://host/a.stl", Vector3::Ones()}),
+                 {"http://host/a.stl", "scheme \"http\""});
   expectContains(refusalOf(MeshGeometry{"/none/a.stl", Vector3::Ones()}), {"/none/a.stl", "does not exist"});
 }
 

@@ -81,7 +81,7 @@ const Malformed kJoints[] = {
      {"joint 'j'", "planar", "use fixed, revolute, continuous or prismatic"}},
     {"Floating",
      robot(kTwoLinks + joint("j", "floating", "a", "b")),
-     {"joint 'j'", "floating", "use fixed, revolute, continuous or prismatic"}},
+     {"joint 'j'", "floating", "use fixed, revolute, continuous or prismatic", "tf_frame"}},
     {"UnknownType", robot(kTwoLinks + joint("j", "screw", "a", "b")), {"[j]", "screw"}},
     {"MissingLimits",
      robot(kTwoLinks + "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/></joint>"),
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(Joints, MalformedUrdf, testing::ValuesIn(kJoints), name
 const Malformed kGeometries[] = {
     {"Undefined",
      robot("<link name=\"a\"><collision><geometry><torus/></geometry></collision></link>"),
-     {"torus", "a"}},
+     {"torus", "a", "correct or delete"}},
     // The collision shape is fine; urdfdom stops reading the link at the inertia and only logs that.
     {"BehindAPartThatUrdfdomDrops",
      robot("<link name=\"a\"><inertial><mass value=\"1\"/></inertial><collision><geometry><sphere radius=\"1\"/>"
@@ -238,6 +238,10 @@ TEST(ParseUrdf, XacroIsCalledThatUnlessItIsInAComment) {
   expectContains(refusal([&] { parse("<link name=\"a\"/>" + macro); }),
                  {"xacro FILE.urdf.xacro >", "robot_description"});
   EXPECT_EQ(parse("<!-- " + macro + " --><link name=\"a\"/>").links().size(), 1u);
+  // The oldest xacro files have no such element; their names would become those of links.
+  expectContains(refusal([&] { parse("<link name=\"${prefix}a\"/>"); }), {"xacro FILE.urdf.xacro >"});
+  EXPECT_EQ(parse("<!-- <link name=\"${prefix}b\"/> --><link name=\"a\"/>").links().size(), 1u);
+  EXPECT_EQ(parse("<link name=\"a\"/><gazebo>${x}</gazebo>").links().size(), 1u);
 }
 
 TEST(LoadUrdf, RelativeMeshesAreBesideTheFile) {
