@@ -98,7 +98,7 @@ std::string JointWatch::namesText(std::size_t instrument) const {
   if (still.empty() || seen.foreign.empty()) return {};
   return "no joint state names these joints of '" + simulator_.instruments()[instrument].name() +
          "', which stay where the scene puts them: " + listOf(still) +
-         "; those that come name others, which are none of its joints: " + listOf(seen.foreign) +
+         "; those that come name others, which are none of its independent joints: " + listOf(seen.foreign) +
          ". If they are the same, map them by joint_names";
 }
 

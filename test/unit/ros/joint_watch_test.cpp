@@ -65,7 +65,7 @@ TEST_F(JointWatchOfOneArm, AJointThatGoesByAnotherNameIsFoundOnceEveryTopicHadTi
   hear({"x", "y", "wrist"}, {0.1, 0.0, 0.0});
   const std::vector<std::string> lines = watch.findings();
   ASSERT_EQ(lines.size(), 1U);
-  for (const char* words : {"'probe'", "puts them: z", "none of its joints: wrist", "joint_names"}) {
+  for (const char* words : {"'probe'", "puts them: z", "none of its independent joints: wrist", "joint_names"}) {
     EXPECT_NE(lines[0].find(words), std::string::npos) << words << " in: " << lines[0];
   }
   EXPECT_EQ(watch.takeNews(10.0), std::vector<std::string>());
