@@ -7,8 +7,9 @@
 
 #include <cstdint>
 
-// One build of a function for AVX2 and one for any processor, chosen when the library is loaded.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+// One build of a function for AVX2 and one for any processor, chosen when the library is loaded. A test compiles their sources
+// without (TISSUE_CONTACT_NO_CLONES) and compares the bits.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(TISSUE_CONTACT_NO_CLONES)
 #define TISSUE_CONTACT_CLONES __attribute__((target_clones("avx2", "default")))
 #else
 #define TISSUE_CONTACT_CLONES
