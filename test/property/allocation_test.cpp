@@ -16,8 +16,8 @@
 
 namespace {
 
-bool counting = false;
-long allocations = 0;
+thread_local bool counting = false;  // of the thread that steps: workers prepare meshes beside it
+thread_local long allocations = 0;
 
 #ifdef TISSUE_CONTACT_COUNTS_MALLOC
 void note() { allocations += counting ? 1 : 0; }
@@ -112,19 +112,21 @@ TEST_P(Allocation, NoneInAStepThatHasBeenDoneBefore) {
   EXPECT_EQ(run(simulator), 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(, Allocation,
-                         testing::Values(Case{"Corotational", "", ""},                                                //
-                                         Case{"AveragedDilatation", ", model: corotational, dilatation: patch", ""},  //
-                                         Case{"NeoHookean", ", model: neo_hookean", ""},                              //
-                                         Case{"AveragedNeoHookean", ", model: neo_hookean, dilatation: patch", ""},   //
-                                         Case{"Linear", ", model: linear", ""},                                       //
-                                         Case{"MassSpring", ", model: mass_spring", ""},                              //
-                                         Case{"NeverAsleep", "", "advisor: {sleep: never}\n"},
-                                         Case{"AttachedAndPressed", "", "", kAttachedAndPressed},
-                                         Case{"Viscoelastic", ", prony_series: [{modulus_ratio: 1, time_s: 0.1}]", ""},
-                                         Case{"FrictionOverPressure", "", "", "",
-                                              ", pressures_pa: [0, 5000], pressure_factors: [1, 0.8]"}),
-                         [](const auto& one) { return std::string(one.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    , Allocation,
+    testing::Values(Case{"Corotational", "", ""},                                                //
+                    Case{"AveragedDilatation", ", model: corotational, dilatation: patch", ""},  //
+                    Case{"NeoHookean", ", model: neo_hookean", ""},                              //
+                    Case{"AveragedNeoHookean", ", model: neo_hookean, dilatation: patch", ""},   //
+                    Case{"Linear", ", model: linear", ""},                                       //
+                    Case{"MassSpring", ", model: mass_spring", ""},                              //
+                    Case{"NeverAsleep", "", "advisor: {sleep: never}\n"},
+                    Case{"AttachedAndPressed", "", "", kAttachedAndPressed},
+                    Case{"Viscoelastic", ", prony_series: [{modulus_ratio: 1, time_s: 0.1}]", ""},
+                    Case{"FrictionOverPressure", "", "", "", ", pressures_pa: [0, 5000], pressure_factors: [1, 0.8]"},
+                    Case{"FrictionOverSpeed", "", "", "", ", speeds_m_per_s: [0, 0.05], speed_factors: [1, 0.8]"},
+                    Case{"AdaptedRotations", "", "advisor: {rotations: auto}\n"}),
+    [](const auto& one) { return std::string(one.param.name); });
 
 class AllocationAtRest : public Allocation {};
 
@@ -169,6 +171,85 @@ int allocatingSteps(Simulator& simulator, int steps, const Step& step) {
     }
   }
   return with;
+}
+
+/// A ball of 5 mm that presses into the middle of what lies 20 mm high, and drags over it, there and back.
+std::vector<VectorX> pressAndDrag(int k) {
+  const int dragged = std::max(0, k - 50);
+  return {Vector3(4e-5 * (dragged < 70 ? dragged : 140 - dragged), 0.0, -5e-5 * std::min(k, 50))};
+}
+
+TEST(AllocationOfScenes, NoneWhereASheetIsTouched) {
+#ifndef TISSUE_CONTACT_COUNTS_MALLOC
+  GTEST_SKIP() << "this build has a malloc of its own";
+#endif
+  Simulator simulator = makeSimulator(
+      "tissues:\n  - name: sheet\n    sheet: {size_m: [0.06, 0.06], cells: [8, 8], thickness_m: 0.001}\n"
+      "    pose: {position_m: [0, 0, 0.02]}\n"
+      "    material: {youngs_modulus_pa: 50000, poissons_ratio: 0.4, density_kg_per_m3: 1000}\n"
+      "    damping: {stiffness_s: 0.003}\n    fixed: [{plane: {point_m: [-0.03, 0, 0], normal: [1, 0, 0]}},\n"
+      "            {plane: {point_m: [0.03, 0, 0], normal: [-1, 0, 0]}}]\n"
+      "instruments:\n" +
+      probeEntry("probe", "/js", "[0, 0, 0.0255]") +
+      "friction: [{instrument: probe, tissue: sheet, law: orthotropic, static: [0.5, 0.3], kinetic: [0.4, 0.2],\n"
+      "            axis: {link_direction: [1, 0, 0]}}]\n");
+  EXPECT_EQ(allocatingSteps(simulator, 200, pressAndDrag), 0);
+  EXPECT_FALSE(simulator.contacts().empty());
+}
+
+/// A block under a probe, with more lines of the tissue and of the scene.
+Simulator makeProbedBlock(const std::string& tissue, const std::string& sections) {
+  return makeSimulator(blockScene() + tissue + "instruments:\n" + probeEntry("probe", "/js", "[0, 0, 0.0255]") +
+                       "friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}]\n" + sections);
+}
+
+/// The first step factors, then one where the ball has landed and one where it has slid; a factor is Eigen's, made anew.
+TEST(AllocationOfScenes, OnlyInTheFewStepsThatRenewAFactor) {
+#ifndef TISSUE_CONTACT_COUNTS_MALLOC
+  GTEST_SKIP() << "this build has a malloc of its own";
+#endif
+  Simulator simulator = makeProbedBlock("", "solver: {relaxation: cholesky}\n");
+  int moving = 0;
+  int held = 0;
+  for (int run = 0; run < 2; ++run) {
+    simulator.reset();
+    moving = held = 0;
+    for (int k = 0; k < 290; ++k) {
+      const bool allocated = stepAllocates(simulator, pressAndDrag(std::min(k, 190)));
+      (k <= 190 ? moving : held) += allocated ? 1 : 0;
+    }
+  }
+  EXPECT_GT(moving, 0) << "no factor was made";
+  EXPECT_LE(moving, 6);
+  EXPECT_EQ(held, 0);
+  EXPECT_FALSE(simulator.contacts().empty());
+}
+
+/// A move exchanges what the worker has made for what was there. Nodes carried over have memory of the new number, in the move and
+/// where its stiffness is begun, and what is handed to the worker may have some of its own.
+TEST(AllocationOfScenes, FewWhereAPreparedMeshIsTakenOver) {
+#ifndef TISSUE_CONTACT_COUNTS_MALLOC
+  GTEST_SKIP() << "this build has a malloc of its own";
+#endif
+  constexpr long kInAMove = 12;
+  constexpr long kBesideMoves = 2;
+  Simulator simulator = makeProbedBlock("    refinement: {cell_m: 0.003}\n", "");
+  for (int k = 0; k < 400; ++k) stepAllocates(simulator, pressAndDrag(k));
+  simulator.reset();
+  stepAllocates(simulator, pressAndDrag(0));  // has its mesh at once
+  const MeshMoves before = simulator.meshMoves(0);
+  int others = 0;
+  for (int k = 1; k < 400; ++k) {
+    const int revision = simulator.meshRevision(0);
+    const bool allocated = stepAllocates(simulator, pressAndDrag(k));
+    const bool moved = simulator.meshRevision(0) != revision;
+    EXPECT_LE(allocations, moved ? kInAMove : kBesideMoves) << k;
+    others += allocated && !moved ? 1 : 0;
+  }
+  const MeshMoves after = simulator.meshMoves(0);
+  EXPECT_EQ(after.at_once, before.at_once);
+  EXPECT_GT(after.prepared, before.prepared + 3);
+  EXPECT_LE(others, 2 * (after.prepared - before.prepared));  // begun, and its stiffness begun
 }
 
 TEST(AllocationOfScenes, NoneWhereTissuesTouch) {
