@@ -1,6 +1,6 @@
 /// Prints what an implicit step costs: press and drag (a 5 mm ball, 4 mm deep, 20 mm/s) on a block or on a Gmsh mesh of the
 /// same block, with the median and the 99th percentile of the processor time of a step in contact. `--trace FILE` writes
-/// every step: why was this one slow?
+/// every step, with its page faults: why was this one slow?
 /// usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--refinement never|auto|MAP] [--tolerance T] [--relaxation NAME] [--iterations N]
 /// [--step S] [--drag M] [--youngs-modulus PA] [--poissons-ratio NU] [--trace FILE]
 #include <algorithm>
@@ -79,21 +79,25 @@ void run(Simulator& simulator, const Arguments& arguments) {
   const std::string& trace = arguments.values.at("--trace");
   std::FILE* const file = trace.empty() ? nullptr : std::fopen(trace.c_str(), "w");
   if (!trace.empty() && file == nullptr) throw std::invalid_argument("--trace: cannot write '" + trace + "'");
-  if (file != nullptr) std::fprintf(file, "step,ms,iterations,contacts,static,kinetic,fx,fz\n");
+  if (file != nullptr)
+    std::fprintf(file, "step,ms,iterations,contacts,static,kinetic,fx,fz,minor_faults,major_faults\n");
   std::vector<double> ms;
   double iterations = 0.0;
   for (int k = 1; kSpeed * dt * k <= way; ++k) {
     const double path = kSpeed * dt * k;
     const std::vector<VectorX> joints = {Vector3(std::max(path - kDown, 0.0), 0.0, -std::min(path, kDown))};
+    const PageFaults faults_before = pageFaults();
     const double before = processorSeconds();
     simulator.advance(dt, joints);
     const double took = 1e3 * (processorSeconds() - before);
+    const PageFaults faults = pageFaults();
     const StepReport& report = simulator.report();
     const int contacts = report.open_contacts + report.static_contacts + report.kinetic_contacts;
     const Vector3 force = simulator.wrench(0).force;
     if (file != nullptr) {
-      std::fprintf(file, "%d,%.4f,%d,%d,%d,%d,%.9g,%.9g\n", k, took, report.iterations, contacts,
-                   report.static_contacts, report.kinetic_contacts, force.x(), force.z());
+      std::fprintf(file, "%d,%.4f,%d,%d,%d,%d,%.9g,%.9g,%ld,%ld\n", k, took, report.iterations, contacts,
+                   report.static_contacts, report.kinetic_contacts, force.x(), force.z(),
+                   faults.minor - faults_before.minor, faults.major - faults_before.major);
     }
     if (force.isZero(0.0))
       continue;  // not by the report, whose layout older libraries (make_performance_doc.py) do not share

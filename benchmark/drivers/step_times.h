@@ -2,6 +2,7 @@
 /// What drivers measure the time of steps by.
 #pragma once
 
+#include <sys/resource.h>
 #include <time.h>
 
 #include <algorithm>
@@ -15,6 +16,17 @@ inline double processorSeconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Of this thread so far: pages that it was the first to write to or that were in memory already, and pages read from a disk.
+struct PageFaults {
+  long minor, major;
+};
+
+inline PageFaults pageFaults() {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return {usage.ru_minflt, usage.ru_majflt};
 }
 
 /// The value below which this share of them lies; 0 without any.
