@@ -43,6 +43,14 @@ class Nodelet(harness.TestCase):
         # Cells of 10 mm under a ball of 5 mm: a warning. What was chosen is none.
         self.assertEqual({m.level for m in advice if "mesh of tissue 'block'" in m.msg}, {Log.WARN})
         self.assertEqual({m.level for m in advice if "mesh of" not in m.msg}, {Log.INFO})
+        # Once a press, when the strain under the ball first is too much for the law.
+        law = [m for m in log.wait(lambda all: any("beyond the range" in m.msg for m in all), "a warning of the law's range")
+               if "beyond the range" in m.msg]
+        self.assertLessEqual(len(law), 2)
+        for m in law:
+            self.assertEqual(m.level, Log.WARN)
+            self.assertRegex(m.msg, r"^1000\.12\d* s: tissue 'block' is strained by 0\.1\d under 'probe', beyond the range of the "
+                                    r"corotational law: .* % too small")
 
     def test_a_bad_scene_is_told(self):
         with nodelet("standalone", TYPE, "__name:=tissue_contact", "_scene:=/missing.yaml") as process:
