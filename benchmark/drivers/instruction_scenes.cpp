@@ -16,8 +16,8 @@ constexpr int kSteps = 400;
 
 struct Parts {
   std::string friction = "static: 0.6, kinetic: 0.4";  ///< keys of its only pair; empty: none
-  std::string material = "";                           ///< more keys of it
-  std::string tissue = "";                             ///< more lines of it
+  std::string material = {};                           ///< more keys of it
+  std::string tissue = {};                             ///< more lines of it
 };
 
 const std::map<std::string, Parts>& partsOfScenes() {
