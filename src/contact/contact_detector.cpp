@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "contact/conforming_gap.h"
+#include "contact/leaving_face.h"
 #include "contact/narrow_phase.h"
 #include "contact/shape/shape_union.h"
 #include "contact/tolerances.h"
@@ -228,14 +229,26 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
       corners_S[i] = X_WS.linear().transpose() * (x.col(contact.nodes[i]) - X_WS.translation());
       distances[i] = shape.distance->at(corners_S[i]).distance;
     }
-    const SignedDistance here = shape.distance->at(X_WS.linear().transpose() * (p_W - X_WS.translation()));
-    const Vector3 normal_W = (X_WS.linear() * here.normal).normalized();
-    const double gap =
-        conformingGap(corners_S, distances, contact.weights, here.distance).gap - surface.halfThickness();
-    const auto faces = [&](int triangle) {
+    const Vector3 p_S = X_WS.linear().transpose() * (p_W - X_WS.translation());
+    SignedDistance here = shape.distance->at(p_S);
+    here.distance = conformingGap(corners_S, distances, contact.weights, here.distance).gap;
+    const auto normalOf = [&](int triangle) {
       const Triangle& nodes = surface.triangles()[triangle];
-      return normal_W.dot(triangleNormal(x.col(nodes[0]), x.col(nodes[1]), x.col(nodes[2]))) < -kFacing;
+      return triangleNormal(x.col(nodes[0]), x.col(nodes[1]), x.col(nodes[2]));
     };
+    if (surface.isVolume() && shape.distance->hasFlatParts() && key.feature[1] < 0) {
+      Vector3 outward = Vector3::Zero();
+      double edge = 0.0;
+      surface.anyTriangleOf(key.feature, [&](int triangle) {
+        outward += normalOf(triangle);
+        for (const int end : surface.triangles()[triangle]) edge = std::max(edge, (x.col(end) - p_W).norm());
+        return false;
+      });
+      here = leavingFace(*shape.distance, p_S, X_WS.linear().transpose() * outward.normalized(), edge, here);
+    }
+    const Vector3 normal_W = (X_WS.linear() * here.normal).normalized();
+    const double gap = here.distance - surface.halfThickness();
+    const auto faces = [&](int triangle) { return normal_W.dot(normalOf(triangle)) < -kFacing; };
     if (!(gap <= margin_m + implementation_->deepestGroove(shape, X_WL[shape.instrument])) ||
         (surface.isVolume() && !surface.anyTriangleOf(key.feature, faces)))
       return false;

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "contact/conforming_gap.h"
+#include "contact/leaving_face.h"
 #include "contact/tolerances.h"
 
 namespace tissue_contact {
@@ -108,9 +109,26 @@ const NarrowPhase::NodeCache& NarrowPhase::measureVertex(int triangle, int corne
   cache.measured = call_index_;
   const SignedDistance here = call_.shape->at(cache.p_S);
   cache.distance = here.distance;
-  const bool touches = add(triangle, Vector3::Unit(corner), -1, here.normal, here.distance);
-  cache.contact_gap = touches ? here.distance : std::numeric_limits<double>::infinity();
+  const SignedDistance left = leftThrough(triangle, corner, here);
+  const bool touches = add(triangle, Vector3::Unit(corner), -1, left.normal, left.distance);
+  cache.contact_gap = touches ? left.distance : std::numeric_limits<double>::infinity();
   return cache;
+}
+
+/// leavingFace() of a vertex.
+SignedDistance NarrowPhase::leftThrough(int triangle, int corner, const SignedDistance& here) {
+  if (!call_.shape->hasFlatParts() || !call_.surface->isVolume() || !(here.distance <= call_.margin)) return here;
+  const int node = call_.surface->triangles()[triangle][corner];
+  Vector3 outward = Vector3::Zero();
+  double edge = 0.0;
+  call_.surface->anyTriangleOf({node, -1, -1}, [&](int other) {
+    outward += triangleNormalOf(other);
+    for (const int end : call_.surface->triangles()[other]) {
+      edge = std::max(edge, (nodePosition(end) - nodes_[node].p_S).norm());
+    }
+    return false;
+  });
+  return leavingFace(*call_.shape, nodes_[node].p_S, outward.normalized(), edge, here);
 }
 
 /// Distances change by no more than the way between the points, so far vertices may rule out the whole triangle.

@@ -7,6 +7,7 @@
 /// contact instead, which stay the same from step to step.
 ///
 /// Which contacts are real (shapes are solid):
+///  - Where the nearest face of a shape with edges stands across the surface, the one below it counts (leaving_face.h).
 ///  - On the boundary of a volume a contact counts when at least one surface triangle at its feature faces the
 ///    instrument (contact normal times triangle normal < -kFacing). A point of the tissue nearest to something outside
 ///    it always has such a triangle. The lower face of a thin layer pressed from above has none, nor has a surface that
@@ -77,6 +78,7 @@ class NarrowPhase {
   TrianglePoints trianglePoints(int triangle);
   std::array<double, 3> vertexDistances(int triangle) const;
   const NodeCache& measureVertex(int triangle, int corner);
+  SignedDistance leftThrough(int triangle, int corner, const SignedDistance& here);
   bool certainlyFar(int triangle, const TrianglePoints& points);
   double addCorners(int triangle, const TrianglePoints& points);
   double addCornerInFold(int triangle, const ShapeCorner& corner);

@@ -22,6 +22,7 @@ class FieldDistance : public ShapeDistance {
   Vector3 halfExtents(const Matrix3& R_WS) const override { return R_WS.cwiseAbs() * half_; }
   Vector3 boxCentre() const override { return centre_; }
   SignedDistance at(const Vector3& p_S) const override;
+  double edgeRadius() const override { return field_->grid.spacing; }
   const TriangleMesh* drawn() const override;
   /// The tips alone: rounded edges and corners need none.
   void foremostCorners(const Vector3& forward, const Eigen::AlignedBox3d& box,

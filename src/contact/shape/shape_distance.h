@@ -61,6 +61,9 @@ class ShapeDistance {
   /// The surface as it acts, where it is not that of the geometry itself; null: draw the geometry.
   virtual const TriangleMesh* drawn() const { return nullptr; }
 
+  /// Radius with which the distance rounds edges of the geometry, m.
+  virtual double edgeRadius() const { return 0.0; }
+
   /// Whether flat parts exist that can lie flush on a triangle, so that tissue vertices and shape corners matter.
   virtual bool hasFlatParts() const { return true; }
 
