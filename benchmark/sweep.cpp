@@ -260,6 +260,7 @@ class Sweep {
     const auto found = same_model_.find(sizeOf(settings));
     if (found != same_model_.end()) return found->second;
     BenchmarkScene scene = plan_.scene;
+    if (nodesOf(settings) > kLargeMesh && plan_.short_motion) scene.motion = plan_.short_motion;
     for (TissueDescription& tissue : scene.scene.tissues) tissue.material.dilatation = Dilatation::kElement;
     Run run = play(scene, convergedSettings(settings), "converged, elements as the peer's, ");
     return same_model_.emplace(sizeOf(settings), std::move(run)).first->second;

@@ -99,8 +99,7 @@ void run(Simulator& simulator, const Arguments& arguments) {
                    report.static_contacts, report.kinetic_contacts, force.x(), force.z(),
                    faults.minor - faults_before.minor, faults.major - faults_before.major);
     }
-    if (force.isZero(0.0))
-      continue;  // not by the report, whose layout older libraries (make_performance_doc.py) do not share
+    if (force.isZero(0.0)) continue;
     ms.push_back(took);
     iterations += report.iterations;
   }

@@ -61,6 +61,19 @@ Eigen::AlignedBox3d boxAround(const ShapeDistance& shape, const Pose& X_WS, doub
   return {Vector3(centre - half), Vector3(centre + half)};
 }
 
+VertexSurroundings surroundings(const MovingSurface& surface, const NodalVectors& x, const Pose& X_WS, int node,
+                                const Vector3& side_S) {
+  const auto inShape = [&](int n) -> Vector3 { return X_WS.linear().transpose() * (x.col(n) - X_WS.translation()); };
+  VertexSurroundings around;
+  surface.anyTriangleOf({node, -1, -1}, [&](int triangle) {
+    const Triangle& nodes = surface.triangles()[triangle];
+    const std::array<Vector3, 3> corners = {inShape(nodes[0]), inShape(nodes[1]), inShape(nodes[2])};
+    around.add(inShape(node), corners, triangleNormal(corners[0], corners[1], corners[2]), side_S);
+    return false;
+  });
+  return around;
+}
+
 }  // namespace
 
 struct ContactDetector::Implementation {
@@ -72,7 +85,7 @@ struct ContactDetector::Implementation {
   std::vector<ShapeContact> found;
   int pinched = 0;  ///< contacts left out by the last detect(), because there is no room for them
 
-  void detectPair(MovingSurface& surface, const TouchingShape& shape, const Pose& X_WS, double margin,
+  void detectPair(MovingSurface& surface, const TouchingShape& shape, const Pose& X_WS, double margin, bool lets_under,
                   std::vector<Contact>& contacts);
   double deepestGroove(const TouchingShape& shape, const std::vector<Pose>& X_WL) const;
   bool fitBetweenShapes(const TouchingShape& shape, const std::vector<std::vector<Pose>>& X_WL, Contact& contact) const;
@@ -118,7 +131,8 @@ void ContactDetector::detect(const std::vector<NodalVectors>& positions, const s
     for (const TouchingShape& shape : self.shapes) {
       const auto first = static_cast<std::ptrdiff_t>(contacts.size());
       const double groove = self.deepestGroove(shape, X_WL[shape.instrument]);
-      self.detectPair(surface, shape, X_WL[shape.instrument][shape.link] * shape.X_LS, margin_m + groove, contacts);
+      self.detectPair(surface, shape, X_WL[shape.instrument][shape.link] * shape.X_LS, margin_m + groove, groove == 0.0,
+                      contacts);
       if (self.shapes.size() == 1) continue;
       const auto is_none = [&](Contact& contact) {
         const bool has_room = self.fitBetweenShapes(shape, X_WL, contact);
@@ -130,13 +144,14 @@ void ContactDetector::detect(const std::vector<NodalVectors>& positions, const s
   }
 }
 
+/// @param lets_under not where another shape of the instrument closes the way below.
 void ContactDetector::Implementation::detectPair(MovingSurface& surface, const TouchingShape& shape, const Pose& X_WS,
-                                                 double margin, std::vector<Contact>& contacts) {
+                                                 double margin, bool lets_under, std::vector<Contact>& contacts) {
   const Eigen::AlignedBox3d box = boxAround(*shape.distance, X_WS, margin + surface.halfThickness());
   if (!surface.box().intersects(box)) return;
   surface.overlapping(box, candidates);
   if (candidates.empty()) return;
-  narrow_phase.findContacts(*shape.distance, X_WS, surface, candidates, margin, found);
+  narrow_phase.findContacts(*shape.distance, X_WS, surface, candidates, margin, found, lets_under);
   for (const ShapeContact& one : found) {
     Contact& contact = contacts.emplace_back();
     contact.key = {surface.tissue(), shape.instrument, shape.contact_link, shape.shape, one.feature, one.corner, 0, -1,
@@ -232,26 +247,17 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
     const Vector3 p_S = X_WS.linear().transpose() * (p_W - X_WS.translation());
     SignedDistance here = shape.distance->at(p_S);
     here.distance = conformingGap(corners_S, distances, contact.weights, here.distance).gap;
-    const auto normalOf = [&](int triangle) {
-      const Triangle& nodes = surface.triangles()[triangle];
-      return triangleNormal(x.col(nodes[0]), x.col(nodes[1]), x.col(nodes[2]));
-    };
-    if (surface.isVolume() && shape.distance->hasFlatParts() && key.feature[1] < 0) {
-      Vector3 outward = Vector3::Zero();
-      double edge = 0.0;
-      surface.anyTriangleOf(key.feature, [&](int triangle) {
-        outward += normalOf(triangle);
-        for (const int end : surface.triangles()[triangle]) edge = std::max(edge, (x.col(end) - p_W).norm());
-        return false;
-      });
-      here = leavingFace(*shape.distance, p_S, X_WS.linear().transpose() * outward.normalized(), edge, here);
+    const double groove = implementation_->deepestGroove(shape, X_WL[shape.instrument]);
+    if (groove == 0.0 && surface.isVolume() && key.feature[1] < 0 && key.corner < 0) {
+      here = leavingFace(*shape.distance, p_S, surroundings(surface, x, X_WS, key.feature[0], here.normal), here);
     }
     const Vector3 normal_W = (X_WS.linear() * here.normal).normalized();
     const double gap = here.distance - surface.halfThickness();
-    const auto faces = [&](int triangle) { return normal_W.dot(normalOf(triangle)) < -kFacing; };
-    if (!(gap <= margin_m + implementation_->deepestGroove(shape, X_WL[shape.instrument])) ||
-        (surface.isVolume() && !surface.anyTriangleOf(key.feature, faces)))
-      return false;
+    const auto faces = [&](int triangle) {
+      const Triangle& nodes = surface.triangles()[triangle];
+      return normal_W.dot(triangleNormal(x.col(nodes[0]), x.col(nodes[1]), x.col(nodes[2]))) < -kFacing;
+    };
+    if (!(gap <= margin_m + groove) || (surface.isVolume() && !surface.anyTriangleOf(key.feature, faces))) return false;
     contact.p_WC = p_W;
     contact.R_WC = contactFrame(normal_W);
     contact.gap_m = gap;

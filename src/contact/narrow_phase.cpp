@@ -54,8 +54,14 @@ void NarrowPhase::makeRoom(const MovingSurface& surface) {
 }
 
 void NarrowPhase::findContacts(const ShapeDistance& shape, const Pose& X_WS, const MovingSurface& surface,
-                               const std::vector<int>& candidates, double margin, std::vector<ShapeContact>& contacts) {
-  call_ = {&shape,   &surface, X_WS.linear().transpose(), X_WS.translation(), margin + surface.halfThickness(),
+                               const std::vector<int>& candidates, double margin, std::vector<ShapeContact>& contacts,
+                               bool lets_under) {
+  call_ = {&shape,
+           &surface,
+           X_WS.linear().transpose(),
+           X_WS.translation(),
+           margin + surface.halfThickness(),
+           lets_under && shape.hasFlatParts(),
            &contacts};
   ++call_index_;
   makeRoom(surface);
@@ -115,20 +121,18 @@ const NarrowPhase::NodeCache& NarrowPhase::measureVertex(int triangle, int corne
   return cache;
 }
 
-/// leavingFace() of a vertex.
+/// Which face of the shape holds a vertex (leaving_face.h).
 SignedDistance NarrowPhase::leftThrough(int triangle, int corner, const SignedDistance& here) {
-  if (!call_.shape->hasFlatParts() || !call_.surface->isVolume() || !(here.distance <= call_.margin)) return here;
+  if (!call_.lets_under || !call_.surface->isVolume() || !(here.distance <= call_.margin)) return here;
   const int node = call_.surface->triangles()[triangle][corner];
-  Vector3 outward = Vector3::Zero();
-  double edge = 0.0;
+  const Vector3 vertex = nodePosition(node);
+  VertexSurroundings around;
   call_.surface->anyTriangleOf({node, -1, -1}, [&](int other) {
-    outward += triangleNormalOf(other);
-    for (const int end : call_.surface->triangles()[other]) {
-      edge = std::max(edge, (nodePosition(end) - nodes_[node].p_S).norm());
-    }
+    const TrianglePoints points = trianglePoints(other);
+    around.add(vertex, points.corners, points.normal, here.normal);
     return false;
   });
-  return leavingFace(*call_.shape, nodes_[node].p_S, outward.normalized(), edge, here);
+  return leavingFace(*call_.shape, vertex, around, here);
 }
 
 /// Distances change by no more than the way between the points, so far vertices may rule out the whole triangle.

@@ -7,7 +7,8 @@
 /// contact instead, which stay the same from step to step.
 ///
 /// Which contacts are real (shapes are solid):
-///  - Where the nearest face of a shape with edges stands across the surface, the one below it counts (leaving_face.h).
+///  - Where the nearest face of a shape with edges stands across the surface at a vertex, the one below it counts
+///    (leaving_face.h).
 ///  - On the boundary of a volume a contact counts when at least one surface triangle at its feature faces the
 ///    instrument (contact normal times triangle normal < -kFacing). A point of the tissue nearest to something outside
 ///    it always has such a triangle. The lower face of a thin layer pressed from above has none, nor has a surface that
@@ -49,8 +50,10 @@ class NarrowPhase {
   /// @param candidates its triangles to look at, ascending.
   /// @param margin m.
   /// @param contacts overwritten, sorted by feature and corner. No allocation once the vectors have grown.
+  /// @param lets_under whether vertices beside an edge may pass below it (leaving_face.h).
   void findContacts(const ShapeDistance& shape, const Pose& X_WS, const MovingSurface& surface,
-                    const std::vector<int>& candidates, double margin, std::vector<ShapeContact>& contacts);
+                    const std::vector<int>& candidates, double margin, std::vector<ShapeContact>& contacts,
+                    bool lets_under = true);
 
  private:
   struct NodeCache {
@@ -70,6 +73,7 @@ class NarrowPhase {
     Matrix3 R_SW;
     Vector3 p_WS;
     double margin = 0.0;  ///< from the triangles themselves
+    bool lets_under = false;
     std::vector<ShapeContact>* contacts = nullptr;
   };
 

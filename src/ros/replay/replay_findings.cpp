@@ -26,7 +26,7 @@ void ReplayFindings::note(const PlayedSample& played, long steps) {
   not_converged_ += missed;
   if (report.static_contacts > 0) {
     ++sticking_;
-    sticking_not_converged_ += missed;
+    sticking_not_converged_ += static_cast<long>(report.stop == StopReason::kIterations);
   }
   pinched_ += static_cast<long>(report.pinched_contacts > 0);
   noteLaw(played);
@@ -114,6 +114,7 @@ void ReplayFindings::summarizeGrips() const {
     return;
   }
   const int iterations = simulator_.scene().solver.iterations;
+  if (iterations == kMaxIterations) return;
   log_ << prefix_ << "static friction held in " << sticking_ << " intervals, of which " << sticking_not_converged_
        << " ended before the solver's tolerance: what is held there may slip when solved to the end. See whether it "
           "does with --set solver.iterations="

@@ -55,7 +55,7 @@ class ReplayFindings {
   long discarded_ = 0;
   long not_converged_ = 0;
   long sticking_ = 0;                ///< intervals in which static friction held something
-  long sticking_not_converged_ = 0;  ///< of these, those that missed the tolerance
+  long sticking_not_converged_ = 0;  ///< of these, those that ended with the last iteration allowed
   long implausible_ = 0;
   long pinched_ = 0;
   std::vector<ForceErrorSummary> force_errors_;  ///< per instrument

@@ -24,33 +24,51 @@ std::vector<Tool> tools() {
   return all;
 }
 
-SignedDistance leave(const ShapeDistance& shape, double x, double above, const Vector3& outward, double edge = kEdge) {
-  const Vector3 p(x, 0.0, -0.002 + above);
-  return leavingFace(shape, p, outward.normalized(), edge, shape.at(p));
+/// @param normals of the triangles around the vertex.
+SignedDistance leaveAt(const ShapeDistance& shape, const Vector3& p, const std::vector<Vector3>& normals,
+                       double edge = kEdge) {
+  const SignedDistance here = shape.at(p);
+  VertexSurroundings around;
+  for (const Vector3& normal : normals) {
+    around.add(p, {p, p + edge * Vector3::UnitX(), p + 2.0 * edge * Vector3::UnitY()}, normal.normalized(),
+               here.normal);
+  }
+  return leavingFace(shape, p, around, here);
+}
+
+SignedDistance leave(const ShapeDistance& shape, double x, double above, const std::vector<Vector3>& normals) {
+  return leaveAt(shape, Vector3(x, 0.0, -0.002 + above), normals);
 }
 
 TEST(LeavingFace, AVertexBeforeTheSideIsLetUnderTheTool) {
   for (const Tool& tool : tools()) {
-    EXPECT_TRUE(std::isinf(leave(*tool.shape, 0.00601, kAbove, Vector3::UnitZ()).distance)) << tool.name;
-    EXPECT_TRUE(std::isinf(leave(*tool.shape, 0.00601, kAbove, Vector3(-0.3, 0.1, 1.0)).distance)) << tool.name;
+    EXPECT_TRUE(std::isinf(leave(*tool.shape, 0.00601, kAbove, {Vector3::UnitZ()}).distance)) << tool.name;
+    EXPECT_TRUE(std::isinf(leave(*tool.shape, 0.00601, kAbove, {Vector3(-0.3, 0.1, 1.0)}).distance)) << tool.name;
   }
 }
 
-TEST(LeavingFace, AVertexJustInsideTheSideIsPushedOutBelow) {
+// The gap goes on from 0, where the vertex comes in at the side, to the depth.
+TEST(LeavingFace, AVertexInsideTheSideIsPushedOutBelow) {
   for (const Tool& tool : tools()) {
-    for (const double inside : {1e-9, 1e-6, 2e-5}) {
-      const SignedDistance left = leave(*tool.shape, 0.006 - inside, kAbove, Vector3(-0.1, 0.05, 1.0));
+    for (const double inside : {1e-9, 1e-6, 2e-5, 9e-5, 9.9e-5}) {
+      const SignedDistance left = leave(*tool.shape, 0.006 - inside, kAbove, {Vector3(-0.1, 0.05, 1.0)});
       EXPECT_LT((left.normal + Vector3::UnitZ()).norm(), 1e-12) << tool.name << " " << inside;
-      EXPECT_NEAR(left.distance, -kAbove, 1e-8) << tool.name << " " << inside;  // half an edge by 2^-20
+      EXPECT_NEAR(left.distance, -inside, 1e-15) << tool.name << " " << inside;
     }
+    const SignedDistance below = leave(*tool.shape, 0.005, kAbove, {Vector3(-0.1, 0.05, 1.0)});
+    EXPECT_NEAR(below.distance, -kAbove, 1e-15) << tool.name;
   }
 }
 
 TEST(LeavingFace, AWallKeepsTheSideThatPushesIt) {
+  const Vector3 up = Vector3::UnitZ();
+  const Vector3 wall = -Vector3::UnitX();
   for (const Tool& tool : tools()) {
     for (const double x : {0.00601, 0.00599}) {
-      for (const Vector3& outward : {Vector3(-1, 0, 0), Vector3(-1, 0.2, 0.5)}) {
-        const SignedDistance left = leave(*tool.shape, x, kAbove, outward);
+      // The last two: the rim of a block, with more triangles above than beside.
+      for (const auto& normals :
+           {std::vector<Vector3>{wall}, {Vector3(-1.0, 0.2, 0.5)}, {wall, up, up}, {up, up, up, wall, up}}) {
+        const SignedDistance left = leave(*tool.shape, x, kAbove, normals);
         EXPECT_LT((left.normal - Vector3::UnitX()).norm(), 1e-12) << tool.name;
         EXPECT_NEAR(left.distance, x - 0.006, 1e-15) << tool.name;
       }
@@ -60,23 +78,34 @@ TEST(LeavingFace, AWallKeepsTheSideThatPushesIt) {
 
 TEST(LeavingFace, AStepThatTheCellsCanShowIsOne) {
   for (const Tool& tool : tools()) {
-    const SignedDistance left = leave(*tool.shape, 0.00599, 0.6 * kEdge, Vector3::UnitZ());
+    const SignedDistance left = leave(*tool.shape, 0.00599, 0.6 * kEdge, {Vector3::UnitZ()});
     EXPECT_LT((left.normal - Vector3::UnitX()).norm(), 1e-12) << tool.name;
   }
 }
 
 TEST(LeavingFace, BelowTheToolNothingChanges) {
   for (const Tool& tool : tools()) {
-    const SignedDistance left = leave(*tool.shape, 0.003, 1e-5, Vector3(-0.1, 0.05, 1.0));
+    const SignedDistance left = leave(*tool.shape, 0.003, 1e-5, {Vector3(-0.1, 0.05, 1.0)});
     EXPECT_LT((left.normal + Vector3::UnitZ()).norm(), 1e-12) << tool.name;
     EXPECT_NEAR(left.distance, -1e-5, 1e-15) << tool.name;
   }
 }
 
-TEST(LeavingFace, ABallHasNoEdges) {
-  const auto ball = makeSphereDistance(0.006);
-  const Vector3 p(0.00599, 0.0, 0.0);
-  EXPECT_EQ(leavingFace(*ball, p, Vector3::UnitZ(), kEdge, ball->at(p)).normal, Vector3::UnitX());
+// Where it is round the nearest point is the one that holds, however the surface lies.
+TEST(LeavingFace, WhatIsRoundHasNoEdges) {
+  const auto ball = makeSphereDistance(0.005);
+  const auto rod = makeCylinderDistance(0.005, 0.02);
+  for (const ShapeDistance* const shape : {ball.get(), rod.get()}) {
+    for (double angle = 0.0; angle < 1.6; angle += 0.02) {
+      for (const double out : {0.0052, 0.00499}) {
+        const Vector3 p(out * std::sin(angle), -out * std::cos(angle), 0.0);
+        const SignedDistance here = shape->at(p);
+        const SignedDistance left = leaveAt(*shape, p, {Vector3::UnitY()}, 0.01);
+        EXPECT_EQ(left.distance, here.distance) << angle;
+        EXPECT_EQ(left.normal, here.normal) << angle;
+      }
+    }
+  }
 }
 
 }  // namespace

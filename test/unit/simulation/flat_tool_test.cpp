@@ -1,5 +1,5 @@
 // A flat tool with sharp edges slides over cells that are far larger than it is deep: tangential over normal force is the coefficient of
-// friction, since all of its load goes through its flat face. Before leaving_face.h its side pushed nodes ahead: .6 to 3.1 at .4.
+// friction, since all of its load goes through its flat face. Before leaving_face.h its side pushed nodes ahead: .5 to 3.3 at .4.
 #include <gtest/gtest.h>
 
 #include <algorithm>
