@@ -248,7 +248,7 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
     SignedDistance here = shape.distance->at(p_S);
     here.distance = conformingGap(corners_S, distances, contact.weights, here.distance).gap;
     const double groove = implementation_->deepestGroove(shape, X_WL[shape.instrument]);
-    if (groove == 0.0 && surface.isVolume() && key.feature[1] < 0 && key.corner < 0) {
+    if (groove == 0.0 && shape.distance->hasFlatParts() && surface.isVolume() && key.feature[1] < 0 && key.corner < 0) {
       here = leavingFace(*shape.distance, p_S, surroundings(surface, x, X_WS, key.feature[0], here.normal), here);
     }
     const Vector3 normal_W = (X_WS.linear() * here.normal).normalized();

@@ -10,7 +10,7 @@ SignedDistance leavingFace(const ShapeDistance& shape, const Vector3& p_S, const
   constexpr double kBehindEdge = 1.0;  // radii of a rounded edge: behind where it is round
   constexpr double kDeepest = 0.5;     // of an edge
   constexpr int kHalvings = 20;        // of half an edge: to a millionth
-  if (!shape.hasFlatParts() || around.outward.isZero(0.0) || around.least_facing < kFacesSide) return here;
+  if (around.outward.isZero(0.0) || around.least_facing < kFacesSide) return here;
   const Vector3 inward = -around.outward.normalized();
   if (here.normal.dot(inward) >= kAcross) return here;
   const Vector3 along = (inward - inward.dot(here.normal) * here.normal).normalized();

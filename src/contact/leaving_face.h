@@ -31,7 +31,7 @@ struct VertexSurroundings {
 /// A tool with edges (box, cylinder, mesh) that slides over a surface meets the next vertex sideways: it stands before the tool's side, a little
 /// above its lower face. The side is nearer, but the surface there runs under the tool; a real one, which has points between its vertices,
 /// passes below the edge. Pushed by the side, vertices are carried ahead: flat tools 12 mm wide, .1 to .4 mm deep in cells of 2 mm, were
-/// held back by .5 to 3.3 times their load where friction is .4. So where the shape's normal is more than 37 degrees off the way into the tissue,
+/// held back by .5 to 1.3 times their load in the middle of a drag, 2.7 at most, where friction is .4 (flat_tool_test). So where the shape's normal is more than 37 degrees off the way into the tissue,
 /// no triangle around the vertex faces it, and beyond an edge a face less than that off ends the shape within half an edge of the surface below (a deeper step the
 /// cells can show themselves), the tissue leaves through that face. The gap grows with the way in from the side, so that no force
 /// begins with a jump.

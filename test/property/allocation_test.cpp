@@ -69,6 +69,13 @@ constexpr const char* kAttachedAndPressed =
 
 void PrintTo(const Case& value, std::ostream* out) { *out << value.name; }
 
+/// Before a test: a sanitizer has a malloc of its own, so that nothing would be counted.
+void skipUnlessCounted() {
+#ifndef TISSUE_CONTACT_COUNTS_MALLOC
+  GTEST_SKIP() << "this build has a malloc of its own";
+#endif
+}
+
 bool stepAllocates(Simulator& simulator, const std::vector<VectorX>& joints) {
   allocations = 0;
   counting = true;
@@ -79,6 +86,8 @@ bool stepAllocates(Simulator& simulator, const std::vector<VectorX>& joints) {
 
 class Allocation : public testing::TestWithParam<Case> {
  protected:
+  void SetUp() override { skipUnlessCounted(); }
+
   static Simulator makeScene() {
     std::string block = blockScene("[0.06, 0.06, 0.02]", "[6, 6, 3]");
     const std::string key = "density_kg_per_m3: 1000";
@@ -102,9 +111,6 @@ class Allocation : public testing::TestWithParam<Case> {
 };
 
 TEST_P(Allocation, NoneInAStepThatHasBeenDoneBefore) {
-#ifndef TISSUE_CONTACT_COUNTS_MALLOC
-  GTEST_SKIP() << "this build has a malloc of its own";
-#endif
   Simulator simulator = makeScene();
   EXPECT_GT(run(simulator), 0) << "allocations are not counted here";
   EXPECT_FALSE(simulator.contacts().empty());
@@ -132,9 +138,6 @@ class AllocationAtRest : public Allocation {};
 
 /// Nodes that fall asleep and wake: pressed, held until all rests, let go, and again.
 TEST_P(AllocationAtRest, NoneWhereNodesSleepAndWake) {
-#ifndef TISSUE_CONTACT_COUNTS_MALLOC
-  GTEST_SKIP() << "this build has a malloc of its own";
-#endif
   Simulator simulator = makeScene();
   std::vector<VectorX> joints = {simulator.jointPositions(0)};
   int with = 0;
@@ -173,16 +176,30 @@ int allocatingSteps(Simulator& simulator, int steps, const Step& step) {
   return with;
 }
 
+class AllocationOfScenes : public testing::Test {
+ protected:
+  void SetUp() override { skipUnlessCounted(); }
+};
+
 /// A ball of 5 mm that presses into the middle of what lies 20 mm high, and drags over it, there and back.
 std::vector<VectorX> pressAndDrag(int k) {
   const int dragged = std::max(0, k - 50);
   return {Vector3(4e-5 * (dragged < 70 ? dragged : 140 - dragged), 0.0, -5e-5 * std::min(k, 50))};
 }
 
-TEST(AllocationOfScenes, NoneWhereASheetIsTouched) {
-#ifndef TISSUE_CONTACT_COUNTS_MALLOC
-  GTEST_SKIP() << "this build has a malloc of its own";
-#endif
+TEST_F(AllocationOfScenes, NoneUnderAToolWithEdges) {
+  Simulator simulator =
+      makeSimulator(blockScene("[0.06, 0.06, 0.02]", "[15, 15, 3]") +
+                        "instruments:\n  - name: probe\n    robot_description: probe\n    tip_link: tip\n" +
+                        "    joint_state_topics: [/js]\n    base_pose: {position_m: [0, 0, 0.022]}\n" +
+                        "    contact_links: [{link: tip, shapes: [box: {size_m: [0.012, 0.008, 0.004]}]}]\n" +
+                        "friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}]\n",
+                    {{"probe", probeUrdf(0.005)}});
+  EXPECT_EQ(allocatingSteps(simulator, 200, pressAndDrag), 0);
+  EXPECT_FALSE(simulator.contacts().empty());
+}
+
+TEST_F(AllocationOfScenes, NoneWhereASheetIsTouched) {
   Simulator simulator = makeSimulator(
       "tissues:\n  - name: sheet\n    sheet: {size_m: [0.06, 0.06], cells: [8, 8], thickness_m: 0.001}\n"
       "    pose: {position_m: [0, 0, 0.02]}\n"
@@ -204,10 +221,7 @@ Simulator makeProbedBlock(const std::string& tissue, const std::string& sections
 }
 
 /// The first step factors, then one where the ball has landed and one where it has slid; a factor is Eigen's, made anew.
-TEST(AllocationOfScenes, OnlyInTheFewStepsThatRenewAFactor) {
-#ifndef TISSUE_CONTACT_COUNTS_MALLOC
-  GTEST_SKIP() << "this build has a malloc of its own";
-#endif
+TEST_F(AllocationOfScenes, OnlyInTheFewStepsThatRenewAFactor) {
   Simulator simulator = makeProbedBlock("", "solver: {relaxation: cholesky}\n");
   int moving = 0;
   int held = 0;
@@ -227,10 +241,7 @@ TEST(AllocationOfScenes, OnlyInTheFewStepsThatRenewAFactor) {
 
 /// A move exchanges what the worker has made for what was there. Nodes carried over have memory of the new number, in the move and
 /// where its stiffness is begun, and what is handed to the worker may have some of its own.
-TEST(AllocationOfScenes, FewWhereAPreparedMeshIsTakenOver) {
-#ifndef TISSUE_CONTACT_COUNTS_MALLOC
-  GTEST_SKIP() << "this build has a malloc of its own";
-#endif
+TEST_F(AllocationOfScenes, FewWhereAPreparedMeshIsTakenOver) {
   constexpr long kInAMove = 12;
   constexpr long kBesideMoves = 2;
   Simulator simulator = makeProbedBlock("    refinement: {cell_m: 0.003}\n", "");
@@ -252,10 +263,7 @@ TEST(AllocationOfScenes, FewWhereAPreparedMeshIsTakenOver) {
   EXPECT_LE(others, 2 * (after.prepared - before.prepared));  // begun, and its stiffness begun
 }
 
-TEST(AllocationOfScenes, NoneWhereTissuesTouch) {
-#ifndef TISSUE_CONTACT_COUNTS_MALLOC
-  GTEST_SKIP() << "this build has a malloc of its own";
-#endif
+TEST_F(AllocationOfScenes, NoneWhereTissuesTouch) {
   Simulator simulator =
       makeSimulator("gravity_m_per_s2: [0.5, 0, -9.81]\n" + blockScene() +
                     "  - name: top\n    block: {size_m: [0.02, 0.02, 0.01], cells: [2, 2, 1]}\n"
@@ -267,10 +275,7 @@ TEST(AllocationOfScenes, NoneWhereTissuesTouch) {
   EXPECT_FALSE(simulator.contacts().empty());
 }
 
-TEST(AllocationOfScenes, NoneInAGrasp) {
-#ifndef TISSUE_CONTACT_COUNTS_MALLOC
-  GTEST_SKIP() << "this build has a malloc of its own";
-#endif
+TEST_F(AllocationOfScenes, NoneInAGrasp) {
   const SceneEnvironment environment = ownEnvironment();
   Simulator simulator(loadScene(packageDirectory() + "/config/grasp.yaml", environment.package_path), environment);
   const std::vector<Vector3> path = graspPath(packageDirectory());
