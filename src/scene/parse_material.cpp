@@ -14,6 +14,8 @@ constexpr Range kLabelRange{-1e300, 1e300};
 
 constexpr std::pair<const char*, Dilatation> kDilatations[] = {
     {"auto", Dilatation::kAuto}, {"element", Dilatation::kElement}, {"patch", Dilatation::kPatch}};
+constexpr std::pair<const char*, Distortion> kDistortions[] = {
+    {"auto", Distortion::kAuto}, {"element", Distortion::kElement}, {"patch", Distortion::kPatch}};
 
 BoxRegion parseBoxRegion(const YamlCursor& cursor) {
   const YamlMap map = cursor.map();
@@ -129,6 +131,7 @@ MaterialDescription parseMaterial(const YamlCursor& cursor, bool is_membrane) {
   const YamlMap map = cursor.map();
   if (const YamlCursor* value = map.find("model")) material.model = value->choice(kElasticModelNames);
   if (const YamlCursor* value = map.find("dilatation")) material.dilatation = value->choice(kDilatations);
+  if (const YamlCursor* value = map.find("distortion")) material.distortion = value->choice(kDistortions);
   if (map.find("preset") == nullptr) {
     for (const char* key : {"youngs_modulus_pa", "poissons_ratio", "density_kg_per_m3"}) map.get(key);
   }

@@ -50,7 +50,7 @@ const std::map<std::string, std::vector<std::string>>& sceneKeys() {
       {"tissues[].sheet", {"size_m", "cells", "thickness_m"}},
       {"tissues[].shell", {"file", "scale_m_per_unit", "thickness_m"}},
       {"tissues[].material",
-       {"preset", "model", "dilatation", "youngs_modulus_pa", "poissons_ratio", "density_kg_per_m3", "prony_series",
+       {"preset", "model", "dilatation", "distortion", "youngs_modulus_pa", "poissons_ratio", "density_kg_per_m3", "prony_series",
         "bending_stiffness_n_m"}},
       {"tissues[].material.prony_series[]", {"modulus_ratio", "time_s"}},
       {"tissues[].damping", {"mass_per_s", "stiffness_s"}},

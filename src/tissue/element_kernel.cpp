@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tissue/patch_elements.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 namespace tissue_contact {
@@ -128,23 +129,30 @@ TISSUE_CONTACT_INLINE void rotate(const LaneMatrix& R, const LaneMatrix& P, Lane
   }
 }
 
-/// Adds the forces of stress P = 2 mu e + lambda tr(e) I, turned by R when there is one.
+/// Stress P = 2 mu e + lambda tr(e) I, turned by R when there is one.
+template <typename Value>
+TISSUE_CONTACT_INLINE void stress(const Value& lambda, const Value& mu, const LaneMatrix* R, const LaneMatrix& S,
+                                  LaneMatrix& P) {
+  LaneMatrix unturned;
+  const Lanes pressure = lambda * (S.m[0] + S.m[4] + S.m[8] - 3.0);
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t r = 0; r < 3; ++r) unturned.m[r + 3 * c] = mu * (S.m[r + 3 * c] + S.m[c + 3 * r]);
+    unturned.m[4 * c] += pressure - 2.0 * mu;
+  }
+  if (R == nullptr) {
+    P = unturned;
+  } else {
+    rotate(*R, unturned, P);
+  }
+}
+
+/// Adds the forces of that stress.
 template <typename Value>
 TISSUE_CONTACT_INLINE void addForces(const ElementBatch& batch, const Value& lambda, const Value& mu,
                                      const LaneMatrix* R, const LaneMatrix& S, double* forces) {
   LaneMatrix P;
-  const Lanes pressure = lambda * (S.m[0] + S.m[4] + S.m[8] - 3.0);
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t r = 0; r < 3; ++r) P.m[r + 3 * c] = mu * (S.m[r + 3 * c] + S.m[c + 3 * r]);
-    P.m[4 * c] += pressure - 2.0 * mu;
-  }
-  if (R == nullptr) {
-    addStressForces(batch, P, forces);
-    return;
-  }
-  LaneMatrix turned;
-  rotate(*R, P, turned);
-  addStressForces(batch, turned, forces);
+  stress(lambda, mu, R, S, P);
+  addStressForces(batch, P, forces);
 }
 
 /// |vec(q conj(t))| = sin(angle/2) |q| |t|.
@@ -168,7 +176,7 @@ TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches
                                         const Material& material, double tangent_angle, double share, const double* x,
                                         const std::vector<RotationBatch>& tangents,
                                         std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
-                                        ElementValues* traces, double* forces) {
+                                        double* forces) {
   for (std::size_t b = range.begin; b < range.end; ++b) {
     LaneMatrix F, R, S;
     LaneQuaternion q, t;
@@ -183,7 +191,6 @@ TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches
     }
     material.get(b, lambda, mu);
     addForces(batches[b], lambda, mu, &R, S, forces);
-    if (traces != nullptr) store(S.m[0] + S.m[4] + S.m[8], traces[b]);
     storeQuaternion(q, rotations[b]);
     turned[b] = turnedLanes(q, t, tangent_angle);
   }
@@ -209,6 +216,48 @@ TISSUE_CONTACT_INLINE void linear(const std::vector<ElementBatch>& batches, Batc
     if (kWatch) watchTurn(F, most);
   }
   for (int lane = 0; kWatch && lane < kLanes; ++lane) *turn_squared = std::max(*turn_squared, most[lane]);
+}
+
+/// Mean F of each of four patches.
+TISSUE_CONTACT_INLINE void meanGradients(const PatchNode* nodes, std::size_t count, const double* x, LaneMatrix& F) {
+  Lanes x0, y0, z0;
+  gather(nodes[0].nodes, x, 0, x0);
+  gather(nodes[0].nodes, x, 1, y0);
+  gather(nodes[0].nodes, x, 2, z0);
+  for (Lanes& entry : F.m) entry = Lanes{};
+  for (std::size_t i = 1; i < count; ++i) {
+    Lanes dx, dy, dz;
+    gather(nodes[i].nodes, x, 0, dx);
+    gather(nodes[i].nodes, x, 1, dy);
+    gather(nodes[i].nodes, x, 2, dz);
+    dx -= x0;
+    dy -= y0;
+    dz -= z0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      Lanes g;
+      load(nodes[i].gradient[c], g);
+      F.m[3 * c] += dx * g;
+      F.m[3 * c + 1] += dy * g;
+      F.m[3 * c + 2] += dz * g;
+    }
+  }
+}
+
+/// Forces -V P grad N of the stresses P of four patches, added to their nodes.
+TISSUE_CONTACT_INLINE void addPatchStressForces(const PatchBatch& batch, const PatchNode* nodes, LaneMatrix& P,
+                                                double* forces) {
+  Lanes volume;
+  load(batch.volume, volume);
+  for (Lanes& entry : P.m) entry *= -volume;
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    Lanes g0, g1, g2;
+    load(nodes[i].gradient[0], g0);
+    load(nodes[i].gradient[1], g1);
+    load(nodes[i].gradient[2], g2);
+    Lanes force[3];
+    for (std::size_t r = 0; r < 3; ++r) force[r] = P.m[r] * g0 + P.m[r + 3] * g1 + P.m[r + 6] * g2;
+    scatter(nodes[i].nodes, force, forces);
+  }
 }
 
 TISSUE_CONTACT_INLINE void deviator(const LaneMatrix& S, Lanes* d) {
@@ -279,18 +328,16 @@ TISSUE_CONTACT_CLONES
 void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
                            double tangent_angle, double share, const double* x,
                            const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
-                           std::vector<unsigned char>& turned, ElementValues* traces, double* forces) {
-  corotational(batches, range, UniformMaterial{material}, tangent_angle, share, x, tangents, rotations, turned, traces,
-               forces);
+                           std::vector<unsigned char>& turned, double* forces) {
+  corotational(batches, range, UniformMaterial{material}, tangent_angle, share, x, tangents, rotations, turned, forces);
 }
 
 TISSUE_CONTACT_CLONES
 void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range,
                            const std::vector<BatchMaterial>& materials, double tangent_angle, double share,
                            const double* x, const std::vector<RotationBatch>& tangents,
-                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
-                           ElementValues* traces, double* forces) {
-  corotational(batches, range, VaryingMaterial{materials}, tangent_angle, share, x, tangents, rotations, turned, traces,
+                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces) {
+  corotational(batches, range, VaryingMaterial{materials}, tangent_angle, share, x, tangents, rotations, turned,
                forces);
 }
 
@@ -310,19 +357,29 @@ void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range,
 }
 
 TISSUE_CONTACT_CLONES
-void addPressureForces(const std::vector<ElementBatch>& batches, BatchRange range,
-                       const std::vector<RotationBatch>& rotations,
-                       const std::vector<std::array<int, kLanes>>& group_of, const std::vector<double>& pressures,
-                       double* forces) {
+void addPatchForces(const PatchElements& patches, BatchRange range, bool turns, double tangent_angle, const double* x,
+                    const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
+                    std::vector<unsigned char>& turned, double* forces) {
+  const VaryingMaterial material{patches.materials};
   for (std::size_t b = range.begin; b < range.end; ++b) {
-    Lanes pressure;
-    for (int lane = 0; lane < kLanes; ++lane) pressure[lane] = pressures[group_of[b][lane]];
-    LaneQuaternion q;
-    LaneMatrix P;
-    loadQuaternion(rotations[b], q);
-    rotationMatrix(q, P);
-    for (Lanes& entry : P.m) entry *= pressure;
-    addStressForces(batches[b], P, forces);
+    const PatchBatch& batch = patches.batches[b];
+    const PatchNode* const nodes = &patches.nodes[batch.first];
+    LaneMatrix F, R, S, P;
+    Lanes lambda, mu;
+    meanGradients(nodes, batch.count, x, F);
+    if (turns) {
+      LaneQuaternion q, t;
+      loadQuaternion(rotations[b], q);
+      loadQuaternion(tangents[b], t);
+      updateRotation(F, q, R, S);
+      storeQuaternion(q, rotations[b]);
+      turned[b] = turnedLanes(q, t, tangent_angle);
+    } else {
+      S = F;
+    }
+    material.get(b, lambda, mu);
+    stress(lambda, mu, turns ? &R : nullptr, S, P);
+    addPatchStressForces(batch, nodes, P, forces);
   }
 }
 

@@ -12,6 +12,8 @@
 
 namespace tissue_contact {
 
+struct PatchElements;
+
 /// Quaternions (w, x, y, z) of four elements; need not be of unit length.
 using RotationBatch = std::array<std::array<double, kLanes>, 4>;
 
@@ -20,16 +22,15 @@ using ElementValues = std::array<double, kLanes>;
 
 /// For the batches of `range`: brings `rotations` up to date with positions x (3 x n) and adds the elastic forces to `forces` (3 x n).
 /// `turned[b]` gets bit `lane` set where the rotation is more than `tangent_angle` (rad, small) away from `tangents`.
-/// The forces are those of `share` (0 to 1) of each rotation. `traces`, unless null, gets tr(R'F) of every element, by batch.
+/// The forces are those of `share` (0 to 1) of each rotation.
 void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
                            double tangent_angle, double share, const double* x,
                            const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
-                           std::vector<unsigned char>& turned, ElementValues* traces, double* forces);
+                           std::vector<unsigned char>& turned, double* forces);
 void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range,
                            const std::vector<BatchMaterial>& materials, double tangent_angle, double share,
                            const double* x, const std::vector<RotationBatch>& tangents,
-                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
-                           ElementValues* traces, double* forces);
+                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces);
 
 /// The same without rotations. `turn_squared`, unless null, is raised to the square of the largest turn, rad, where small.
 void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
@@ -38,12 +39,10 @@ void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range,
                      const std::vector<BatchMaterial>& materials, const double* x, double* forces,
                      double* turn_squared);
 
-/// Adds the forces of a mean stress p I, turned by each element's rotation: -V p R grad N. `group_of` names for each
-/// element of a batch its place in `pressures`, Pa.
-void addPressureForces(const std::vector<ElementBatch>& batches, BatchRange range,
-                       const std::vector<RotationBatch>& rotations,
-                       const std::vector<std::array<int, kLanes>>& group_of, const std::vector<double>& pressures,
-                       double* forces);
+/// The same of patches as elements, turning (`turns`) or linear: their strain is that of their mean F. All by batches of patches.
+void addPatchForces(const PatchElements& patches, BatchRange range, bool turns, double tangent_angle, const double* x,
+                    const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
+                    std::vector<unsigned char>& turned, double* forces);
 
 /// Symmetric matrices of four elements: xx, yy, zz, xy, yz, zx.
 using StrainBatch = std::array<ElementValues, 6>;

@@ -53,12 +53,16 @@ TISSUE_CONTACT_INLINE unsigned char bits(const Mask& mask) {
   return set;
 }
 
-/// Place r of node `corner` of each of the four elements. From memory straight into lanes: a vector put together in memory
-/// would have to wait for its four stores.
-TISSUE_CONTACT_INLINE void gather(const ElementBatch& batch, const double* x, std::size_t corner, std::size_t r,
-                                  Lanes& to) {
-  const auto at = [&](std::size_t lane) { return x[3 * static_cast<std::size_t>(batch.nodes[lane][corner]) + r]; };
+/// Place r of a node of each of four elements. From memory straight into lanes: a vector put together in memory would have to
+/// wait for its four stores.
+TISSUE_CONTACT_INLINE void gather(const std::array<int, kLanes>& nodes, const double* x, std::size_t r, Lanes& to) {
+  const auto at = [&](std::size_t lane) { return x[3 * static_cast<std::size_t>(nodes[lane]) + r]; };
   to = Lanes{at(0), at(1), at(2), at(3)};
+}
+
+/// Node `corner` of each of the four elements.
+TISSUE_CONTACT_INLINE std::array<int, kLanes> cornerOf(const ElementBatch& batch, std::size_t corner) {
+  return {batch.nodes[0][corner], batch.nodes[1][corner], batch.nodes[2][corner], batch.nodes[3][corner]};
 }
 
 /// F = D D_rest^-1.
@@ -66,9 +70,9 @@ TISSUE_CONTACT_INLINE void deformationGradients(const ElementBatch& batch, const
   Lanes D[9];
   for (std::size_t r = 0; r < 3; ++r) {
     Lanes origin;
-    gather(batch, x, 0, r, origin);
+    gather(cornerOf(batch, 0), x, r, origin);
     for (std::size_t c = 0; c < 3; ++c) {
-      gather(batch, x, c + 1, r, D[r + 3 * c]);
+      gather(cornerOf(batch, c + 1), x, r, D[r + 3 * c]);
       D[r + 3 * c] -= origin;
     }
   }
@@ -99,15 +103,15 @@ struct VaryingMaterial {
   using Value = Lanes;
 };
 
-/// Adds a vector per element to node `corner` of each: x and y as a pair, since half as many additions wait for each other
+/// Adds a vector to a node of each of four elements: x and y as a pair, since half as many additions wait for each other
 /// where elements share a node.
-TISSUE_CONTACT_INLINE void scatter(const ElementBatch& batch, std::size_t corner, const Lanes* vector, double* all) {
+TISSUE_CONTACT_INLINE void scatter(const std::array<int, kLanes>& nodes, const Lanes* vector, double* all) {
   using Pair = double __attribute__((vector_size(2 * sizeof(double))));
   const Lanes even = TISSUE_CONTACT_SHUFFLE(vector[0], vector[1], 0, 4, 2, 6);  // x, y of lanes 0 and 2
   const Lanes odd = TISSUE_CONTACT_SHUFFLE(vector[0], vector[1], 1, 5, 3, 7);
   const Pair pairs[kLanes] = {{even[0], even[1]}, {odd[0], odd[1]}, {even[2], even[3]}, {odd[2], odd[3]}};
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    double* const at = all + 3 * static_cast<std::ptrdiff_t>(batch.nodes[lane][corner]);
+    double* const at = all + 3 * static_cast<std::ptrdiff_t>(nodes[lane]);
     Pair sum;
     std::memcpy(&sum, at, sizeof(Pair));
     sum += pairs[lane];
@@ -130,9 +134,9 @@ TISSUE_CONTACT_INLINE void addStressForces(const ElementBatch& batch, const Lane
       H[r + 3 * node] = -volume * (P.m[r] * g0 + P.m[r + 3] * g1 + P.m[r + 6] * g2);
     }
   }
-  for (std::size_t node = 0; node < 3; ++node) scatter(batch, node + 1, &H[3 * node], forces);
+  for (std::size_t node = 0; node < 3; ++node) scatter(cornerOf(batch, node + 1), &H[3 * node], forces);
   const Lanes rest[3] = {-(H[0] + H[3] + H[6]), -(H[1] + H[4] + H[7]), -(H[2] + H[5] + H[8])};
-  scatter(batch, 0, rest, forces);
+  scatter(cornerOf(batch, 0), rest, forces);
 }
 
 }  // namespace tissue_contact

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "tissue/mass_spring.h"
-#include "tissue/mean_dilatation.h"
+#include "tissue/mean_strain.h"
 #include "tissue/neo_hookean.h"
 #include "tissue/viscoelastic.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
@@ -18,10 +18,20 @@ bool isContinuum(ElasticModel model) {
 bool averagesDilatation(const ElementMaterials& materials) {
   const MaterialDescription& first = materials.materials.at(0);
   if (first.dilatation != Dilatation::kAuto) return first.dilatation == Dilatation::kPatch;
+  if (first.distortion == Distortion::kPatch) return true;
   // Averaged neo-Hookean elements give way under sharp edges, which then hook (doc/method.md).
   return isContinuum(first.model) && first.model != ElasticModel::kNeoHookean &&
          std::any_of(materials.materials.begin(), materials.materials.end(),
                      [](const MaterialDescription& one) { return one.poissons_ratio >= kAveragedPoissonsRatio; });
+}
+
+bool mayAverageDistortion(ElasticModel model) {
+  return model == ElasticModel::kLinear || model == ElasticModel::kCorotational;
+}
+
+bool averagesDistortion(const ElementMaterials& materials) {
+  const MaterialDescription& first = materials.materials.at(0);
+  return mayAverageDistortion(first.model) && first.distortion != Distortion::kElement && averagesDilatation(materials);
 }
 
 namespace {
@@ -33,11 +43,16 @@ std::unique_ptr<const Elasticity> makeElasticBody(const NodalVectors& rest, cons
   if (first.dilatation == Dilatation::kPatch && !isContinuum(first.model)) {
     throw std::invalid_argument("dilatation over patches is for the models linear, corotational and neo_hookean only");
   }
+  if (first.distortion == Distortion::kPatch && !averagesDistortion(materials)) {
+    throw std::invalid_argument(
+        "distortion over patches is for the models linear and corotational only, with dilatation over patches");
+  }
   switch (first.model) {
     case ElasticModel::kLinear:
     case ElasticModel::kCorotational:
       if (averagesDilatation(materials)) {
-        return std::make_unique<MeanDilatation>(rest, tetrahedra, fixed, materials, patch_of);
+        return std::make_unique<MeanStrain>(rest, tetrahedra, fixed, materials, patch_of,
+                                            averagesDistortion(materials) ? kPatchShapeShare : 0.0);
       }
       return std::make_unique<TetElasticity>(rest, tetrahedra, fixed, materials);
     case ElasticModel::kNeoHookean:

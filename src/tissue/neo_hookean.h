@@ -17,7 +17,7 @@
 /// of the change of volume beyond what elements need to keep their shape is that of each patch,
 ///   sum_e V (psi with mu/8 for lambda + 4 mu min(0, J - 1/2)^2)  +  sum_p V_p kappa/2 (Jbar - 1)^2,   Jbar = sum_e V J / V_p,
 /// kappa = lambda - mu/8 = lambda_Lame + 2/3 mu_Lame: at small strain the elements' part is mu_Lame |dev e|^2, and the whole that
-/// of mean_dilatation.h. The second term, as stiff as a whole element at nu = .45, holds up what the patch would let go flat: without
+/// of mean_strain.h. The second term, as stiff as a whole element at nu = .45, holds up what the patch would let go flat: without
 /// it single elements turn inside out where a narrow tool sweeps (4 in the recorded motion of config/psm_dvrk.yaml with patches).
 /// The patch's pressure kappa (Jbar - 1) joins the factor of dJ/dF in each of its elements; with b = sum_e V dJ/dF grad N its own
 /// stiffness is kappa/V_p b b'. Forces are the gradient of this energy, which F-bar (one J for all of a patch put into psi: de Souza

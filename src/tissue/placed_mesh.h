@@ -19,7 +19,7 @@ struct PlacedMesh {
   std::vector<Tetrahedron> tetrahedra;  ///< the elements of a volume; none: the surface triangles are the elements
   std::vector<Triangle> surface;
   double thickness = 0.0;     ///< m; 0: a volume
-  std::vector<int> patch_of;  ///< of each tetrahedron: see MeanDilatation
+  std::vector<int> patch_of;  ///< of each tetrahedron: see MeanStrain
   std::vector<bool> fixed;
   std::vector<int> element_regions;  ///< per element, -1: none; empty: the description has no regions
   std::vector<int> surface_regions;  ///< likewise per surface triangle

@@ -10,12 +10,15 @@
 
 namespace tissue_contact {
 
+inline Quaternion rotationInLane(const RotationBatch& q, std::size_t lane) {
+  return Quaternion(q[0][lane], q[1][lane], q[2][lane], q[3][lane]).normalized();
+}
+
 /// Rotations are kept four elements at a time, as (w, x, y, z) of any length.
 struct TetElasticity::RotationState : State {
   std::vector<RotationBatch> rotations;          ///< of each element at the last update
   std::vector<RotationBatch> tangent_rotations;  ///< those `stiffness` was computed with
   std::vector<unsigned char> turned;             ///< scratch: elements to refresh, a bit each
-  std::vector<ElementValues> traces;             ///< tr(R'F) at the last update; empty: nobody asks
   TetElements::Held held;
   int blend = kBlendUpdates;  ///< of kBlendUpdates parts: how much of each rotation counts
   int blend_to = kBlendUpdates;
@@ -27,7 +30,6 @@ struct TetElasticity::RotationState : State {
     State::carry(archive);
     archive.carry(rotations);
     archive.carry(tangent_rotations);
-    archive.carry(traces);
     held.carry(archive, rotations.size(), stiffness.rows());
     for (int* const count : {&blend, &blend_to, &updates, &calm}) archive.carry(*count);
     archive.carry(turn_squared);

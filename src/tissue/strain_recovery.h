@@ -16,7 +16,7 @@ namespace tissue_contact {
 ///
 /// E* being linear in each element, and at a node the mean of E over the elements around, by volume. It is 0 where the deformation is
 /// affine, and of the second order in the size of the cells where it is smooth. Elements of different regions are not averaged with each
-/// other, since strain jumps between materials. Changes of volume are left out: where they are averaged (MeanDilatation), those of
+/// other, since strain jumps between materials. Changes of volume are left out: where they are averaged (MeanStrain), those of
 /// single elements mean nothing. Source: Zienkiewicz & Zhu, IJNME 24 (1987) 337-357; Green's strain in place of the
 /// infinitesimal one, which rotations would change.
 /// @param shear_moduli Pa, of the tissue's material, then of its regions in their order.

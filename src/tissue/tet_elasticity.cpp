@@ -11,10 +11,6 @@
 namespace tissue_contact {
 namespace {
 
-Quaternion rotationInLane(const RotationBatch& q, std::size_t lane) {
-  return Quaternion(q[0][lane], q[1][lane], q[2][lane], q[3][lane]).normalized();
-}
-
 /// Of small turns: sin(angle/2) = |vec q| / |q|.
 double largestTurnSquared(const std::vector<RotationBatch>& rotations) {
   double largest = 0.0;
@@ -107,7 +103,7 @@ void TetElasticity::findRotations(const NodalVectors& x, RotationState& state) c
   NodalVectors forces = NodalVectors::Zero(3, x.cols());
   const auto find = [&](const auto& material) {
     addCorotationalForces(tets_->batches, {0, tets_->batches.size()}, material, kTangentAngle, 1.0, x.data(),
-                          state.tangent_rotations, state.rotations, state.turned, nullptr, forces.data());
+                          state.tangent_rotations, state.rotations, state.turned, forces.data());
   };
   tets_->batch_materials.empty() ? find(tets_->material) : find(tets_->batch_materials);
   state.tangent_rotations = state.rotations;
@@ -182,8 +178,7 @@ void TetElasticity::evaluate(const NodalVectors& x, const std::vector<BatchRange
       return;
     }
     addCorotationalForces(tets_->batches, range, material, kTangentAngle, state.blend / double{kBlendUpdates}, x.data(),
-                          state.tangent_rotations, state.rotations, state.turned,
-                          state.traces.empty() ? nullptr : state.traces.data(), forces.data());
+                          state.tangent_rotations, state.rotations, state.turned, forces.data());
     for (std::size_t batch = range.begin; batch < range.end; ++batch) {
       if (state.turned[batch] != 0) refreshStiffness(batch, state);
     }

@@ -36,7 +36,7 @@ std::vector<BatchMaterial> makeBatchMaterials(const std::vector<TetElement>& ele
 }  // namespace
 
 TetElements::TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
-                         const std::vector<bool>& fixed, const ElementMaterials& materials, Lame lame,
+                         const std::vector<bool>& fixed, const ElementMaterials& materials, const Lame& lame,
                          std::shared_ptr<const BlockPattern> couplings)
     : damps(!materials.damping_s.empty()), pattern(std::move(couplings)) {
   for (const MaterialDescription& description : materials.materials) checkMaterial(description, "");
@@ -55,20 +55,14 @@ TetElements::TetElements(const NodalVectors& rest, const std::vector<Tetrahedron
 }
 
 void TetElements::split(const std::vector<bool>& still, Held& held) const {
-  held.moving.clear();
-  held.still.clear();
-  for (std::size_t b = 0; b < batches.size(); ++b) {
-    bool rests = true;
+  const auto rests = [&](std::size_t b) {
+    bool all = true;
     for (const Tetrahedron& nodes : batches[b].nodes) {
-      for (const int node : nodes) rests = rests && still[node];
+      for (const int node : nodes) all = all && still[node];
     }
-    std::vector<BatchRange>& ranges = rests ? held.still : held.moving;
-    if (!ranges.empty() && ranges.back().end == b) {
-      ++ranges.back().end;
-    } else {
-      ranges.push_back({b, b + 1});
-    }
-  }
+    return all;
+  };
+  splitBatches(batches.size(), rests, held.moving, held.still);
   held.forces.setZero(3, static_cast<Eigen::Index>(still.size()));
 }
 

@@ -3,6 +3,7 @@
 /// their stiffness goes, and the same in batches for the force kernels.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -27,16 +28,32 @@ struct TetElement {
 /// Refuses what lies beyond the batches.
 void carryRanges(StateArchive& archive, std::size_t batches, std::vector<BatchRange>& ranges);
 
+/// Ranges of those of `batches` that do not rest, and of those that do.
+template <typename Rests>
+void splitBatches(std::size_t batches, const Rests& rests, std::vector<BatchRange>& moving,
+                  std::vector<BatchRange>& still) {
+  moving.clear();
+  still.clear();
+  for (std::size_t b = 0; b < batches; ++b) {
+    std::vector<BatchRange>& ranges = rests(b) ? still : moving;
+    if (!ranges.empty() && ranges.back().end == b) {
+      ++ranges.back().end;
+    } else {
+      ranges.push_back({b, b + 1});
+    }
+  }
+}
+
 struct TetElements {
-  using Lame = LameParameters (*)(const MaterialDescription&);
+  using Lame = std::function<LameParameters(const MaterialDescription&)>;
 
   /// @param lame the model's elastic parameters from a material.
   /// @param couplings at least the blocks of the tetrahedra.
   /// @throws std::invalid_argument for a material out of range.
   TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
-              const ElementMaterials& materials, Lame lame, std::shared_ptr<const BlockPattern> couplings);
+              const ElementMaterials& materials, const Lame& lame, std::shared_ptr<const BlockPattern> couplings);
   TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
-              const ElementMaterials& materials, Lame lame)
+              const ElementMaterials& materials, const Lame& lame)
       : TetElements(rest, tetrahedra, fixed, materials, lame, BlockPattern::forElements(tetrahedra, fixed)) {}
 
   /// Zero matrices of the right pattern.

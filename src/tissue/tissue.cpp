@@ -38,6 +38,17 @@ void checkModel(const TissueDescription& description) {
                          ": dilatation is 'patch', which only the models linear, corotational and "
                          "neo_hookean know; remove the key");
   }
+  if (material.distortion == Distortion::kPatch && !mayAverageDistortion(material.model)) {
+    throw EntryError("material.distortion", tissueLabel(description) +
+                                                ": distortion is 'patch', which only the models linear and "
+                                                "corotational know; remove the key");
+  }
+  if (material.distortion == Distortion::kPatch && material.dilatation == Dilatation::kElement) {
+    throw EntryError("material.distortion",
+                     tissueLabel(description) +
+                         ": distortion is 'patch' while dilatation is 'element'; patches average "
+                         "both or the dilatation alone: remove one of the keys");
+  }
   if (!material.prony_series.empty() && !isContinuum(material.model)) {
     throw EntryError("material.prony_series", tissueLabel(description) + ": model is '" +
                                                   elasticModelName(material.model) +
@@ -50,6 +61,10 @@ void checkModel(const TissueDescription& description) {
     if (region.material.dilatation != description.material.dilatation) {
       throw EntryError(entry + ".dilatation", tissueLabel(description) + ", region '" + region.name +
                                                   "': dilatation is not that of the tissue; give all regions the same");
+    }
+    if (region.material.distortion != description.material.distortion) {
+      throw EntryError(entry + ".distortion", tissueLabel(description) + ", region '" + region.name +
+                                                  "': distortion is not that of the tissue; give all regions the same");
     }
     if (!sameSeries(region.material.prony_series, material.prony_series)) {
       throw EntryError(entry + ".prony_series", tissueLabel(description) + ", region '" + region.name +

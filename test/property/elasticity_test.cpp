@@ -139,11 +139,11 @@ std::vector<Model> models() {
           {"MembraneCurvedAtRest", makeCurved, material(E::kMembrane, 5e4, 0.3)},
           {"LayeredLinear", makeBlock, layered(E::kLinear), false},
           {"LayeredCorotational", makeBlock, layered(E::kCorotational)},
-          {"MeanDilatationLinear", makeBlock, averaged(E::kLinear), false},
-          {"MeanDilatationCorotational", makeBlock, averaged(E::kCorotational)},
-          {"MeanDilatationLayered", makeBlock, layered(E::kCorotational, Dilatation::kPatch)},
-          {"MeanDilatationNeoHookean", makeBlock, averaged(E::kNeoHookean)},
-          {"MeanDilatationLayeredNeoHookean", makeBlock, layered(E::kNeoHookean, Dilatation::kPatch)},
+          {"MeanStrainLinear", makeBlock, averaged(E::kLinear), false},
+          {"MeanStrainCorotational", makeBlock, averaged(E::kCorotational)},
+          {"MeanStrainLayered", makeBlock, layered(E::kCorotational, Dilatation::kPatch)},
+          {"MeanStrainNeoHookean", makeBlock, averaged(E::kNeoHookean)},
+          {"MeanStrainLayeredNeoHookean", makeBlock, layered(E::kNeoHookean, Dilatation::kPatch)},
           {"ViscoelasticLinear", makeBlock, viscous(material(E::kLinear, 5e3, 0.4)), false},
           {"ViscoelasticCorotational", makeBlock, viscous(averaged(E::kCorotational))},
           {"ViscoelasticNeoHookean", makeBlock, viscous(material(E::kNeoHookean, 5e3, 0.4))},
@@ -157,7 +157,7 @@ std::vector<Model> models() {
           {"AttachedCorotational", makeAttached<makeBlock>, material(E::kCorotational, 5e3, 0.4), false, 0},
           {"AttachedNeoHookean", makeAttached<makeBlock>, material(E::kNeoHookean, 5e3, 0.4), false, 0},
           {"AttachedMassSpring", makeAttached<makeBlock>, material(E::kMassSpring, 5e3, 0.25), false, 0},
-          {"AttachedMeanDilatation", makeAttached<makeBlock>, layered(E::kCorotational, Dilatation::kPatch), false, 0},
+          {"AttachedMeanStrain", makeAttached<makeBlock>, layered(E::kCorotational, Dilatation::kPatch), false, 0},
           {"AttachedMembrane", makeAttached<makeCurved>, material(E::kMembrane, 5e4, 0.3), false, 0}};
 }
 

@@ -19,12 +19,18 @@ constexpr double kAveragedPoissonsRatio = 0.3;
 /// (MaterialDescription::dilatation, prony_series).
 bool isContinuum(ElasticModel model);
 
+/// Whether the model may average its change of shape (MaterialDescription::distortion).
+bool mayAverageDistortion(ElasticModel model);
+
 /// Whether volume changes of these materials are averaged over patches: what they ask for, or what kAuto chooses.
 bool averagesDilatation(const ElementMaterials& materials);
 
+/// Whether a part of their changes of shape is, likewise.
+bool averagesDistortion(const ElementMaterials& materials);
+
 /// @param rest 3 x n, m.
-/// @param materials all of the model and dilatation of the first.
-/// @param patch_of of each tetrahedron, for materials that average their dilatation (see MeanDilatation); not used
+/// @param materials all of the model, dilatation and distortion of the first.
+/// @param patch_of of each tetrahedron, for materials that average their dilatation (see MeanStrain); not used
 ///   for others.
 /// @throws std::invalid_argument for a material out of range, a membrane (see membrane.h), which a volume cannot be, or
 ///   patches for a model without them.

@@ -26,6 +26,13 @@ enum class Dilatation {
   kPatch     ///< the five tetrahedra of a block's cell, or about five neighbours of a mesh: does not
 };
 
+/// Over what a linear or corotational volume that averages its change of volume averages a part of its change of shape.
+enum class Distortion {
+  kAuto,     ///< kPatch where the dilatation of a linear or corotational body is averaged, else kElement
+  kElement,  ///< each tetrahedron: stiff in bending
+  kPatch     ///< as Dilatation::kPatch: about half the error of a press
+};
+
 /// One term of a Prony series: a Maxwell element beside the elastic body.
 struct PronyTerm {
   static constexpr Range kModulusRatio{0.0, 1000.0, "", "the shear modulus of the term over the relaxed one", true};
@@ -48,6 +55,7 @@ struct MaterialDescription {
   /// Membranes: bending stiffness per width, N m; negative: that of a plate, E h^3 / (12 (1 - nu^2)).
   double bending_stiffness_n_m = -1.0;
   Dilatation dilatation = Dilatation::kAuto;
+  Distortion distortion = Distortion::kAuto;
   /// Volumes but for mass-spring: stress relaxation of the deviator. Young's modulus is then that of the relaxed body. The
   /// terms are those of the whole tissue, times the modulus of each region.
   std::vector<PronyTerm> prony_series = {};

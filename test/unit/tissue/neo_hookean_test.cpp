@@ -11,7 +11,7 @@
 
 #include "tissue/element_patches.h"
 #include "tissue/mass_spring.h"
-#include "tissue/mean_dilatation.h"
+#include "tissue/mean_strain.h"
 #include "tissue_contact/mesh/tet_mesh.h"
 #include "validation/elasticity_helpers.h"
 
@@ -140,12 +140,12 @@ TEST(NeoHookeanPatches, UniformStrainGivesTheForcesOfElements) {
   EXPECT_LE((averaged - plain).norm(), 1e-12 * plain.norm());
 }
 
-// At small strain the laws are one, and so is what patches do to them: no locking in bending (mean_dilatation_test.cpp).
+// At small strain the laws are one, and so is what patches do to them: no locking in bending (mean_strain_test.cpp).
 TEST(NeoHookeanPatches, StiffnessAtRestIsThatOfLinearPatches) {
   const TetMesh mesh = smallBlock();
   MaterialDescription material{ElasticModel::kLinear, kYoung, 0.49, 1000.0};
-  const MeanDilatation linear(mesh.positions, mesh.tetrahedra, std::vector<bool>(mesh.positions.cols(), false),
-                              material, patchesByCells(mesh.tetrahedra.size(), kTetrahedraPerCell));
+  const MeanStrain linear(mesh.positions, mesh.tetrahedra, std::vector<bool>(mesh.positions.cols(), false), material,
+                          patchesByCells(mesh.tetrahedra.size(), kTetrahedraPerCell), 0.0);
   const Eigen::MatrixXd expected = dense(linear.makeState()->stiffness);
   const Eigen::MatrixXd got = dense(makeModel(mesh, 0.49, true).makeState()->stiffness);
   EXPECT_LE((got - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.maxCoeff());

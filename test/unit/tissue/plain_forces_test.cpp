@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tissue/element_patches.h"
+#include "tissue/mean_strain.h"
 #include "tissue_contact/mesh/tet_mesh.h"
 #include "tissue_contact/tissue/make_elasticity.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
@@ -20,6 +21,7 @@ struct Case {
   const char* name;
   ElasticModel model;
   Dilatation dilatation;
+  Distortion distortion = Distortion::kElement;
 };
 
 void PrintTo(const Case& value, std::ostream* out) { *out << value.name; }
@@ -39,6 +41,7 @@ class PlainForces : public testing::TestWithParam<Case> {
   PlainForces() {
     MaterialDescription soft{GetParam().model, 5e3, 0.4, 1000.0};
     soft.dilatation = GetParam().dilatation;
+    soft.distortion = GetParam().distortion;
     materials_ = soft;
     materials_.materials.push_back(soft);
     materials_.materials[1].youngs_modulus_pa = 20e3;
@@ -74,37 +77,52 @@ class PlainForces : public testing::TestWithParam<Case> {
   }
   Matrix3 strain(const Matrix3& F) const { return symmetric(rotation(F).transpose() * F) - Matrix3::Identity(); }
 
-  /// kappa times the mean of what a patch's elements change their volume by, Pa, for each element; zero without patches.
-  std::vector<double> patchPressures(const NodalVectors& x) const {
-    std::vector<double> V(mesh_.tetrahedra.size()), bulk(V), change(V), pressures(V);
-    for (std::size_t e = 0; e < V.size() && averages(); ++e) {
+  /// Of the patches' elements together, all by patch.
+  struct Mean {
+    double volume = 0.0;
+    LameParameters bulk_and_mu;
+    Matrix3 F = Matrix3::Zero();
+    double J = 0.0;
+  };
+  std::vector<Mean> means(const NodalVectors& x) const {
+    std::vector<Mean> means(mesh_.tetrahedra.size());
+    for (std::size_t e = 0; e < mesh_.tetrahedra.size(); ++e) {
       const LameParameters lame = lameParameters(materials_.of(e));
-      const Matrix3 F = gradient(x, e);
-      V[patch_of_[e]] += volume(e);
-      bulk[patch_of_[e]] += volume(e) * (lame.lambda + 2.0 / 3.0 * lame.mu);
-      change[patch_of_[e]] +=
-          volume(e) * (GetParam().model == ElasticModel::kNeoHookean ? F.determinant() - 1.0 : strain(F).trace());
+      const double V = volume(e);
+      Mean& mean = means[patch_of_[e]];
+      mean.volume += V;
+      mean.bulk_and_mu.lambda += V * (lame.lambda + 2.0 / 3.0 * lame.mu);
+      mean.bulk_and_mu.mu += V * lame.mu;
+      mean.F += V * gradient(x, e);
+      mean.J += V * gradient(x, e).determinant();
     }
-    for (std::size_t e = 0; e < V.size() && averages(); ++e) {
-      const int p = patch_of_[e];
-      pressures[e] = bulk[p] / V[p] * change[p] / V[p];
+    for (Mean& mean : means) {
+      mean.bulk_and_mu.lambda /= mean.volume;
+      mean.bulk_and_mu.mu /= mean.volume;
+      mean.F /= mean.volume;
+      mean.J /= mean.volume;
     }
-    return pressures;
+    return means;
   }
+  double patchShare() const { return GetParam().distortion == Distortion::kPatch ? kPatchShapeShare : 0.0; }
 
-  /// First Piola-Kirchhoff stress, Pa. @param pressure of the element's patch, Pa.
-  Matrix3 stress(const LameParameters& lame, const Matrix3& F, double pressure) const {
+  /// First Piola-Kirchhoff stress of an element, Pa. @param mean of its patch.
+  Matrix3 stress(const LameParameters& lame, const Matrix3& F, const Mean& mean) const {
     if (GetParam().model == ElasticModel::kNeoHookean) {
       const double mu = 4.0 / 3.0 * lame.mu;
       const double lambda = averages() ? mu / 8.0 : lame.lambda + 5.0 / 6.0 * lame.mu;
       const double J = F.determinant();
       const double flat = averages() ? 8.0 * mu * std::min(0.0, J - 0.5) : 0.0;
+      const double pressure = averages() ? mean.bulk_and_mu.lambda * (mean.J - 1.0) : 0.0;
       return mu * (1.0 - 1.0 / (F.squaredNorm() + 1.0)) * F +
              (lambda * (J - 1.0) - 0.75 * mu + flat + pressure) * cofactors(F);
     }
     const Matrix3 e = strain(F);
-    if (averages()) return rotation(F) * (2.0 * lame.mu * deviator(e) + pressure * Matrix3::Identity());
-    return rotation(F) * (2.0 * lame.mu * e + lame.lambda * e.trace() * Matrix3::Identity());
+    if (!averages()) return rotation(F) * (2.0 * lame.mu * e + lame.lambda * e.trace() * Matrix3::Identity());
+    const Matrix3 of_patch = strain(mean.F);
+    return rotation(F) * (2.0 * (1.0 - patchShare()) * lame.mu * deviator(e)) +
+           rotation(mean.F) * (2.0 * patchShare() * mean.bulk_and_mu.mu * deviator(of_patch) +
+                               mean.bulk_and_mu.lambda * of_patch.trace() * Matrix3::Identity());
   }
 
   void addForces(std::size_t e, const Matrix3& P, NodalVectors& forces) const {
@@ -118,9 +136,9 @@ class PlainForces : public testing::TestWithParam<Case> {
 
   NodalVectors plainForces(const NodalVectors& x) const {
     NodalVectors forces = NodalVectors::Zero(3, x.cols());
-    const std::vector<double> pressures = patchPressures(x);
+    const std::vector<Mean> patches = means(x);
     for (std::size_t e = 0; e < mesh_.tetrahedra.size(); ++e) {
-      addForces(e, stress(lameParameters(materials_.of(e)), gradient(x, e), pressures[e]), forces);
+      addForces(e, stress(lameParameters(materials_.of(e)), gradient(x, e), patches[patch_of_[e]]), forces);
     }
     return forces;
   }
@@ -147,14 +165,17 @@ TEST_P(PlainForces, AreThoseOfTheKernels) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(, PlainForces,
-                         testing::Values(Case{"Linear", ElasticModel::kLinear, Dilatation::kElement},
-                                         Case{"AveragedLinear", ElasticModel::kLinear, Dilatation::kPatch},
-                                         Case{"Corotational", ElasticModel::kCorotational, Dilatation::kElement},
-                                         Case{"AveragedCorotational", ElasticModel::kCorotational, Dilatation::kPatch},
-                                         Case{"NeoHookean", ElasticModel::kNeoHookean, Dilatation::kElement},
-                                         Case{"AveragedNeoHookean", ElasticModel::kNeoHookean, Dilatation::kPatch}),
-                         [](const auto& one) { return std::string(one.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    , PlainForces,
+    testing::Values(Case{"Linear", ElasticModel::kLinear, Dilatation::kElement},
+                    Case{"AveragedLinear", ElasticModel::kLinear, Dilatation::kPatch},
+                    Case{"MeanStrainLinear", ElasticModel::kLinear, Dilatation::kPatch, Distortion::kPatch},
+                    Case{"Corotational", ElasticModel::kCorotational, Dilatation::kElement},
+                    Case{"AveragedCorotational", ElasticModel::kCorotational, Dilatation::kPatch},
+                    Case{"MeanStrainCorotational", ElasticModel::kCorotational, Dilatation::kPatch, Distortion::kPatch},
+                    Case{"NeoHookean", ElasticModel::kNeoHookean, Dilatation::kElement},
+                    Case{"AveragedNeoHookean", ElasticModel::kNeoHookean, Dilatation::kPatch}),
+    [](const auto& one) { return std::string(one.param.name); });
 
 class PlainOverstress : public PlainForces {};
 

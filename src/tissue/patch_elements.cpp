@@ -1,0 +1,128 @@
+#include "tissue/patch_elements.h"
+
+#include <algorithm>
+
+namespace tissue_contact {
+
+PatchElements::PatchElements(const DilatationPatches& averaged, const TetElements& tets,
+                             const ElementMaterials& element_materials, double shape_share) {
+  const std::vector<DilatationPatches::Patch>& patches = averaged.patches;
+  batches.resize((patches.size() + kLanes - 1) / kLanes);
+  materials.resize(batches.size());
+  slots_of_.push_back(0);
+  for (const DilatationPatches::Patch& patch : patches) {
+    counts_.push_back(patch.nodes.size());
+    most_nodes = std::max(most_nodes, patch.nodes.size());
+    damping_s_.push_back(patch.damping_s);
+    slots_.insert(slots_.end(), patch.slots.begin(), patch.slots.end());
+    slots_of_.push_back(slots_.size());
+  }
+  for (std::size_t lane = 0; lane < batches.size() * kLanes; ++lane) {
+    const std::size_t p = std::min(lane, patches.size() - 1);
+    PatchBatch& batch = batches[lane / kLanes];
+    if (lane % kLanes == 0) {
+      batch.first = nodes.size();
+      batch.count = *std::max_element(counts_.begin() + static_cast<std::ptrdiff_t>(p),
+                                      counts_.begin() + static_cast<std::ptrdiff_t>(std::min(p + kLanes, size())));
+      nodes.resize(nodes.size() + batch.count);
+    }
+    const DilatationPatches::Patch& patch = patches[p];
+    std::vector<Vector3> gradients(batch.count, Vector3::Zero());
+    double mu = 0.0;
+    for (const DilatationPatches::Member& member : patch.members) {
+      const double part = tets.elements[member.element].volume / patch.volume;
+      const Eigen::Matrix<double, 3, 4> c = tets.shapeGradients(member.element);
+      for (int i = 0; i < 4; ++i) gradients[member.local[i]] += part * c.col(i);
+      mu += part * shape_share * lameParameters(element_materials.of(member.element)).mu;
+    }
+    for (std::size_t i = 0; i < batch.count; ++i) {
+      PatchNode& node = nodes[batch.first + i];
+      node.nodes[lane % kLanes] = patch.nodes[i < patch.nodes.size() ? i : 0];
+      for (int r = 0; r < 3; ++r) node.gradient[r][lane % kLanes] = gradients[i][r];
+    }
+    batch.volume[lane % kLanes] = lane < patches.size() ? patch.volume : 0.0;
+    materials[lane / kLanes].lambda[lane % kLanes] = patch.bulk - 2.0 / 3.0 * mu;
+    materials[lane / kLanes].mu[lane % kLanes] = mu;
+  }
+}
+
+void PatchElements::split(const std::vector<bool>& still, std::vector<BatchRange>& moving,
+                          std::vector<BatchRange>& resting) const {
+  splitBatches(
+      batches.size(),
+      [&](std::size_t b) {
+        const auto first = nodes.begin() + static_cast<std::ptrdiff_t>(batches[b].first);
+        return std::all_of(first, first + static_cast<std::ptrdiff_t>(batches[b].count), [&](const PatchNode& four) {
+          return std::all_of(four.nodes.begin(), four.nodes.end(), [&](int node) { return still[node]; });
+        });
+      },
+      moving, resting);
+}
+
+Vector3 PatchElements::gradient(std::size_t patch, std::size_t node) const {
+  const PatchNode& four = nodes[batches[patch / kLanes].first + node];
+  const std::size_t lane = patch % kLanes;
+  return {four.gradient[0][lane], four.gradient[1][lane], four.gradient[2][lane]};
+}
+
+Matrix3 PatchElements::deformationGradient(std::size_t patch, const NodalVectors& x) const {
+  const PatchNode* const first = &nodes[batches[patch / kLanes].first];
+  const auto at = [&](std::size_t i) { return Vector3(x.col(first[i].nodes[patch % kLanes])); };
+  // Gradients sum to zero, so positions may be taken from the first node: no loss of digits far from the origin.
+  Matrix3 F = Matrix3::Zero();
+  for (std::size_t i = 1; i < counts_[patch]; ++i) F += (at(i) - at(0)) * gradient(patch, i).transpose();
+  return F;
+}
+
+/// @param blockOf nodes i <= j: the block of K to be added.
+template <typename BlockOf>
+void PatchElements::addBlocks(std::size_t patch, const BlockOf& blockOf, Elasticity::State& state) const {
+  const int* next = &slots_[slots_of_[patch]];
+  for (std::size_t i = 0; i < counts_[patch]; ++i) {
+    for (std::size_t j = i; j < counts_[patch]; ++j) {
+      const int slot = *next++;
+      if (slot < 0) continue;
+      addBlock(i == j, slot, blockOf(i, j), damping_s_[patch], state.stiffness, state.damping);
+    }
+  }
+}
+
+void PatchElements::addStiffness(std::size_t patch, const Matrix3& R, Elasticity::State& state) const {
+  const LameParameters lame = material(patch);
+  const double lambda = volume(patch) * lame.lambda;
+  const double mu = volume(patch) * lame.mu;
+  addBlocks(
+      patch,
+      [&](std::size_t i, std::size_t j) {
+        const Vector3 a = R * gradient(patch, i);
+        const Vector3 b = R * gradient(patch, j);
+        Matrix3 block = (lambda * a) * b.transpose() + (mu * b) * a.transpose();
+        block.diagonal().array() += mu * a.dot(b);
+        return block;
+      },
+      state);
+}
+
+void PatchElements::turnStiffness(std::size_t patch, const Matrix3& old, const Matrix3& R,
+                                  std::vector<Vector3>& scratch, Elasticity::State& state) const {
+  const LameParameters lame = material(patch);
+  const double lambda = volume(patch) * lame.lambda;
+  const double mu = volume(patch) * lame.mu;
+  Vector3* const a = scratch.data();
+  Vector3* const b = a + most_nodes;
+  for (std::size_t i = 0; i < counts_[patch]; ++i) {
+    a[i] = R * gradient(patch, i);
+    b[i] = old * gradient(patch, i);
+  }
+  addBlocks(
+      patch,
+      [&](std::size_t i, std::size_t j) {
+        Matrix3 block = (lambda * a[i]) * a[j].transpose() + (mu * a[j]) * a[i].transpose();
+        block -= (lambda * b[i]) * b[j].transpose();
+        block -= (mu * b[j]) * b[i].transpose();
+        return block;
+      },
+      state);
+}
+
+}  // namespace tissue_contact
