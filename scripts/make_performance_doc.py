@@ -50,7 +50,7 @@ COUNTED_STEPS = round((0.0041 + COUNTED_DRAG) / 2e-5)
 PARTS = [
     ("sweeps", r"sweepForth|sweepBack|runForth|runBack|runRelax|runCarry|GaussSeidelRelaxation::relax"),
     ("elastic forces", r"addCorotationalForces"),
-    ("averaged dilatation, its forces", r"addPressureForces|MeanDilatation::addForces"),
+    ("forces of patches", r"addPatchForces"),
     ("refreshing the stiffness", r"::addStiffness|addGradients|shapeGradients|refreshStiffness"),
     ("residuals", r"bodyDefect|offDiagonalProduct|computeResiduals"),
     ("surface tree, detection", r"TriangleTree|MovingSurface|detect|NarrowPhase|projectOnTriangle"),

@@ -174,13 +174,13 @@ HeldPoints moveHolding(Simulator& simulator, int seconds, const Target& target) 
   return held;
 }
 
-// Back and forth by 0.1 mm once a second. Inside the contact nothing slips, and nothing adds up: the face that carries
+// Back and forth by 0.05 mm once a second. Inside the contact nothing slips, and nothing adds up: the face that carries
 // a point rocks and stretches a little, which takes points beside it some 50 nm to and fro.
 void tissueGoesBackAndForthWithAnInstrument(Report& report) {
   Simulator simulator = makeSimulator(probeOnPad(1.0), {{"probe", probeUrdf(0.005)}});
   pressAndPull(simulator, 0.0005);
   const HeldPoints held = moveHolding(
-      simulator, 20, [](double t) { return Vector3(0.00045 + 5e-5 * std::cos(2.0 * M_PI * t), 0.0, -0.0021); });
+      simulator, 20, [](double t) { return Vector3(0.000475 + 2.5e-5 * std::cos(2.0 * M_PI * t), 0.0, -0.0021); });
   report.atLeast("to and fro: points held throughout", "", 5, held.count(), "the inside of the contact");
   report.atMost("to and fro: slip of the worst after 20 times", "m", kCreep, held.slip(simulator), kNoCreep);
   report.progress(0.95);

@@ -22,6 +22,7 @@ struct PressScene {
   std::string friction_keys;  ///< more of the rough sphere's entry in `friction`, each after a comma
   std::string model = "linear";
   std::string dilatation = "patch";
+  std::string distortion = "auto";
   std::string solver = "{iterations: 150, tolerance: 1.0e-6}";
 
   double shearModulus() const { return youngs_modulus_pa / (2.0 * (1.0 + poissons_ratio)); }
@@ -48,8 +49,8 @@ inline Simulator makePress(const PressScene& scene) {
        << "]\n      grading: {x: {growth: " << scene.growth << "}, y: {growth: " << scene.growth
        << "}, z: {growth: " << scene.growth << ", fine_at: maximum}}\n"
        << "    material: {model: " << scene.model << ", dilatation: " << scene.dilatation
-       << ", youngs_modulus_pa: " << scene.youngs_modulus_pa << ", poissons_ratio: " << scene.poissons_ratio
-       << ", density_kg_per_m3: 1000}\n"
+       << ", distortion: " << scene.distortion << ", youngs_modulus_pa: " << scene.youngs_modulus_pa
+       << ", poissons_ratio: " << scene.poissons_ratio << ", density_kg_per_m3: 1000}\n"
        << "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
        << "instruments:\n";
   for (const char* const name : {"smooth", "rough"}) {

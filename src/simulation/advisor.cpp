@@ -30,12 +30,6 @@ std::string sleepLine(const Scene& scene) {
   return line.str();
 }
 
-bool averages(const TissueDescription& tissue) {
-  ElementMaterials materials(tissue.material);
-  for (const TissueRegion& region : tissue.regions) materials.materials.push_back(region.material);
-  return averagesDilatation(materials);
-}
-
 std::string modelLine(const Scene& scene, const TissueDescription& tissue) {
   std::ostringstream line;
   line << "tissue " << quoted(tissue.name) << ": " << elasticModelName(tissue.material.model);
@@ -48,8 +42,8 @@ std::string modelLine(const Scene& scene, const TissueDescription& tissue) {
     }
   } else if (tissue.material.model != ElasticModel::kCorotational) {
     line << ", as the scene says";
-  } else if (scene.advisor.adapt_rotations && averages(tissue)) {
-    line << " always: changes of volume are averaged over patches, which follow rotations";
+  } else if (scene.advisor.adapt_rotations && averagesDilatation(materialsOf(tissue))) {
+    line << " always: strain is averaged over patches, which follow rotations";
   } else if (scene.advisor.adapt_rotations) {
     line << ", linear while no element turns by " << TetElasticity::kTurnOn << " rad (spurious strain below "
          << 0.5 * TetElasticity::kTurnOn * TetElasticity::kTurnOn << ")";
@@ -135,14 +129,15 @@ std::string rangeText(double from, double to) {
 
 /// Adds what to expect of the forces, and whether that is worth a warning.
 /// @param under_smallest_m, under_largest_m edges that the smallest and the largest shape meet.
-Advice withExpectedError(const std::string& mesh, double under_smallest_m, double under_largest_m,
-                         const HalfExtents& shapes) {
+Advice withExpectedError(const TissueDescription& tissue, const std::string& mesh, double under_smallest_m,
+                         double under_largest_m, const HalfExtents& shapes) {
   if (!(shapes.smallest_m > 0.0)) return {mesh};
   constexpr double kWorthAWord = 0.1;
   constexpr double kWorthAWarning = 0.5;  // good to a factor of two: off by a quarter at least
   constexpr double kCompared = 3.0;       // edges over half extents that expectedMeshError() was compared with
+  const bool averages = averagesDistortion(materialsOf(tissue));
   const auto error = [&](double edge_m, double half_extent_m) {
-    return expectedMeshError(std::min(edge_m, kCompared * half_extent_m), half_extent_m);
+    return expectedMeshError(std::min(edge_m, kCompared * half_extent_m), half_extent_m, averages);
   };
   const double most = error(under_smallest_m, shapes.smallest_m);
   const double least = error(under_largest_m, shapes.largest_m);
@@ -182,9 +177,10 @@ double shortSurfaceEdge(const Tissue& tissue) {
   return *tenth;
 }
 
-Advice meshLine(const Tissue& tissue, double edge_m, const HalfExtents& shapes) {
-  return withExpectedError("mesh of tissue " + quoted(tissue.name()) + ": as it is, cells of " +
-                               twoDigits(1e3 * edge_m) + " mm (its shorter surface edges)",
+Advice meshLine(const TissueDescription& tissue, double edge_m, const HalfExtents& shapes) {
+  return withExpectedError(tissue,
+                           "mesh of tissue " + quoted(tissue.name) + ": as it is, cells of " + twoDigits(1e3 * edge_m) +
+                               " mm (its shorter surface edges)",
                            edge_m, edge_m, shapes);
 }
 
@@ -200,7 +196,7 @@ Advice refinementLine(const TissueDescription& tissue, const std::vector<double>
   line << "refined to cells of " << 1e3 * cells_m.front() << " mm, " << 1e3 * reach_m
        << " mm around what touches it, and moved along with that; at most " << nodes_at_most
        << " nodes, for which cells grow";
-  return withExpectedError(line.str(), kEdgePerCell * cells_m.front(), kEdgePerCell * cells_m.back(), shapes);
+  return withExpectedError(tissue, line.str(), kEdgePerCell * cells_m.front(), kEdgePerCell * cells_m.back(), shapes);
 }
 
 std::string coarseCellsText(const Simulator& simulator) {

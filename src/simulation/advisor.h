@@ -29,7 +29,7 @@ std::vector<Advice> adviceLines(const Scene& scene, const FoldWatch& folds, cons
 /// What the mesh of a volume is, and what it is likely to do to the forces of the instruments' shapes: a warning where
 /// even the largest shape meets coarse cells.
 /// @param edge_m of the shorter triangles of the surface.
-Advice meshLine(const Tissue& tissue, double edge_m, const HalfExtents& shapes);
+Advice meshLine(const TissueDescription& tissue, double edge_m, const HalfExtents& shapes);
 
 /// The same of a mesh that follows. @param cells_m edges of the finest cells under all shapes, ascending; none: nothing asks for any.
 /// @param reach_m of the finest.

@@ -49,7 +49,7 @@ std::vector<Advice> Simulator::advice() const {
     if (!isContinuum(scene().tissues[t].material.model)) continue;
     const HalfExtents shapes = all.touched_places.halfExtents();
     if (!all.refinements[t]) {
-      meshes[t] = meshLine(all.tissues[t], shortSurfaceEdge(all.tissues[t]), shapes);
+      meshes[t] = meshLine(scene().tissues[t], shortSurfaceEdge(all.tissues[t]), shapes);
       continue;
     }
     const std::vector<double> cells_m = all.touched_places.cellsOn(static_cast<int>(t));

@@ -34,6 +34,12 @@ bool averagesDistortion(const ElementMaterials& materials) {
   return mayAverageDistortion(first.model) && first.distortion != Distortion::kElement && averagesDilatation(materials);
 }
 
+ElementMaterials materialsOf(const TissueDescription& tissue) {
+  ElementMaterials materials(tissue.material);
+  for (const TissueRegion& region : tissue.regions) materials.materials.push_back(region.material);
+  return materials;
+}
+
 namespace {
 
 std::unique_ptr<const Elasticity> makeElasticBody(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,

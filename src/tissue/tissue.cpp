@@ -185,12 +185,9 @@ namespace {
 
 /// The tissue's own material first, then its regions'.
 ElementMaterials elementMaterials(const TissueDescription& description, const std::vector<int>& element_regions) {
-  ElementMaterials materials(description.material);
+  ElementMaterials materials = materialsOf(description);
   materials.damping_s.push_back(description.damping.stiffness_s);
-  for (const TissueRegion& region : description.regions) {
-    materials.materials.push_back(region.material);
-    materials.damping_s.push_back(region.damping_stiffness_s);
-  }
+  for (const TissueRegion& region : description.regions) materials.damping_s.push_back(region.damping_stiffness_s);
   for (const int region : element_regions) materials.of_element.push_back(region + 1);
   return materials;
 }

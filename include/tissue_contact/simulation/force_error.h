@@ -21,16 +21,16 @@ struct ForceErrorEstimate {
 /// Likely share of a contact force that is due to the mesh, from recoveredStrainError() `recovered` within four contact radii of the middle of a
 /// shape's contacts, radius sqrt(A / pi) for the rest area A of the nodes that carry force. At most 1.
 ///
-/// 1.7 recovered^1.5, fitted to forces against the stored truths of the benchmark (press and drag of a ball, a recorded robot over a pad)
+/// 1.7 recovered^1.5, half of it where changes of shape are averaged (`averages`, see Distortion), fitted to forces against the stored truths of the benchmark (press and drag of a ball, a recorded robot over a pad)
 /// on meshes of 288 to 3714 nodes, which err by 4 to 350 %. An energy's error would be `recovered` itself. Forces of contact at vertices
 /// err by less where cells are small, since what is held at vertices only is soft while cells are stiff; and by more where the contact is
 /// smaller than a cell. Where three nodes or fewer carry a shape, what its lengths say (expectedMeshError()) counts if that is more. How well
 /// it does: doc/accuracy.md.
-double likelyMeshError(double recovered);
+double likelyMeshError(double recovered, bool averages);
 
 /// Likely error of the force on a shape pressed in by most of its half extent, relative, from the lengths alone: for a word of warning before
-/// anything moves. 0.5 (edge / half extent)^1.8, within a factor of two of what press and drag and the recorded robot meet on meshes of
+/// anything moves. 0.5 (edge / half extent)^1.8, 0.3 in the place of 0.5 where changes of shape are averaged; within a factor of two of what press and drag and the recorded robot meet on meshes of
 /// .3 to 3 half extents.
-double expectedMeshError(double surface_edge_m, double half_extent_m);
+double expectedMeshError(double surface_edge_m, double half_extent_m, bool averages);
 
 }  // namespace tissue_contact

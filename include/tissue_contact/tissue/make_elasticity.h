@@ -8,6 +8,7 @@
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/tissue/elasticity.h"
 #include "tissue_contact/tissue/element_materials.h"
+#include "tissue_contact/tissue/tissue_description.h"
 
 namespace tissue_contact {
 
@@ -27,6 +28,9 @@ bool averagesDilatation(const ElementMaterials& materials);
 
 /// Whether a part of their changes of shape is, likewise.
 bool averagesDistortion(const ElementMaterials& materials);
+
+/// Of the tissue and of its regions.
+ElementMaterials materialsOf(const TissueDescription& tissue);
 
 /// @param rest 3 x n, m.
 /// @param materials all of the model, dilatation and distortion of the first.
