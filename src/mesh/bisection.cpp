@@ -8,10 +8,10 @@
 namespace tissue_contact {
 namespace {
 
-/// Tetrahedra of a patch that is not cut: see element_patches.h for the size; three cuts make eight.
-constexpr int kLargestPatch = 8;
+/// Tetrahedra of a patch that is not cut: see element_patches.h for the size; two cuts make four. (Of eight, contact is too soft.)
+constexpr int kLargestPatch = 4;
 /// Fewer would be stiff on their own.
-constexpr int kSmallestPatch = 3;
+constexpr int kSmallestPatch = 2;
 
 bool contains(const Tetrahedron& tetrahedron, int node) {
   return std::find(tetrahedron.begin(), tetrahedron.end(), node) != tetrahedron.end();

@@ -21,7 +21,7 @@ struct FinePlace {
 class FineCells {
  public:
   /// Length that cells gain per length of distance beyond the reach: steeper ones err more with as many nodes (doc/accuracy.md).
-  static constexpr double kGrowth = 0.7;
+  static constexpr double kGrowth = 0.5;
   /// Of the reach: a contact that far from a focus has as much of fine cells beyond it.
   static constexpr double kCovered = 0.5;
 

@@ -30,7 +30,7 @@ enum class Dilatation {
 enum class Distortion {
   kAuto,     ///< kPatch where the dilatation of a linear or corotational body is averaged, else kElement
   kElement,  ///< each tetrahedron: stiff in bending
-  kPatch     ///< as Dilatation::kPatch: about half the error of a press
+  kPatch     ///< as Dilatation::kPatch: a third to a half less error of a press
 };
 
 /// One term of a Prony series: a Maxwell element beside the elastic body.
