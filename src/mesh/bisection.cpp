@@ -11,7 +11,7 @@ namespace {
 /// Tetrahedra of a patch that is not cut: see element_patches.h for the size; two cuts make four. (Of eight, contact is too soft.)
 constexpr int kLargestPatch = 4;
 /// Fewer would be stiff on their own.
-constexpr int kSmallestPatch = 2;
+constexpr int kSmallestPatch = 3;
 
 bool contains(const Tetrahedron& tetrahedron, int node) {
   return std::find(tetrahedron.begin(), tetrahedron.end(), node) != tetrahedron.end();

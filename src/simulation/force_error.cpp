@@ -15,7 +15,7 @@ namespace {
 /// Around a contact, in contact radii: most of its energy, and mostly not that of another.
 constexpr double kRadiiLookedAt = 4.0;
 /// Under a shape that so few nodes carry, strain is as smooth as the few elements around make it, however wrong: lengths tell more.
-constexpr int kFewNodes = 3;
+constexpr int kFewNodes = 5;
 
 /// What one shape does to one tissue.
 struct Touch {

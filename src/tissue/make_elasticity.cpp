@@ -31,7 +31,8 @@ bool mayAverageDistortion(ElasticModel model) {
 
 bool averagesDistortion(const ElementMaterials& materials) {
   const MaterialDescription& first = materials.materials.at(0);
-  return mayAverageDistortion(first.model) && first.distortion != Distortion::kElement && averagesDilatation(materials);
+  return mayAverageDistortion(first.model) && first.prony_series.empty() && first.distortion != Distortion::kElement &&
+         averagesDilatation(materials);
 }
 
 ElementMaterials materialsOf(const TissueDescription& tissue) {
@@ -51,7 +52,8 @@ std::unique_ptr<const Elasticity> makeElasticBody(const NodalVectors& rest, cons
   }
   if (first.distortion == Distortion::kPatch && !averagesDistortion(materials)) {
     throw std::invalid_argument(
-        "distortion over patches is for the models linear and corotational only, with dilatation over patches");
+        "distortion over patches is for the models linear and corotational only, with dilatation over patches and "
+        "without a Prony series");
   }
   switch (first.model) {
     case ElasticModel::kLinear:

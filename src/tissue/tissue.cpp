@@ -43,6 +43,11 @@ void checkModel(const TissueDescription& description) {
                                                 ": distortion is 'patch', which only the models linear and "
                                                 "corotational know; remove the key");
   }
+  if (material.distortion == Distortion::kPatch && !material.prony_series.empty()) {
+    throw EntryError("material.distortion", tissueLabel(description) +
+                                                ": distortion is 'patch', but stress that relaxes is that of "
+                                                "elements; remove the key, or prony_series");
+  }
   if (material.distortion == Distortion::kPatch && material.dilatation == Dilatation::kElement) {
     throw EntryError("material.distortion",
                      tissueLabel(description) +

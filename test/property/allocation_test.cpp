@@ -259,7 +259,7 @@ TEST_F(AllocationOfScenes, FewWhereAPreparedMeshIsTakenOver) {
   }
   const MeshMoves after = simulator.meshMoves(0);
   EXPECT_EQ(after.at_once, before.at_once);
-  EXPECT_GT(after.prepared, before.prepared + 3);
+  EXPECT_GE(after.prepared, before.prepared + 3);
   EXPECT_LE(others, 2 * (after.prepared - before.prepared));  // begun, and its stiffness begun
 }
 

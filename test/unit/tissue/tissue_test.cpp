@@ -115,6 +115,22 @@ TEST(Tissue, RefusesModelsThatDoNotSuitTheGeometry) {
   description.regions[0].material = description.material;
   description.regions[0].material.dilatation = Dilatation::kElement;
   expectRefused(description, {"tissue 'block', region 'capsule'", "dilatation"});
+  description.regions[0].material = description.material;
+  description.regions[0].material.distortion = Distortion::kElement;
+  expectRefused(description, {"tissue 'block', region 'capsule'", "distortion"});
+  description = blockDescription();
+  description.material.distortion = Distortion::kPatch;
+  EXPECT_NO_THROW(Tissue(description, Pose::Identity()));
+  description.material.prony_series = {{0.5, 0.1}};
+  expectRefused(description, {"tissue 'block'", "distortion", "remove the key, or prony_series"});
+  description.material.prony_series.clear();
+  description.material.dilatation = Dilatation::kElement;
+  expectRefused(description, {"tissue 'block'", "distortion is 'patch' while dilatation is 'element'"});
+  description = blockDescription();
+  description.material.distortion = Distortion::kPatch;
+  description.material.model = ElasticModel::kNeoHookean;
+  expectRefused(description,
+                {"tissue 'block'", "distortion is 'patch', which only the models linear and corotational"});
   description = sheetDescription();
   std::get<SheetDescription>(description.geometry).thickness_m = 0.0;
   expectRefused(description, {"tissue 'flap'", "thickness_m", "> 0"});
