@@ -88,7 +88,7 @@ TEST(RefinedPress, TheForceDoesNotJumpWhereTheMeshMoves) {
 // The same fine cells all along the path, so that the mesh never moves. Both reach far, since a mesh that is fine all along is finer
 // far from the ball as well: 1.05 % of the force, RMS.
 TEST(RefinedPress, AMovingMeshGivesTheForcesOfOneThatIsFineAllAlong) {
-  Simulator moving = simulatorOf("{cell_m: 0.0025, reach_m: 0.009, nodes_at_most: 12000}");
+  Simulator moving = simulatorOf("{cell_m: 0.0025, reach_m: 0.007, nodes_at_most: 12000}");
   Simulator still = simulatorOf("{cell_m: 0.0025, reach_m: 0.020, nodes_at_most: 12000}");
   const Trace a = traceOf(moving, 0.0042, 0.008);
   const Trace b = traceOf(still, 0.0042, 0.008);

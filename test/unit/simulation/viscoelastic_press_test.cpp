@@ -43,7 +43,8 @@ std::vector<double> press(Simulator simulator, const std::vector<double>& times)
 
 class ViscoelasticPress : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Models, ViscoelasticPress,
-                         ::testing::Values("linear, dilatation: patch", "corotational, dilatation: patch",
+                         ::testing::Values("linear, dilatation: patch, distortion: element",
+                                           "corotational, dilatation: patch, distortion: element",
                                            "neo_hookean, dilatation: element", "neo_hookean, dilatation: patch"));
 
 TEST_P(ViscoelasticPress, GoesFromTheModulusAtOnceToTheRelaxedOne) {
