@@ -145,21 +145,6 @@ def require_folder(folder):
         raise FitError("--out %s: %s is no folder that can be written to; give another" % (folder, place))
 
 
-def finer_settings(texts):
-    import yaml
-    from fitting import FitError
-    settings = {}
-    for text in texts:
-        key, equals, value = text.partition("=")
-        try:
-            settings[key.replace("[", ".").replace("]", "")] = yaml.safe_load(value)
-        except yaml.YAMLError as error:
-            raise FitError("--finer '%s': %s" % (text, error)) from error
-        if not (key and equals and value):
-            raise FitError("--finer '%s' is not KEY=VALUE, such as step.max_step_s=0.001" % text)
-    return settings
-
-
 def fit(arguments):
     from fitting import FitError, forward, measured, parameters, results, run
     length = math.sqrt(sum(x * x for x in arguments.approach))
@@ -170,7 +155,7 @@ def fit(arguments):
     instrument = instrument_of(keys, arguments.instrument)
     tool = forward.Tool(arguments.scene, instrument["name"], instrument.get("joint_names") or {})
     fitted = parameters.parse_fits(arguments.fit, keys)
-    finer = finer_settings(arguments.finer)
+    finer = parameters.settings_of(arguments.finer, "--finer")
     forward.load_scene(arguments.scene, finer)
     require_folder(arguments.out)
     require_each_once(arguments.measured + arguments.held_out)

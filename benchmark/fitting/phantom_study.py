@@ -3,16 +3,19 @@ and what a force sensor and a tracker would record of it. In the package's envir
 import dataclasses
 import os
 import sys
+import tempfile
 
 import numpy
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
 sys.path.insert(0, os.path.join(SOURCE, "scripts"))
 
-from fitting import forward, measured, parameters, run  # noqa: E402 (the path comes first)
+import make_ring  # noqa: E402 (the path comes first)
+from fitting import forward, measured, parameters, run  # noqa: E402
 
 SCENE = os.path.join(SOURCE, "config", "calibration", "phantom.yaml")
 TOOL = "indenter"
+RING, PLATE, RING_M = os.path.join(SOURCE, "config", "calibration", "ring.yaml"), "plate", 0.0185  # the ring's mean radius
 RATE_HZ = 500
 ROUNDING_S = 0.06  # of corners of the motion: an arm has mass
 BALL_M = 0.012
@@ -28,6 +31,7 @@ def _mesh(cells, growth, step_s):
 # estimates is part of their error here. Fitting with the model that made the data would hide it.
 FINER = _mesh([16, 16, 9], [1.15, 1.15, 1.2], 0.0025)
 TRUTH = _mesh([20, 20, 11], [1.12, 1.12, 1.15], 0.002)
+RING_FINER, RING_TRUTH = ([72, 3, 3], 0.005), ([96, 4, 4], 0.002)  # of ring_mesh()
 
 
 @dataclasses.dataclass
@@ -76,16 +80,19 @@ def drag(depth_mm=2.0, way_mm=5.0, speed_mm_per_s=5.0):
                  (there + 0.1, 0.5 * way_mm, depth_mm), (back, -0.5 * way_mm, depth_mm)])
 
 
-def breakaway(depth_mm=2.0, way_mm=3.0, speed_mm_per_s=2.0, still_s=0.4):
-    """Drags that begin slowly, from rest."""
-    half, takes = 0.5 * way_mm, way_mm / speed_mm_per_s
-    there = 0.5 + still_s + takes
-    return path([(0, -half, -0.5), (0.5, -half, depth_mm), (0.5 + still_s, -half, depth_mm), (there, half, depth_mm), (there + still_s, half, depth_mm),
-                 (there + still_s + takes, -half, depth_mm)])
+def twist(count=8, depth_mm=0.3, first_mm=3.0, way_mm=0.5, speed_mm_per_s=0.2, rest_s=1.0):
+    """(times (s), z (m), yaw (rad)) of the plate on the ring: one turn that makes all of it slide, then slow ones, each from rest."""
+    knots = [(0, 0, -0.3), (0.3, 0, depth_mm), (0.4, 0, depth_mm), (1.4, first_mm, depth_mm), (1.4 + rest_s, first_mm, depth_mm)]
+    for _ in range(count):
+        time, way, _ = knots[-1]
+        there = time + way_mm / speed_mm_per_s
+        knots += [(there, way + way_mm, depth_mm), (there + rest_s, way + way_mm, depth_mm)]
+    times, positions = path(knots)
+    return times, positions[:, 2] - BALL_M, positions[:, 0] / RING_M
 
 
 PROTOCOL = {"press": press, "swing": swing, "drag": drag}
-MOTIONS = dict(PROTOCOL, breakaway=breakaway, deeper=lambda: press(4.0, 8.0))
+MOTIONS = dict(PROTOCOL, deeper=lambda: press(4.0, 8.0))
 
 
 def truth_keys(youngs_modulus_pa, stiffness_s, static, kinetic):
@@ -100,6 +107,37 @@ def true_forces(settings, motion, scene=SCENE):
     if done.doubts:
         sys.exit("the truth itself is in doubt: %s" % dict(done.doubts))
     return done.force_n
+
+
+def ring_mesh(cells, step_s):
+    """Settings of the ring's scene with a mesh of so many cells around, across, in height, which is written where it is forgotten."""
+    handle, path_of_it = tempfile.mkstemp(suffix=".msh")
+    os.close(handle)
+    make_ring.write(path_of_it, *make_ring.ring(0.017, 0.020, 0.004, cells))
+    return {"tissues.ring.mesh.file": path_of_it, "step.max_step_s": step_s}
+
+
+def ring_keys(youngs_modulus_pa, stiffness_s, **friction):
+    keys = {"tissues.ring.material.youngs_modulus_pa": youngs_modulus_pa, "tissues.ring.damping.stiffness_s": stiffness_s}
+    return dict(keys, **{"friction.0." + name: value for name, value in friction.items()})
+
+
+def record_twist(settings, motion, noise, generator, scene=RING):
+    """What a rheometer, or a robot with a sensor of force and torque, would record of it; noise of the turn as of a position at the ring."""
+    times, z, yaw = motion
+    joints = numpy.zeros((len(times), 6))
+    joints[:, 2], joints[:, 3] = z, yaw
+    done = forward.forces(scene, settings, PLATE, times, joints)
+    if done.doubts:
+        sys.exit("the truth itself is in doubt: %s" % dict(done.doubts))
+
+    def noisy(values):
+        return values + noise.force_share * numpy.linalg.norm(values, axis=1).max() * generator.standard_normal(values.shape)
+
+    return measured.Recording(
+        name="twist", times_s=times, force_n=noisy(done.force_n), torque_nm=noisy(done.torque_nm),
+        joints={"z": z + noise.offset_m * generator.standard_normal() + noise.pose_m * generator.standard_normal(len(z)),
+                "yaw": yaw + noise.pose_m / RING_M * generator.standard_normal(len(yaw))})
 
 
 def record(name, motion, force, noise, offset_m, generator):
@@ -127,3 +165,11 @@ def write_table(file, recording):
         stream.write("time_s,x_m,y_m,z_m,fx_n,fy_n,fz_n\n")
         for row in numpy.hstack([recording.times_s[:, None], recording.positions_m, recording.force_n]):
             stream.write("%.3f,%.6f,%.6f,%.6f,%.5f,%.5f,%.5f\n" % tuple(row))
+
+
+def write_twist(file, recording):
+    with open(file, "w", encoding="utf-8") as stream:
+        stream.write("time_s,z,yaw,fz_n,tz_nm\n")
+        columns = [recording.times_s, recording.joints["z"], recording.joints["yaw"], recording.force_n[:, 2], recording.torque_nm[:, 2]]
+        for row in numpy.stack(columns, axis=1):
+            stream.write("%.3f,%.6f,%.6f,%.5f,%.7f\n" % tuple(row))

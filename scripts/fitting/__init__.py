@@ -6,6 +6,7 @@
   solve.py         starts, robust least squares
   uncertainty.py   intervals, correlation, and what the data do not identify
   results.py       report, picture, fitted scene
+  breakaway.py     of static_friction.py: peaks and levels of a torque -> static and kinetic friction
 
 They use NumPy, SciPy and the module tissue_contact; measured.py uses rosbag for bags.
 """

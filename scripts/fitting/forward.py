@@ -117,6 +117,7 @@ class Simulated(typing.NamedTuple):
     force_n: numpy.ndarray  # what the tissue exerts on the tool, axes of the world
     error_n: numpy.ndarray  # how wrong it likely is
     doubts: typing.Mapping = types.MappingProxyType({})  # field of the report -> in how many steps
+    torque_nm: numpy.ndarray = None  # about the tip
 
 
 DOUBTS = {  # by the report's field
@@ -138,17 +139,17 @@ def forces(scene_path, settings, tool_name, times_s, motion):
         simulator = tissue_contact.Simulator(scene)
         simulator.place(tool_name, motion[0])
         index = list(simulator.instruments).index(tool_name)
-        force, error, doubts = numpy.zeros((len(times_s), 3)), numpy.zeros(len(times_s)), {}
+        wrench, error, doubts = numpy.zeros((len(times_s), 6)), numpy.zeros(len(times_s)), {}
         for i, pieces in enumerate(_pieces(times_s, motion, scene.max_step_s), 1):
             for duration, joints in pieces:
                 simulator.advance(duration, {tool_name: joints})
                 _doubt(doubts, simulator.report())
-            force[i] = simulator.wrench(tool_name, "world")[:3]
+            wrench[i] = simulator.wrench(tool_name, "world")
             error[i] = simulator.force_errors()["total_n"][index]
     except (ValueError, RuntimeError) as problem:
         raise FitError("%s with %s: %s" % (scene_path, ", ".join("%s=%s" % (key, "%.6g" % value if isinstance(value, float) else value)
                                                                   for key, value in settings.items()), problem)) from problem
-    return Simulated(force, error, doubts)
+    return Simulated(wrench[:, :3], error, doubts, wrench[:, 3:])
 
 
 class Workers:

@@ -15,11 +15,12 @@ from fitting import FitError
 POSITION = ("x_m", "y_m", "z_m")
 QUATERNION = ("qx", "qy", "qz", "qw")
 FORCE = ("fx_n", "fy_n", "fz_n")
+TWIST = ("z", "yaw", "fz_n", "tz_nm")  # columns of a plate that turns on a ring
 MOST_ROWS = 1000000
 LONGEST_LINE = 10000
 FEWEST_ROWS = 10
 FEWEST_SMOOTHED = 5  # three make a parabola that smooths nothing
-FARTHEST_M, LARGEST_N, LARGEST_JOINT, LATEST_S = 10.0, 1000.0, 1000.0, 1.0e10
+FARTHEST_M, LARGEST_N, LARGEST_NM, LARGEST_JOINT, LATEST_S = 10.0, 1000.0, 100.0, 1000.0, 1.0e10
 WIDEST_M, LONGEST_S = 1.0, 3600.0  # of a recording
 WIDEST_GAP = 20.0  # between samples, in usual intervals
 NORM_WITHIN = 0.01
@@ -36,6 +37,7 @@ class Recording:
     joints: dict = None  # recorded name -> positions, rad or m
     force_frame: str = ""  # as a bag names it
     pose_frame: str = ""
+    torque_nm: numpy.ndarray = None  # as force_n, about the tip; of a twist alone
 
     def measured(self):
         return [axis for axis in range(3) if not numpy.isnan(self.force_n[:, axis]).any()]
@@ -58,6 +60,17 @@ def read(path, joint_names, joint_topics, force_topic, pose_topic=None):
     """joint_names: as recorded; topics: of a bag, whose joint states are not looked at where it has a topic of poses."""
     is_bag = _beginning(path).startswith(b"#ROSBAG V")
     recording = _read_bag(path, joint_names, joint_topics, force_topic, pose_topic) if is_bag else _read_table(path, joint_names)
+    _require_plausible(path, recording)
+    return recording
+
+
+def read_twist(path, joint_names):
+    """Of a plate that turns on a ring, from a table."""
+    for name in TWIST[:2]:
+        if name not in joint_names:
+            raise FitError("the scene's instrument has no joint '%s'; the plate is moved by z and yaw, as in urdf/indenter.urdf" % name)
+    _beginning(path)
+    recording = _read_table(path, joint_names, TWIST)
     _require_plausible(path, recording)
     return recording
 
@@ -109,9 +122,9 @@ def _without_flips(quaternions):
     return quaternions * numpy.cumprod(flips)[:, None]
 
 
-def _require_columns(path, names, joint_names):
+def _require_columns(path, names, joint_names, needed):
     joints = [name for name in names if name in joint_names]
-    known = ("time_s",) + POSITION + QUATERNION + FORCE + tuple(joint_names)
+    known = ("time_s",) + (needed or POSITION + QUATERNION + FORCE + tuple(joint_names))
     for name in names:
         if name not in known:
             near = difflib.get_close_matches(name.lower(), known, 1)
@@ -121,6 +134,9 @@ def _require_columns(path, names, joint_names):
             raise FitError("%s:1: column '%s' is there twice" % (path, name))
     if "time_s" not in names:
         raise FitError("%s:1: there is no column time_s (s)" % path)
+    for name in needed:
+        if name not in names:
+            raise FitError("%s:1: there is no column %s; %s are needed" % (path, name, ", ".join(known)))
     if not any(name in FORCE for name in names):
         raise FitError("%s:1: there is no force; give one or more of %s (N)" % (path, ", ".join(FORCE)))
     for group in (POSITION, QUATERNION):
@@ -140,6 +156,8 @@ def limit_of(name):
         return FARTHEST_M, "m; positions are in metres"
     if name in FORCE:
         return LARGEST_N, "N; forces are in newtons"
+    if name == "tz_nm":
+        return LARGEST_NM, "N m; torques are in newton metres"
     if name in QUATERNION:
         return 1.0 + NORM_WITHIN, "for a part of a unit quaternion"
     return (LATEST_S, "s") if name == "time_s" else (LARGEST_JOINT, "rad or m")
@@ -178,11 +196,12 @@ def _rows(path):
         raise FitError("%s cannot be read as a table (CSV, UTF-8): %s" % (path, error)) from error
 
 
-def _read_table(path, joint_names):
+def _read_table(path, joint_names, needed=()):
+    """needed: columns that must be there, and no others."""
     rows = _rows(path)
     _, names = next(rows, (0, []))
     names = [name.strip() for name in names]
-    joints = _require_columns(path, names, joint_names)
+    joints = _require_columns(path, names, joint_names, needed)
     values, before, time_at = array.array("d"), -math.inf, names.index("time_s")  # a tenth of the memory of lists
     for line, row in rows:
         if len(row) != len(names):
@@ -206,6 +225,7 @@ def _recording(path, columns, joints):
     return Recording(
         name=name_of(path), times_s=columns["time_s"],
         force_n=numpy.stack([columns.get(name, unmeasured) for name in FORCE], axis=1),
+        torque_nm=numpy.stack([unmeasured, unmeasured, columns["tz_nm"]], axis=1) if "tz_nm" in columns else None,
         positions_m=None if joints else numpy.stack([columns[name] for name in POSITION], axis=1),
         quaternions=_without_flips(numpy.stack([columns[name] for name in QUATERNION], axis=1)) if QUATERNION[0] in columns else None,
         joints={name: columns[name] for name in joints} or None)
@@ -228,10 +248,12 @@ def _read_bag(path, joint_names, joint_topics, force_topic, pose_topic):
 
 
 def tare(recording, time_s):
-    """Takes the mean force of the first `time_s` off, in which nothing touches."""
+    """Takes the mean force (and torque) of the first `time_s` off, in which nothing touches."""
     first = recording.times_s < recording.times_s[0] + time_s
     if time_s > 0.0:
         recording.force_n = recording.force_n - recording.force_n[first].mean(axis=0)
+        if recording.torque_nm is not None:
+            recording.torque_nm = recording.torque_nm - recording.torque_nm[first].mean(axis=0)
     return recording
 
 
@@ -272,6 +294,7 @@ def thin(recording, rate_hz):
 
     thinned = _per_sample(recording, mean)
     thinned.times_s, thinned.force_n = mean(recording.times_s), mean(recording.force_n)
+    thinned.torque_nm = None if recording.torque_nm is None else mean(recording.torque_nm)
     if len(starts) < FEWEST_ROWS:
         raise FitError("--rate %g leaves %d samples of %s; %d or more are needed" % (rate_hz, len(starts), recording.name, FEWEST_ROWS))
     return thinned

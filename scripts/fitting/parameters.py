@@ -218,3 +218,17 @@ def parse_fits(texts, keys):
         if kinetic and static.start <= kinetic.start:  # from where they are one, nothing would tell which of them to move
             static.start, kinetic.start = static.value(0.6), kinetic.value(0.4)
     return parameters
+
+
+def settings_of(texts, option):
+    """{key of the scene: value} of "KEY=VALUE"s."""
+    settings = {}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        try:
+            settings[key.replace("[", ".").replace("]", "")] = yaml.safe_load(value)
+        except yaml.YAMLError as error:
+            raise FitError("%s '%s': %s" % (option, text, error)) from error
+        if not (key and equals and value):
+            raise FitError("%s '%s' is not KEY=VALUE, such as step.max_step_s=0.001" % (option, text))
+    return settings
