@@ -24,7 +24,7 @@ namespace tissue_contact {
 
 /// s. With 0.6 the five tetrahedra of a cell bend exactly (mean_strain_test). Less than that, since contact at vertices is somewhat
 /// soft: doc/method.md has what was measured.
-constexpr double kPatchShapeShare = 0.5;
+constexpr double kPatchShapeShare = 0.45;
 
 /// Model: const after construction. Thread-safe for different states.
 class MeanStrain : public TetElasticity {
