@@ -88,7 +88,7 @@ TEST_P(Landing, ABlockSticksWhereItTouchesNotWhereTheStepBegan) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OnTable, Landing,
-                         testing::Values(Fall{false, "iterations: 500, tolerance: 1.0e-9"},
+                         testing::Values(Fall{false, "iterations: 1000, tolerance: 1.0e-9"},
                                          Fall{false, "relaxation: cholesky, iterations: 500, tolerance: 1.0e-9"},
                                          Fall{false, "method: reference, iterations: 1000, tolerance: 1.0e-10"},
                                          Fall{false, "method: cone4, iterations: 500, tolerance: 1.0e-9"},
