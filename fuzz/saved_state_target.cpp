@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kMostChanges = 16;
 
-/// Two balls press two tissues that keep all there is to keep: mean dilatation, Prony terms, nodes that sleep, a mesh that follows.
+/// Two balls press two tissues that keep all there is to keep: averaged strain, Prony terms, nodes that sleep, a mesh that follows.
 Simulator pressed() {
   const std::string second =
       "  - name: other\n    block: {size_m: [0.02, 0.02, 0.01], cells: [2, 2, 1]}\n    pose: {position_m: [0.05, 0, "

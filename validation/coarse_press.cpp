@@ -87,14 +87,14 @@ void validateCoarsePress(Report& report) {
   report.progress(0.6);
   const std::vector<double> graded = errorsOver(kGraded, "graded", "patch", report);
   for (std::size_t k = 0; k < patch.size(); ++k) {
-    report.atMost("uniform mesh " + std::to_string(k + 1) + ": error with patches over that with elements", "", 0.9,
-                  patch[k] / element[k], "volume kept over patches locks less");
+    report.atMost("uniform mesh " + std::to_string(k + 1) + ": error with patches over that with elements", "", 0.75,
+                  patch[k] / element[k], "strain over patches: no locking, easier bending");
     if (k > 0)
       report.atMost("uniform mesh " + std::to_string(k + 1) + ": error over that of the coarser one", "", 1.0,
                     patch[k] / patch[k - 1], kSource);
   }
   report.atMost("3179 nodes, graded: error over that of the uniform mesh", "", 0.5, graded[0] / patch[1], kSource);
-  report.atMost("3179 nodes, graded: error of the press force", "", 0.2, graded[0], kSource);
+  report.atMost("3179 nodes, graded: error of the press force", "", 0.14, graded[0], kSource);
   report.atMost("12615 nodes, graded, patches: error of the press force", "", 0.01 + kLimitError, graded[1], kSource);
   report.atMost("12615 nodes, graded, elements: error of the press force", "", 0.04 + kLimitError, graded_element[1],
                 kSource);

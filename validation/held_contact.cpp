@@ -174,7 +174,7 @@ HeldPoints moveHolding(Simulator& simulator, int seconds, const Target& target) 
   return held;
 }
 
-// Back and forth by 0.05 mm once a second. Inside the contact nothing slips, and nothing adds up: the face that carries
+// Back and forth by 0.05 mm once a second (twice that lets most of the eight points of this coarse contact slide in turn). Inside the contact nothing slips, and nothing adds up: the face that carries
 // a point rocks and stretches a little, which takes points beside it some 50 nm to and fro.
 void tissueGoesBackAndForthWithAnInstrument(Report& report) {
   Simulator simulator = makeSimulator(probeOnPad(1.0), {{"probe", probeUrdf(0.005)}});

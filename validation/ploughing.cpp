@@ -116,7 +116,7 @@ void pressAtAnyStep(Report& report) {
       std::ostringstream name;
       name << "slow press, mu " << mu << ", dt " << 1e3 * step_s << " ms: force";
       // Rest is the same for every step. Friction holds a point where the step ends in which it touches: up to 10 um of the
-      // way of 2 mm from where it met the ball, at 10 ms.
+      // way of 2 mm from where it met the ball, at 10 ms: .5 % of it.
       report.near(name.str(), "N", force, pressForce(step_s, mu), (mu == 0.0 ? 2e-3 : 6e-3) * force, "that at 1 ms");
     }
   }

@@ -8,9 +8,9 @@
 namespace tissue_contact {
 namespace {
 
-/// Tetrahedra of a patch that is not cut: see element_patches.h for the size; two cuts make four. (Of eight, contact is too soft.)
+/// Tetrahedra of a patch of parts: two cuts make four. (Of eight, contact is too soft: doc/method.md.)
 constexpr int kLargestPatch = 4;
-/// Fewer would be stiff on their own.
+/// Fewer, stiff on their own, join a patch beside them, but for what is left where one of an unrefined patch's few is cut.
 constexpr int kSmallestPatch = 3;
 
 bool contains(const Tetrahedron& tetrahedron, int node) {

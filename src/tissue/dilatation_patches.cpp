@@ -10,7 +10,7 @@ namespace {
 
 // What few patches have more of: element_patches.h, Bisection.
 constexpr std::size_t kManyNodes = 12;
-constexpr std::size_t kManyMembers = 8;
+constexpr std::size_t kManyMembers = 6;
 
 }  // namespace
 
@@ -22,12 +22,12 @@ double bulkModulus(const MaterialDescription& material) {
 std::vector<std::vector<int>> DilatationPatches::nodesOf(const std::vector<Tetrahedron>& tetrahedra,
                                                          const std::vector<int>& patch_of) {
   if (patch_of.size() != tetrahedra.size()) {
-    throw std::invalid_argument("mean dilatation: " + std::to_string(patch_of.size()) + " patch numbers given for " +
+    throw std::invalid_argument("patches: " + std::to_string(patch_of.size()) + " patch numbers given for " +
                                 std::to_string(tetrahedra.size()) + " tetrahedra");
   }
   std::vector<std::vector<int>> nodes;
   for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
-    if (patch_of[e] < 0) throw std::invalid_argument("mean dilatation: patch number " + std::to_string(patch_of[e]));
+    if (patch_of[e] < 0) throw std::invalid_argument("patches: patch number " + std::to_string(patch_of[e]));
     nodes.resize(std::max(nodes.size(), static_cast<std::size_t>(patch_of[e]) + 1));
     std::vector<int>& patch = nodes[patch_of[e]];
     patch.reserve(kManyNodes);
@@ -64,7 +64,7 @@ DilatationPatches::DilatationPatches(const std::vector<Tetrahedron>& tetrahedra,
   std::size_t first = 0;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     Patch& patch = patches[p];
-    if (patch.members.empty()) throw std::invalid_argument("mean dilatation: patch " + std::to_string(p) + " is empty");
+    if (patch.members.empty()) throw std::invalid_argument("patches: patch " + std::to_string(p) + " is empty");
     patch.bulk /= patch.volume;
     patch.damping_s /= patch.volume;
     patch.nodes = std::move(nodes[p]);

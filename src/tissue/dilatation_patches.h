@@ -1,5 +1,5 @@
 /// @file
-/// Room `tissue`, private: patches of tetrahedra that share one change of volume, with what models need of them: nodes, volume,
+/// Room `tissue`, private: patches of tetrahedra over which strain, or the change of volume alone, is averaged, with what models need of them: nodes, volume,
 /// bulk modulus, places in K. Volume changes per element in; mean pressures per patch and the patches' stiffness out.
 #pragma once
 

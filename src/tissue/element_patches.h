@@ -1,5 +1,5 @@
 /// @file
-/// Room `tissue`, private: neighbouring tetrahedra in groups, over which their change of volume is averaged.
+/// Room `tissue`, private: neighbouring tetrahedra in groups, over which their strain is averaged.
 #pragma once
 
 #include <vector>

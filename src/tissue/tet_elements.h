@@ -63,12 +63,12 @@ struct TetElements {
   struct Held {
     std::vector<BatchRange> moving;  ///< ranges of batches, ascending
     std::vector<BatchRange> still;
-    NodalVectors forces;  ///< of the batches in `still`, N
+    NodalVectors forces;  ///< of what is still, also of patches, N; empty: nobody has asked to hold any
 
     void carry(StateArchive& archive, std::size_t batches, int nodes);
 
     void startForces(NodalVectors& all) const {
-      if (still.empty()) {
+      if (forces.cols() == 0) {
         all.setZero();
       } else {
         all = forces;

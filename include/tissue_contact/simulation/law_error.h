@@ -12,12 +12,12 @@ namespace tissue_contact {
 /// a small uniaxial strain e at constant volume.
 double equivalentStrain(const Matrix3& F);
 
-/// Likely relative error of the force a tool meets on tissue of this law, against a neo-Hookean one of the same moduli, volume averaged over
-/// patches in both (`dilatation: patch`); negative: too small; 0 for other laws than linear and corotational. Elements that do not
+/// Likely relative error of the force a tool meets on tissue of this law, against a neo-Hookean one of the same moduli, volume alone averaged over
+/// patches in both (`dilatation: patch`, `distortion: element`); negative: too small; 0 for other laws than linear and corotational. Elements that do not
 /// average are stiffer: their error is another.
 ///
 /// a s + b (nu - .3) s + c s^2, fitted to presses of a sphere, some of which `tissue_contact_validate --case press-laws` repeats: depths of
-/// .1 to .8 R, R 5 and 10 mm, cells of .16 to .8 R, nu .3 to .49 (others count as the nearest of these), volume averaged over patches; s up to
+/// .1 to .8 R, R 5 and 10 mm, cells of .16 to .8 R, nu .3 to .49 (others count as the nearest of these), volume alone averaged over patches; s up to
 /// .4 (corotational) and .6 (linear), and beyond as there. It meets what was found within 6 % of the force, 2.2 % RMS. Why it has this
 /// shape: at large strain the neo-Hookean law stiffens, laws linear in the stretch do not; the less a tissue gives way in volume, the more
 /// of a press is shear. The linear law also takes rotation for strain, which stiffens it. For blunt tools that press; drawing, shearing

@@ -12,8 +12,8 @@
 
 namespace tissue_contact {
 
-/// From this Poisson's ratio on Dilatation::kAuto averages: at 0.45 a seventh to a quarter of the error of a press on
-/// coarse cells is locking (validation case coarse-press), for 1.7 times the instructions of a step.
+/// From this Poisson's ratio on Dilatation::kAuto averages, and Distortion::kAuto with it: at 0.45 that takes a third off the error of a
+/// press on coarse cells (validation case coarse-press), for twice the blocks of K.
 constexpr double kAveragedPoissonsRatio = 0.3;
 
 /// Whether the model is of tetrahedra that obey a law of stress and strain: those may average their change of volume and relax
@@ -34,7 +34,7 @@ ElementMaterials materialsOf(const TissueDescription& tissue);
 
 /// @param rest 3 x n, m.
 /// @param materials all of the model, dilatation and distortion of the first.
-/// @param patch_of of each tetrahedron, for materials that average their dilatation (see MeanStrain); not used
+/// @param patch_of of each tetrahedron, for materials that average their strain or dilatation (see MeanStrain); not used
 ///   for others.
 /// @throws std::invalid_argument for a material out of range, a membrane (see membrane.h), which a volume cannot be, or
 ///   patches for a model without them.

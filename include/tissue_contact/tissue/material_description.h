@@ -28,7 +28,7 @@ enum class Dilatation {
 
 /// Over what a linear or corotational volume that averages its change of volume averages a part of its change of shape.
 enum class Distortion {
-  kAuto,     ///< kPatch where the dilatation of a linear or corotational body is averaged and no stress relaxes, else kElement
+  kAuto,  ///< kPatch where the dilatation of a linear or corotational body is averaged and no stress relaxes, else kElement
   kElement,  ///< each tetrahedron: stiff in bending
   kPatch     ///< as Dilatation::kPatch: a third to a half less error of a press
 };
@@ -55,12 +55,12 @@ struct MaterialDescription {
   /// Membranes: bending stiffness per width, N m; negative: that of a plate, E h^3 / (12 (1 - nu^2)).
   double bending_stiffness_n_m = -1.0;
   Dilatation dilatation = Dilatation::kAuto;
-  Distortion distortion = Distortion::kAuto;
   /// Volumes but for mass-spring: stress relaxation of the deviator. Young's modulus is then that of the relaxed body. The
   /// terms are those of the whole tissue, times the modulus of each region.
   std::vector<PronyTerm> prony_series = {};
   /// Of materialPresets(), by whose name the scene has its constants, all or some; null: none. To be told, not computed with.
   const MaterialPreset* preset = nullptr;
+  Distortion distortion = Distortion::kAuto;
 };
 
 /// Damping matrix D = mass_per_s * M + stiffness_s * K (Rayleigh; the second part is Kelvin-Voigt's, with

@@ -14,7 +14,8 @@ TEST_P(BadSceneTest, IsRefusedWithItsPlace) { expectRefused(kFullScene, GetParam
 const BadScene kKeys[] = {
     {"world_frame: lab", "word_frame: lab", "1: word_frame", "unknown key; did you mean \"world_frame\"?"},
     {"youngs_modulus_pa: 5e3", "youngs_modulus: 5e3", "17: tissues[0].material.youngs_modulus",
-     "did you mean \"youngs_modulus_pa\"? allowed here: preset, model, dilatation, distortion, youngs_modulus_pa, poissons_ratio, "
+     "did you mean \"youngs_modulus_pa\"? allowed here: preset, model, dilatation, distortion, youngs_modulus_pa, "
+     "poissons_ratio, "
      "density_kg_per_m3"},
     {"  tf: true", "  tff: true", "73: publish.tff", "unknown key; did you mean \"tf\"?"},
     {"  contact_passes: 3", "  zzz: 3", "66: solver.zzz", "unknown key; allowed here: method, relaxation, iterations"},

@@ -253,7 +253,8 @@ TEST(Simulator, FrictionDragsAgainstTheMotion) {
   Simulator simulator = makeScene();
   for (int k = 1; k <= 100; ++k) simulator.advance(0.002, {Vector3(0.0, 0.0, -4e-5 * k)});
   for (int k = 1; k <= 100; ++k) simulator.advance(0.002, {Vector3(8e-5 * k, 0.0, -0.004)});
-  EXPECT_LT(simulator.wrench(0).force.x(), -0.05 * simulator.wrench(0).force.z());  // kinetic mu is 0.4
+  EXPECT_LT(simulator.wrench(0).force.x(),
+            -0.08 * simulator.wrench(0).force.z());  // mu is 0.4, less what the slope of the dent gives
   EXPECT_GT(simulator.report().kinetic_contacts, 0);
   for (const SolvedContact& contact : simulator.contacts()) {
     const Vector3 n = contact.contact.R_WC.col(0);
