@@ -22,6 +22,7 @@ RATE_HZ = 100.0       # of what is compared
 FALL_S = 0.06         # in which the torque falls: neither rise nor level
 LEVEL_SHARE = 0.2     # of a start at least
 FEWEST_STARTS = 4
+EARLIEST_S = 5.0 * REST_S  # of a start: before it the simulated plate comes down, turns once, and rests for a fifth of that time
 SIMULATED_STARTS = 3  # without noise they are alike
 LEAST_APART = 0.05    # of the coefficients where the simulation is to show what the peak is of them
 LEAST_SHOWN = 0.2     # of their difference
@@ -91,7 +92,7 @@ def peak_and_level(times_s, ratio):
     wrong = yy - y ** 2 / number - slope * together + falling
     allowed = (slope > 0.0) & (last[None, :] - last[:, None] >= fall) & (rest >= LEVEL_SHARE * count) & (last >= fall)[:, None]
     if not allowed.any():
-        raise FitError("in the start at %.2f s the torque does not rise" % times_s[0])
+        raise FitError("in the start %.2f s after the first row the torque does not rise" % times_s[0])
     begin, end = numpy.unravel_index(numpy.where(allowed, wrong, numpy.inf).argmin(), wrong.shape)
     return (y[end] - slope[begin, end] * x[begin, end]) / number[end] + slope[begin, end] * rise[begin, end], level[end]
 
@@ -181,6 +182,9 @@ def find(scene, keys, tool, recording, guess, finer=None, settings=None, say=pri
     if len(turns) < FEWEST_STARTS:
         raise FitError("%s: %d turns begin from rest after the first one; %d or more are needed, each of %g s or more after a rest of more than %g s" % (
             recording.name, len(turns), FEWEST_STARTS, SHORTEST_S, REST_S))
+    if turns[0][0] < EARLIEST_S:
+        raise FitError("%s: the second turn begins %.2f s after the first row; %g s or more are needed, in which the plate comes down, turns once and rests" % (
+            recording.name, turns[0][0], EARLIEST_S))
     thinned = measured.thin(recording, RATE_HZ)
     real = see(thinned.times_s, thinned.force_n[:, AXIS], thinned.torque_nm[:, AXIS], turns)
     if not real:

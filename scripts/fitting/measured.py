@@ -65,13 +65,14 @@ def read(path, joint_names, joint_topics, force_topic, pose_topic=None):
 
 
 def read_twist(path, joint_names):
-    """Of a plate that turns on a ring, from a table."""
+    """Of a plate that turns on a ring, from a table. Its times then begin at 0."""
     for name in TWIST[:2]:
         if name not in joint_names:
             raise FitError("the scene's instrument has no joint '%s'; the plate is moved by z and yaw, as in urdf/indenter.urdf" % name)
     _beginning(path)
     recording = _read_table(path, joint_names, TWIST)
     _require_plausible(path, recording)
+    recording.times_s = recording.times_s - recording.times_s[0]  # which may be stamps since 1970; the simulation begins at 0
     return recording
 
 
