@@ -27,7 +27,8 @@ SIMULATED_STARTS = 3  # without noise they are alike
 LEAST_APART = 0.05    # of the coefficients where the simulation is to show what the peak is of them
 LEAST_SHOWN = 0.2     # of their difference
 FAR_ABOVE_M, LOWERED_M, MOST_LOWERINGS = 2e-4, 1e-4, 10
-ITERATIONS, CLOSE = 6, 5e-4
+ITERATIONS, CLOSE, FARTHEST = 6, 5e-4, 0.01  # changes of the coefficients: no more iterations then; no answer
+LONGEST_S = 20.0      # of a start: all pairs of its times are compared, some 0.5 GB
 LEVEL = 0.95
 LEAST_CLEAR = 4.0     # of a mean, in half intervals by its noise: as doc/calibration.md has it of fit.py
 NOISE_DRAWS = 5       # of each start
@@ -49,13 +50,14 @@ class Match:
     offset_m: float      # how much deeper the plate is than recorded
     arm_m: float = 0.0   # torque over normal force and coefficient, while it turns
     shown: float = 0.0   # share of (static - kinetic) by which a peak is above its level
+    changes: tuple = (0.0, 0.0)  # of static and kinetic in the last iteration
 
 
 @dataclasses.dataclass
 class Coefficient:
     value: float
     noise_half: float  # of the 95 % interval
-    model_half: float
+    model_half: float  # mesh and step, and the last iteration
 
     def interval(self):
         half = (self.noise_half ** 2 + self.model_half ** 2) ** 0.5
@@ -203,9 +205,12 @@ class Ring:
             found = Match(kinetic + (real.peak_m - real.level_m).mean() / arm / shown, kinetic, offset_m + deeper, arm, shown)
             say("static %.4f, kinetic %.4f; of their difference the ring shows %.2f; arm %.4g mm, offset %.3f mm" %
                 (found.static, kinetic, shown, 1e3 * arm, 1e3 * found.offset_m))
-            change, match = max(abs(found.static - match.static), abs(kinetic - match.kinetic)), found
-            if change < CLOSE:
+            found.changes = abs(found.static - match.static), abs(kinetic - match.kinetic)
+            match = found
+            if max(match.changes) < CLOSE:
                 break
+        if max(match.changes) > FARTHEST:
+            raise FitError("after %d iterations the coefficients still change by %.3f; %g or less is needed" % (ITERATIONS, max(match.changes), FARTHEST))
         return match
 
 
@@ -224,6 +229,10 @@ def find(scene, keys, tool, recording, guess, finer=None, settings=None, say=pri
     if turns[0][0] < EARLIEST_S:
         raise FitError("%s: the second turn begins %.2f s after the first row; %g s or more are needed, in which the plate comes down, turns once and rests" % (
             recording.name, turns[0][0], EARLIEST_S))
+    for begin, end in turns:
+        if end - begin > LONGEST_S:
+            raise FitError("%s: the turn that begins %.2f s after the first row lasts %.1f s; up to %g s are allowed: turn less far or faster (0.5 mm at the "
+                           "ring, at 0.2 mm/s, takes 2.5 s)" % (recording.name, begin, end - begin, LONGEST_S))
     thinned = measured.thin(recording, RATE_HZ)
     real = see_measured(recording.name, thinned, turns)
     ring = Ring(scene, keys, tool, recording, turns)
@@ -232,5 +241,5 @@ def find(scene, keys, tool, recording, guess, finer=None, settings=None, say=pri
         match = ring.match(real, before, dict(settings or {}, **finer), say)
     level, peak = real.level_m / match.arm_m, (real.peak_m - real.level_m) / match.arm_m / match.shown
     # All that the finer mesh has corrected, not half as of fit.py's: what a ring shows does not go one way from mesh to mesh.
-    return (Coefficient(match.static, _noise_half(level + peak), abs(match.static - before.static)),
-            Coefficient(match.kinetic, _noise_half(level), abs(match.kinetic - before.kinetic))), len(turns)
+    return (Coefficient(match.static, _noise_half(level + peak), abs(match.static - before.static) + match.changes[0]),
+            Coefficient(match.kinetic, _noise_half(level), abs(match.kinetic - before.kinetic) + match.changes[1])), len(turns)
