@@ -145,8 +145,8 @@ def see_measured(name, recording, turns):
     above = 100.0 * (seen.peak_m - seen.level_m) / seen.level_m.mean()
     least = 100.0 * peak_of_noise(found[0], seen) / seen.level_m.mean()
     if not above.mean() > least + LEAST_CLEAR * _noise_half(above):
-        raise FitError("%s: the torque's peaks are %.2g ± %.2g %% above its level, and those of noise alone would be %.2g %%: static friction is not told from "
-                       "kinetic friction; take more starts, or less noise" % (name, above.mean(), _noise_half(above), least))
+        raise FitError("%s: the torque's peaks are %.2g ± %.2g %% above its level, and those of noise alone would be %.2g %%: static friction is not told "
+                       "from kinetic friction; take more starts, or less noise" % (name, above.mean(), _noise_half(above), least))
     return seen
 
 
