@@ -4,7 +4,7 @@
   static_friction.py --scene ring.yaml --measured twist.csv
 
 The table has time_s, z and yaw (joints of the plate: m above the untouched ring, rad), fz_n and tz_nm (force and torque on it). Prints both
-coefficients with 95 % intervals; exit code 1 if the table does not tell them. How to measure, and how exact it is: doc/calibration.md.
+coefficients, with --finer also 95 % intervals; exit code 1 if the table does not tell them. How to measure, and how exact it is: doc/calibration.md.
 """
 import argparse
 import os
@@ -36,8 +36,11 @@ def find(arguments):
     found, count = breakaway.find(arguments.scene, (static, kinetic), tool, recording, (first, second), parameters.settings_of(arguments.finer, "--finer"))
     print("\n%s: %d starts" % (recording.name, count))
     for name, one in zip(("static", "kinetic"), found):
-        print("%-8s %.4f   95 %%: %.4f .. %.4f   of it noise ± %.4f, mesh and step ± %.4f" % (
-            name, one.value, *one.interval(), one.noise_half, one.model_half))
+        if arguments.finer:
+            print("%-8s %.4f   95 %%: %.4f .. %.4f   of it noise ± %.4f, mesh and step ± %.4f" % (
+                name, one.value, *one.interval(), one.noise_half, one.model_half))
+        else:  # an interval without a part of it that is as large as the other does not hold the truth as often as it says
+            print("%-8s %.4f   noise ± %.4f; mesh and step not known: give --finer" % (name, one.value, one.noise_half))
 
 
 def main():

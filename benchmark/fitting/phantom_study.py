@@ -110,7 +110,7 @@ def true_forces(settings, motion, scene=SCENE):
 
 
 def ring_mesh(cells, step_s):
-    """Settings of the ring's scene with a mesh of so many cells around, across, in height, which is written where it is forgotten."""
+    """Settings of the ring's scene with a mesh of so many cells around, across, in height, a file that the caller removes."""
     handle, path_of_it = tempfile.mkstemp(suffix=".msh")
     os.close(handle)
     make_ring.write(path_of_it, *make_ring.ring(0.017, 0.020, 0.004, cells))

@@ -102,7 +102,10 @@ def summary(rows):
 
 def write_twist_example(folder, generator):
     mesh = study.ring_mesh(*study.RING_TRUTH)
-    recording = study.record_twist(dict(study.ring_keys(**EXAMPLE), **mesh), study.twist(count=6), study.Noise(), generator)
+    try:
+        recording = study.record_twist(dict(study.ring_keys(**EXAMPLE), **mesh), study.twist(count=6), study.Noise(), generator)
+    finally:
+        os.remove(mesh["tissues.ring.mesh.file"])
     os.remove(mesh["tissues.ring.mesh.file"])
     study.write_twist(os.path.join(folder, recording.name + ".csv"), study.measured.thin(recording, 50.0))
 

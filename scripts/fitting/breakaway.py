@@ -22,12 +22,17 @@ RATE_HZ = 100.0       # of what is compared
 FALL_S = 0.06         # in which the torque falls: neither rise nor level
 LEVEL_SHARE = 0.2     # of a start at least
 FEWEST_STARTS = 4
+EARLIEST_S = 5.0 * REST_S  # of a start: before it the simulated plate comes down, turns once, and rests for a fifth of that time
 SIMULATED_STARTS = 3  # without noise they are alike
 LEAST_APART = 0.05    # of the coefficients where the simulation is to show what the peak is of them
 LEAST_SHOWN = 0.2     # of their difference
 FAR_ABOVE_M, LOWERED_M, MOST_LOWERINGS = 2e-4, 1e-4, 10
-ITERATIONS, CLOSE = 6, 5e-4
+ITERATIONS, CLOSE, FARTHEST = 6, 5e-4, 0.01  # changes of the coefficients: no more iterations then; no answer
+LONGEST_S = 20.0      # of a start: all pairs of its times are compared, some 0.5 GB
 LEVEL = 0.95
+LEAST_CLEAR = 4.0     # of a mean, in half intervals by its noise: as doc/calibration.md has it of fit.py
+LEAST_ABOVE = 2.0     # ... of peaks above those of noise: equal coefficients come to 1.2 at most in ten trials, 0.05 apart to more than 3
+NOISE_DRAWS = 5       # of each start
 
 
 @dataclasses.dataclass
@@ -46,13 +51,14 @@ class Match:
     offset_m: float      # how much deeper the plate is than recorded
     arm_m: float = 0.0   # torque over normal force and coefficient, while it turns
     shown: float = 0.0   # share of (static - kinetic) by which a peak is above its level
+    changes: tuple = (0.0, 0.0)  # of static and kinetic in the last iteration
 
 
 @dataclasses.dataclass
 class Coefficient:
     value: float
     noise_half: float  # of the 95 % interval
-    model_half: float
+    model_half: float  # mesh and step, and the last iteration
 
     def interval(self):
         half = (self.noise_half ** 2 + self.model_half ** 2) ** 0.5
@@ -91,22 +97,58 @@ def peak_and_level(times_s, ratio):
     wrong = yy - y ** 2 / number - slope * together + falling
     allowed = (slope > 0.0) & (last[None, :] - last[:, None] >= fall) & (rest >= LEVEL_SHARE * count) & (last >= fall)[:, None]
     if not allowed.any():
-        raise FitError("in the start at %.2f s the torque does not rise" % times_s[0])
+        raise FitError("in the start %.2f s after the first row the torque does not rise" % times_s[0])
     begin, end = numpy.unravel_index(numpy.where(allowed, wrong, numpy.inf).argmin(), wrong.shape)
     return (y[end] - slope[begin, end] * x[begin, end]) / number[end] + slope[begin, end] * rise[begin, end], level[end]
 
 
-def see(times_s, force_n, torque_nm, turns):
-    """Force and torque along the axis; None if the plate does not press."""
-    pairs, forces = [], []
+def ratios(times_s, force_n, torque_nm, turn_rad, turns):
+    """([(times (s), torque against the turn over normal force (m)) of each start], mean force (N)); force and torque on the plate, along the
+    axis. None if the plate does not press."""
+    found, forces = [], []
     for begin, end in turns:
         rows = (times_s >= begin - REST_S) & (times_s <= end - END_S)
         forces.append(float(force_n[rows].mean()))
         if not forces[-1] > 0.0:
             return None
-        pairs.append(peak_and_level(times_s[rows], numpy.abs(torque_nm[rows]) / forces[-1]))
-    peaks, levels = numpy.array(pairs).T
-    return Seen(peaks, levels, float(numpy.mean(forces)))
+        way = numpy.sign(((times_s[rows] - times_s[rows].mean()) * turn_rad[rows]).sum())  # of the line through it
+        found.append((times_s[rows], -way * torque_nm[rows] / forces[-1]))
+    return found, float(numpy.mean(forces))
+
+
+def see(found, force_n):
+    """Of what ratios() found."""
+    peaks, levels = numpy.array([peak_and_level(*one) for one in found]).T
+    return Seen(peaks, levels, force_n)
+
+
+def peak_of_noise(found, seen):
+    """What peak_and_level() takes for a peak, on average, of levels alone with noise as that at the end of each start."""
+    generator, peaks = numpy.random.default_rng(1), []
+    for (times_s, ratio), level in zip(found, seen.level_m):
+        size = 1e-9 * level + numpy.std(ratio[-max(int(LEVEL_SHARE * len(ratio)), 2):])
+        for _ in range(NOISE_DRAWS):
+            peak, low = peak_and_level(times_s, level + size * generator.standard_normal(len(ratio)))
+            peaks.append(peak - low)
+    return float(numpy.mean(peaks))
+
+
+def see_measured(name, recording, turns):
+    """Likewise, of what was measured, or a sentence on why it tells nothing."""
+    found = ratios(recording.times_s, recording.force_n[:, AXIS], recording.torque_nm[:, AXIS], recording.joints["yaw"], turns)
+    if not found:
+        raise FitError("%s: fz_n is not above 0 while the plate turns; forces are those on the tool" % name)
+    late = 1e3 * numpy.array([ratio[len(ratio) // 2:].mean() for _, ratio in found[0]])  # before a torque that does not rise is looked for in it
+    if not late.mean() > LEAST_CLEAR * _noise_half(late):
+        raise FitError("%s: tz_nm against the turn, over fz_n, is %.3g ± %.2g mm; it must be above 0, and known to a quarter: torque is that on the tool, "
+                       "against its turn (yaw and tz_nm about the same axis, with opposite signs), in N m" % (name, late.mean(), _noise_half(late)))
+    seen = see(*found)
+    above = 100.0 * (seen.peak_m - seen.level_m) / seen.level_m.mean()
+    least = 100.0 * peak_of_noise(found[0], seen) / seen.level_m.mean()
+    if not above.mean() > least + LEAST_ABOVE * _noise_half(above):
+        raise FitError("%s: the torque's peaks are %.2g ± %.2g %% above its level, and those of noise alone would be %.2g %%: static friction is not told "
+                       "from kinetic friction; take more starts, or less noise" % (name, above.mean(), _noise_half(above), least))
+    return seen
 
 
 class Ring:
@@ -136,7 +178,8 @@ class Ring:
         done = forward.forces(self.scene, dict(settings, **dict(zip(self.keys, (static, kinetic)))), self.tool.name, self.times_s, motion)
         if done.doubts:
             raise FitError("in the simulation of the ring: %s" % "; ".join(forward.DOUBTS[field] for field in done.doubts))
-        return see(self.times_s, done.force_n[:, AXIS], done.torque_nm[:, AXIS], self.turns)
+        found = ratios(self.times_s, done.force_n[:, AXIS], done.torque_nm[:, AXIS], self.turn_rad, self.turns)
+        return found and see(*found)
 
     def touching(self, match, settings):
         """(what is seen with the friction of the match, the friction that was simulated, the offset)."""
@@ -160,12 +203,15 @@ class Ring:
                 raise FitError("in the simulation the torque's peak shows %.2f of static less kinetic friction; %g or more is needed: a flat plate on a "
                                "narrow ring, and turned slowly" % (shown, LEAST_SHOWN))
             kinetic = real.level_m.mean() / arm
-            found = Match(kinetic + max((real.peak_m - real.level_m).mean() / arm / shown, 0.0), kinetic, offset_m + deeper, arm, shown)
+            found = Match(kinetic + (real.peak_m - real.level_m).mean() / arm / shown, kinetic, offset_m + deeper, arm, shown)
             say("static %.4f, kinetic %.4f; of their difference the ring shows %.2f; arm %.4g mm, offset %.3f mm" %
                 (found.static, kinetic, shown, 1e3 * arm, 1e3 * found.offset_m))
-            change, match = max(abs(found.static - match.static), abs(kinetic - match.kinetic)), found
-            if change < CLOSE:
+            found.changes = abs(found.static - match.static), abs(kinetic - match.kinetic)
+            match = found
+            if max(match.changes) < CLOSE:
                 break
+        if max(match.changes) > FARTHEST:
+            raise FitError("after %d iterations the coefficients still change by %.3f; %g or less is needed" % (ITERATIONS, max(match.changes), FARTHEST))
         return match
 
 
@@ -181,15 +227,20 @@ def find(scene, keys, tool, recording, guess, finer=None, settings=None, say=pri
     if len(turns) < FEWEST_STARTS:
         raise FitError("%s: %d turns begin from rest after the first one; %d or more are needed, each of %g s or more after a rest of more than %g s" % (
             recording.name, len(turns), FEWEST_STARTS, SHORTEST_S, REST_S))
+    if turns[0][0] < EARLIEST_S:
+        raise FitError("%s: the second turn begins %.2f s after the first row; %g s or more are needed, in which the plate comes down, turns once and rests" % (
+            recording.name, turns[0][0], EARLIEST_S))
+    for begin, end in turns:
+        if end - begin > LONGEST_S:
+            raise FitError("%s: the turn that begins %.2f s after the first row lasts %.1f s; up to %g s are allowed: turn less far or faster (0.5 mm at the "
+                           "ring, at 0.2 mm/s, takes 2.5 s)" % (recording.name, begin, end - begin, LONGEST_S))
     thinned = measured.thin(recording, RATE_HZ)
-    real = see(thinned.times_s, thinned.force_n[:, AXIS], thinned.torque_nm[:, AXIS], turns)
-    if not real:
-        raise FitError("%s: fz_n is not above 0 while the plate turns; forces are those on the tool" % recording.name)
+    real = see_measured(recording.name, thinned, turns)
     ring = Ring(scene, keys, tool, recording, turns)
     match = before = ring.match(real, Match(*guess, 0.0), settings or {}, say)
     if finer:
         match = ring.match(real, before, dict(settings or {}, **finer), say)
     level, peak = real.level_m / match.arm_m, (real.peak_m - real.level_m) / match.arm_m / match.shown
     # All that the finer mesh has corrected, not half as of fit.py's: what a ring shows does not go one way from mesh to mesh.
-    return (Coefficient(match.static, _noise_half(level + peak), abs(match.static - before.static)),
-            Coefficient(match.kinetic, _noise_half(level), abs(match.kinetic - before.kinetic))), len(turns)
+    return (Coefficient(match.static, _noise_half(level + peak), abs(match.static - before.static) + match.changes[0]),
+            Coefficient(match.kinetic, _noise_half(level), abs(match.kinetic - before.kinetic) + match.changes[1])), len(turns)

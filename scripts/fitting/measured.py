@@ -24,6 +24,9 @@ FARTHEST_M, LARGEST_N, LARGEST_NM, LARGEST_JOINT, LATEST_S = 10.0, 1000.0, 100.0
 WIDEST_M, LONGEST_S = 1.0, 3600.0  # of a recording
 WIDEST_GAP = 20.0  # between samples, in usual intervals
 NORM_WITHIN = 0.01
+SLOWEST_TWIST_HZ = 20.0  # of a twist: three rows in the 60 ms that are kept free for its fall, where slower ones have peaks between rows
+FARTHEST_TWIST_M = 0.05  # above a ring of some mm: room to begin; what is pressed by 0.1 mm is beyond it in millimetres
+LONGEST_TWIST_RAD = 2.0 * math.pi  # the starts take some 0.4 rad, 20 degrees
 
 
 @dataclasses.dataclass
@@ -65,14 +68,28 @@ def read(path, joint_names, joint_topics, force_topic, pose_topic=None):
 
 
 def read_twist(path, joint_names):
-    """Of a plate that turns on a ring, from a table."""
+    """Of a plate that turns on a ring, from a table. Its times then begin at 0."""
     for name in TWIST[:2]:
         if name not in joint_names:
             raise FitError("the scene's instrument has no joint '%s'; the plate is moved by z and yaw, as in urdf/indenter.urdf" % name)
     _beginning(path)
     recording = _read_table(path, joint_names, TWIST)
     _require_plausible(path, recording)
+    _require_twist(path, recording)
+    recording.times_s = recording.times_s - recording.times_s[0]  # which may be stamps since 1970; the simulation begins at 0
     return recording
+
+
+def _require_twist(path, recording):
+    rate_hz = 1.0 / float(numpy.median(numpy.diff(recording.times_s)))
+    if rate_hz < 0.999 * SLOWEST_TWIST_HZ:
+        raise FitError("%s: it has %.3g rows a second; %g or more are needed: the torque falls within some 20 ms" % (path, rate_hz, SLOWEST_TWIST_HZ))
+    far = float(numpy.abs(recording.joints["z"]).max())
+    if far > FARTHEST_TWIST_M:
+        raise FitError("%s: 'z' is up to %.3g; up to %g m is allowed: joints are in rad / m; cut it to the contact" % (path, far, FARTHEST_TWIST_M))
+    way = float(numpy.ptp(recording.joints["yaw"]))
+    if way > LONGEST_TWIST_RAD:
+        raise FitError("%s: 'yaw' spans %.3g; up to %.3g rad, one turn, is allowed: joints are in rad / m" % (path, way, LONGEST_TWIST_RAD))
 
 
 def _beginning(path):

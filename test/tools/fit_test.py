@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """fit.py: what it reads and refuses; that it finds what is there, says how well, and refuses what the data do not identify; what it writes.
-static_friction.py: likewise.
+static_friction.py: breakaway_test.py.
 
 usage: fit_test.py SOURCE_DIRECTORY      (in the environment of the package: PROGRAM_DIRECTORY/../../env.sh)
 """
@@ -22,7 +22,7 @@ for folder in (os.path.join(SOURCE, "scripts"), os.path.join(SOURCE, "benchmark"
 
 import phantom_study as study  # noqa: E402 (the paths come first)
 from fit_recordings import BagTest, Folder, PoseBagTest, RobotBagTest, TableTest  # noqa: E402, F401 (unittest runs them from here)
-from fitting import FitError, breakaway, fitted_scene, forward, measured, parameters, solve, uncertainty  # noqa: E402
+from fitting import fitted_scene, forward, measured, parameters, solve, uncertainty  # noqa: E402
 
 try:
     tissue_contact.Simulator  # noqa: B018 (loads it)
@@ -91,8 +91,6 @@ class ExampleTest(unittest.TestCase):
             recording = measured.read(os.path.join(os.path.dirname(study.SCENE), name + ".csv"), ["x", "y", "z"], [], "")
             self.assertEqual(recording.measured(), [0, 1, 2], name)
             self.assertGreater(recording.peak_n(), 0.1, name)
-        twist = measured.read_twist(os.path.join(os.path.dirname(study.RING), "twist.csv"), ["x", "y", "z", "yaw", "pitch", "roll"])
-        self.assertEqual(len(breakaway.starts(twist.times_s, twist.joints["yaw"])), 6)
 
 
 class FittedSceneTest(Folder):
@@ -201,79 +199,6 @@ class UncertaintyTest(unittest.TestCase):
             slow.append(0.8 * slow[-1] + x)
         self.assertLess(uncertainty.autocorrelation_time(white), 1.2)
         self.assertAlmostEqual(uncertainty.autocorrelation_time(numpy.array(slow)), (1 + 0.8) / (1 - 0.8), delta=1.5)
-
-
-class BreakawayTest(unittest.TestCase):
-    def test_starts_are_seen_through_noise(self):
-        times, _, yaw = study.twist(count=5)
-        found = breakaway.starts(times, yaw + 1e-4 / study.RING_M * numpy.random.default_rng(1).standard_normal(len(yaw)))
-        self.assertEqual(len(found), 5)  # the first turn is none
-        numpy.testing.assert_allclose(found, [(2.4 + 3.5 * i, 4.9 + 3.5 * i) for i in range(5)], atol=0.35)
-        self.assertEqual(breakaway.starts(times[:50], yaw[:50]), [])
-
-    def test_peak_and_level(self):
-        """A rise that ends anywhere, and a torque that falls within some 20 ms: what the ring shows is not what smoothing leaves of it."""
-        times, generator = numpy.arange(280) / 100.0, numpy.random.default_rng(1)
-        for rises_s in (0.2, 0.5, 1.0):
-            clean = 0.4 + 0.1 * numpy.clip((times - 0.3) / rises_s, 0.0, 1.0)
-            clean[times > 0.3 + rises_s] = 0.4 + 0.1 * numpy.exp(-(times[times > 0.3 + rises_s] - 0.3 - rises_s) / 0.01)
-            numpy.testing.assert_allclose(breakaway.peak_and_level(times, clean), (0.5, 0.4), atol=0.004)
-            found = numpy.array([breakaway.peak_and_level(times, clean + 0.01 * generator.standard_normal(280)) for _ in range(20)])
-            numpy.testing.assert_allclose(found.mean(axis=0), (0.5, 0.4), atol=0.005)
-            self.assertLess(found.std(axis=0).max(), 0.012)
-
-    def test_a_torque_that_never_rises_is_refused(self):
-        with self.assertRaisesRegex(FitError, "does not rise"):
-            breakaway.peak_and_level(numpy.arange(100) / 100.0, numpy.linspace(1.0, 0.0, 100))
-
-
-@unittest.skipIf(WITHOUT, WITHOUT)
-class StaticFrictionTest(Folder):
-    """By the command, on a coarse ring; the recording is of another mesh, shorter steps, other E and damping."""
-
-    @classmethod
-    def setUpClass(cls):
-        generator = numpy.random.default_rng(1)
-        cls.recording = study.record_twist(dict(study.ring_keys(7000.0, 0.014, static=0.55, kinetic=0.4), **{"step.max_step_s": 0.005}),
-                                           study.twist(count=5), study.Noise(), generator)
-
-    def setUp(self):
-        super().setUp()
-        mesh = os.path.join(self.folder, "ring.msh")
-        subprocess.run([sys.executable, os.path.join(SOURCE, "scripts", "make_ring.py"), mesh, "--cells", "40", "2", "1"], check=True, timeout=DEADLINE_S)
-        self.scene = self.write("ring.yaml", fitted_scene.fitted_text(study.RING, {"tissues.ring.mesh.file": mesh}, self.folder, []))
-        self.table = os.path.join(self.folder, "twist.csv")
-        study.write_twist(self.table, self.recording)
-
-    def find(self, *arguments):
-        command = [sys.executable, os.path.join(SOURCE, "scripts", "static_friction.py"), "--scene", self.scene, "--measured", self.table]
-        return subprocess.run(command + list(arguments), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
-                              timeout=DEADLINE_S, check=False)
-
-    def test_it_finds_what_is_there(self):
-        done = self.find("--finer", "step.max_step_s=0.005")
-        self.assertEqual(done.returncode, 0, done.stdout)
-        self.assertIn("twist: 5 starts", done.stdout)
-        found = {line.split()[0]: float(line.split()[1]) for line in done.stdout.splitlines() if line.startswith(("static  ", "kinetic "))}
-        self.assertLess(abs(found["static"] - 0.55), 0.02, done.stdout)  # the peak itself is .51
-        self.assertLess(abs(found["kinetic"] - 0.4), 0.005, done.stdout)
-
-    def test_refused(self):
-        with self.assertRaisesRegex(FitError, "no joint 'yaw'"):
-            measured.read_twist(self.table, ["x", "y", "z"])
-        with open(self.table, encoding="utf-8") as stream:
-            lines = stream.read().splitlines()
-        for text, words in [("\n".join(lines).replace("tz_nm", "fx_n"), "column 'fx_n' is not known"),
-                            ("\n".join(line.rsplit(",", 1)[0] for line in lines), "there is no column tz_nm"),
-                            ("\n".join(lines[:2500]), "turns begin from rest after the first one; 4 or more are needed"),
-                            ("\n".join(lines[:1] + [",".join([*line.split(",")[:3], "-" + line.split(",")[3], line.split(",")[4]]).replace("--", "")
-                                                    for line in lines[1:]]), "forces are those on the tool")]:
-            with self.subTest(words=words):
-                self.table = self.write("bad.csv", text + "\n")
-                done = self.find()
-                self.assertEqual(done.returncode, 1, done.stdout)
-                self.assertIn(words, done.stdout)
-                self.assertNotIn("Traceback", done.stdout)
 
 
 @unittest.skipIf(WITHOUT, WITHOUT)
