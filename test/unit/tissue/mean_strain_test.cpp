@@ -33,7 +33,10 @@ TEST(Patches, CoverAMeshWithConnectedGroupsOfAboutFive) {
   EXPECT_EQ(patches.begin()->first, 0);
   EXPECT_EQ(patches.rbegin()->first, static_cast<int>(patches.size()) - 1);
   EXPECT_NEAR(static_cast<double>(mesh.tetrahedra.size()) / static_cast<double>(patches.size()), 5.0, 1.0);
-  for (const auto& [patch, members] : patches) {
+  for (const auto& entry : patches) {
+    const int patch = entry.first;
+    // Not a structured binding: C++17 does not let a lambda capture one (GCC does, clang refuses).
+    const std::vector<Tetrahedron>& members = entry.second;
     EXPECT_GE(members.size(), 3u) << patch;
     std::set<std::size_t> reached = {0};
     for (std::size_t pass = 0; pass < members.size(); ++pass) {
