@@ -165,6 +165,18 @@ TISSUE_CONTACT_INLINE unsigned char turnedLanes(const LaneQuaternion& q, const L
   return bits(x * x + y * y + z * z > 0.25 * angle * angle * q_squared * t_squared);
 }
 
+/// Brings the rotation of four up to date with F; leaves R and S = R'F.
+/// @return those that have turned away from `tangent`.
+TISSUE_CONTACT_INLINE unsigned char turn(const LaneMatrix& F, const RotationBatch& tangent, double tangent_angle,
+                                         RotationBatch& rotation, LaneMatrix& R, LaneMatrix& S) {
+  LaneQuaternion q, t;
+  loadQuaternion(rotation, q);
+  loadQuaternion(tangent, t);
+  updateRotation(F, q, R, S);
+  storeQuaternion(q, rotation);
+  return turnedLanes(q, t, tangent_angle);
+}
+
 /// About that share of the angle of q, of length 1.
 TISSUE_CONTACT_INLINE LaneQuaternion shareOf(const LaneQuaternion& q, double share) {
   const Lanes along = q.w < 0.0 ? Lanes{-share, -share, -share, -share} : Lanes{share, share, share, share};
@@ -179,20 +191,17 @@ TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches
                                         double* forces) {
   for (std::size_t b = range.begin; b < range.end; ++b) {
     LaneMatrix F, R, S;
-    LaneQuaternion q, t;
     typename Material::Value lambda, mu;
     deformationGradients(batches[b], x, F);
-    loadQuaternion(rotations[b], q);
-    loadQuaternion(tangents[b], t);
-    updateRotation(F, q, R, S);
+    turned[b] = turn(F, tangents[b], tangent_angle, rotations[b], R, S);
     if (share < 1.0) {
+      LaneQuaternion q;
+      loadQuaternion(rotations[b], q);
       rotationMatrix(shareOf(q, share), R);
       rotateBack(R, F, S);
     }
     material.get(b, lambda, mu);
     addForces(batches[b], lambda, mu, &R, S, forces);
-    storeQuaternion(q, rotations[b]);
-    turned[b] = turnedLanes(q, t, tangent_angle);
   }
 }
 
@@ -299,12 +308,7 @@ TISSUE_CONTACT_INLINE void overstress(const std::vector<ElementBatch>& batches, 
     typename Material::Value lambda, mu;
     deformationGradients(batches[b], x, F);
     if (turns) {
-      LaneQuaternion q, t;
-      loadQuaternion(rotations[b], q);
-      loadQuaternion(tangents[b], t);
-      updateRotation(F, q, R, S);
-      storeQuaternion(q, rotations[b]);
-      turned[b] = turnedLanes(q, t, tangent_angle);
+      turned[b] = turn(F, tangents[b], tangent_angle, rotations[b], R, S);
     } else {
       S = F;
     }
@@ -368,12 +372,7 @@ void addPatchForces(const PatchElements& patches, BatchRange range, bool turns, 
     Lanes lambda, mu;
     meanGradients(nodes, batch.count, x, F);
     if (turns) {
-      LaneQuaternion q, t;
-      loadQuaternion(rotations[b], q);
-      loadQuaternion(tangents[b], t);
-      updateRotation(F, q, R, S);
-      storeQuaternion(q, rotations[b]);
-      turned[b] = turnedLanes(q, t, tangent_angle);
+      turned[b] = turn(F, tangents[b], tangent_angle, rotations[b], R, S);
     } else {
       S = F;
     }
