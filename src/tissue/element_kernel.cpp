@@ -146,15 +146,6 @@ TISSUE_CONTACT_INLINE void stress(const Value& lambda, const Value& mu, const La
   }
 }
 
-/// Adds the forces of that stress.
-template <typename Value>
-TISSUE_CONTACT_INLINE void addForces(const ElementBatch& batch, const Value& lambda, const Value& mu,
-                                     const LaneMatrix* R, const LaneMatrix& S, double* forces) {
-  LaneMatrix P;
-  stress(lambda, mu, R, S, P);
-  addStressForces(batch, P, forces);
-}
-
 /// |vec(q conj(t))| = sin(angle/2) |q| |t|.
 TISSUE_CONTACT_INLINE unsigned char turnedLanes(const LaneQuaternion& q, const LaneQuaternion& t, double angle) {
   const Lanes x = q.x * t.w - q.w * t.x - q.y * t.z + q.z * t.y;
@@ -190,7 +181,7 @@ TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches
                                         std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
                                         double* forces) {
   for (std::size_t b = range.begin; b < range.end; ++b) {
-    LaneMatrix F, R, S;
+    LaneMatrix F, R, S, P;
     typename Material::Value lambda, mu;
     deformationGradients(batches[b], x, F);
     turned[b] = turn(F, tangents[b], tangent_angle, rotations[b], R, S);
@@ -201,7 +192,8 @@ TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches
       rotateBack(R, F, S);
     }
     material.get(b, lambda, mu);
-    addForces(batches[b], lambda, mu, &R, S, forces);
+    stress(lambda, mu, &R, S, P);
+    addStressForces(batches[b], P, forces);
   }
 }
 
@@ -217,11 +209,12 @@ TISSUE_CONTACT_INLINE void linear(const std::vector<ElementBatch>& batches, Batc
                                   const double* x, double* forces, double* turn_squared) {
   Lanes most = {0.0, 0.0, 0.0, 0.0};
   for (std::size_t b = range.begin; b < range.end; ++b) {
-    LaneMatrix F;
+    LaneMatrix F, P;
     typename Material::Value lambda, mu;
     deformationGradients(batches[b], x, F);
     material.get(b, lambda, mu);
-    addForces(batches[b], lambda, mu, nullptr, F, forces);
+    stress(lambda, mu, nullptr, F, P);
+    addStressForces(batches[b], P, forces);
     if (kWatch) watchTurn(F, most);
   }
   for (int lane = 0; kWatch && lane < kLanes; ++lane) *turn_squared = std::max(*turn_squared, most[lane]);
