@@ -18,6 +18,7 @@ class BlockSlots {
  public:
   int& operator()(std::size_t i, std::size_t j) { return at_[placeOf(i, j)]; }
   int operator()(std::size_t i, std::size_t j) const { return at_[placeOf(i, j)]; }
+  const int* rowByRow() const { return at_.data(); }
 
  private:
   static std::size_t placeOf(std::size_t i, std::size_t j) {

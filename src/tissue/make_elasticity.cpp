@@ -15,24 +15,30 @@ bool isContinuum(ElasticModel model) {
   return model == ElasticModel::kLinear || model == ElasticModel::kCorotational || model == ElasticModel::kNeoHookean;
 }
 
-bool averagesDilatation(const ElementMaterials& materials) {
-  const MaterialDescription& first = materials.materials.at(0);
-  if (first.dilatation != Dilatation::kAuto) return first.dilatation == Dilatation::kPatch;
-  if (first.distortion == Distortion::kPatch) return true;
-  // Averaged neo-Hookean elements give way under sharp edges, which then hook (doc/method.md).
-  return isContinuum(first.model) && first.model != ElasticModel::kNeoHookean &&
+namespace {
+
+bool averagesByItself(const ElementMaterials& materials) {
+  return isContinuum(materials.materials.at(0).model) &&
          std::any_of(materials.materials.begin(), materials.materials.end(),
                      [](const MaterialDescription& one) { return one.poissons_ratio >= kAveragedPoissonsRatio; });
 }
 
-bool mayAverageDistortion(ElasticModel model) {
-  return model == ElasticModel::kLinear || model == ElasticModel::kCorotational;
+}  // namespace
+
+bool averagesDilatation(const ElementMaterials& materials) {
+  const MaterialDescription& first = materials.materials.at(0);
+  if (first.dilatation != Dilatation::kAuto) return first.dilatation == Dilatation::kPatch;
+  // Neo-Hookean elements that average all of the change of volume give way under sharp edges, which then hook (doc/method.md).
+  if (first.model == ElasticModel::kNeoHookean) return false;
+  return first.distortion == Distortion::kPatch || averagesByItself(materials);
 }
 
 bool averagesDistortion(const ElementMaterials& materials) {
   const MaterialDescription& first = materials.materials.at(0);
-  return mayAverageDistortion(first.model) && first.prony_series.empty() && first.distortion != Distortion::kElement &&
-         averagesDilatation(materials);
+  if (!isContinuum(first.model) || !first.prony_series.empty()) return false;
+  if (first.distortion != Distortion::kAuto) return first.distortion == Distortion::kPatch;
+  return first.dilatation == Dilatation::kPatch ||
+         (first.dilatation == Dilatation::kAuto && averagesByItself(materials));
 }
 
 ElementMaterials materialsOf(const TissueDescription& tissue) {
@@ -50,10 +56,11 @@ std::unique_ptr<const Elasticity> makeElasticBody(const NodalVectors& rest, cons
   if (first.dilatation == Dilatation::kPatch && !isContinuum(first.model)) {
     throw std::invalid_argument("dilatation over patches is for the models linear, corotational and neo_hookean only");
   }
-  if (first.distortion == Distortion::kPatch && !averagesDistortion(materials)) {
+  if (first.distortion == Distortion::kPatch &&
+      (!averagesDistortion(materials) || first.dilatation == Dilatation::kElement)) {
     throw std::invalid_argument(
-        "distortion over patches is for the models linear and corotational only, with dilatation over patches and "
-        "without a Prony series");
+        "distortion over patches is for the models linear, corotational and neo_hookean only, with dilatation over "
+        "patches or as it comes and without a Prony series");
   }
   switch (first.model) {
     case ElasticModel::kLinear:
@@ -63,12 +70,15 @@ std::unique_ptr<const Elasticity> makeElasticBody(const NodalVectors& rest, cons
                                             averagesDistortion(materials) ? kPatchShapeShare : 0.0);
       }
       return std::make_unique<TetElasticity>(rest, tetrahedra, fixed, materials);
-    case ElasticModel::kNeoHookean:
-      if (averagesDilatation(materials) && patch_of.empty()) {
-        throw std::invalid_argument("dilatation over patches: no patch is given");
+    case ElasticModel::kNeoHookean: {
+      const NeoHookean::Averages averages = {averagesDilatation(materials),
+                                             averagesDistortion(materials) ? kPatchShapeShare : 0.0};
+      if (!averages.dilatation && averages.share == 0.0) {
+        return std::make_unique<NeoHookean>(rest, tetrahedra, fixed, materials);
       }
-      return std::make_unique<NeoHookean>(rest, tetrahedra, fixed, materials,
-                                          averagesDilatation(materials) ? patch_of : std::vector<int>());
+      if (patch_of.empty()) throw std::invalid_argument("strain averaged over patches: no patch is given");
+      return std::make_unique<NeoHookean>(rest, tetrahedra, fixed, materials, patch_of, averages);
+    }
     case ElasticModel::kMassSpring:
       return std::make_unique<MassSpring>(rest, tetrahedra, fixed, materials);
     case ElasticModel::kMembrane:

@@ -17,6 +17,14 @@ TetElements::Lame ownParameters(double shape_share) {
   };
 }
 
+/// Of patches: lambda = kappa - 2/3 mu.
+TetElements::Lame patchParameters(double shape_share) {
+  return [shape_share](const MaterialDescription& material) -> LameParameters {
+    const double mu = shape_share * lameParameters(material).mu;
+    return {bulkModulus(material) - 2.0 / 3.0 * mu, mu};
+  };
+}
+
 }  // namespace
 
 /// Rotations of patches are kept as those of elements are.
@@ -51,7 +59,7 @@ MeanStrain::MeanStrain(const NodalVectors& rest, const std::vector<Tetrahedron>&
                                                   BlockPattern::forElements(patch_nodes, fixed))),
       corotational_(materials.materials.at(0).model == ElasticModel::kCorotational),
       patches_(DilatationPatches(tetrahedra, fixed, materials, patch_of, std::move(patch_nodes), tets()), tets(),
-               materials, shape_share) {}
+               materials, patchParameters(shape_share)) {}
 
 MeanStrain::~MeanStrain() = default;
 

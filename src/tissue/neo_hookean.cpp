@@ -7,7 +7,8 @@
 
 #include "tissue/dilatation_patches.h"
 #include "tissue/neo_hookean_kernel.h"
-#include "tissue/neo_hookean_tangent.h"
+#include "tissue/neo_hookean_patches.h"
+#include "tissue/neo_hookean_stiffness.h"
 #include "tissue/tet_elements.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
 
@@ -20,17 +21,13 @@ LameParameters modelParameters(const MaterialDescription& material) {
   return {lame.lambda + 5.0 / 6.0 * lame.mu, 4.0 / 3.0 * lame.mu};
 }
 
-/// What elements keep for themselves where patches resist changes of volume.
-LameParameters shapeParameters(const MaterialDescription& material) {
-  const double mu = modelParameters(material).mu;
-  return {mu / 8.0, mu};
+/// A share of them. @param without_volume patches resist changes of volume: what is left keeps the shape.
+TetElements::Lame shareOfParameters(double share, bool without_volume) {
+  return [=](const MaterialDescription& material) -> LameParameters {
+    const LameParameters all = modelParameters(material);
+    return {share * (without_volume ? all.mu / 8.0 : all.lambda), share * all.mu};
+  };
 }
-
-// Squared Frobenius norm of F (3 at rest) beyond which an element is so stiff, as |F|^4, that taking its share out of
-// the stiffness again would leave round-off behind that others notice.
-constexpr double kLargeDeformation = 30.0;
-
-InPatch inPatch(const TetElement& element, double pressure) { return {pressure, kFlatModulus * element.lame.mu}; }
 
 /// dJ/dF.
 Matrix3 cofactors(const Matrix3& F) {
@@ -45,72 +42,6 @@ Matrix3 matrixInLane(const MatrixBatch& batch, std::size_t lane) {
   return matrix;
 }
 
-/// Adds shares of elements to the stiffness, in the order in which they are given, four computed at a time.
-class ElementStiffness {
- public:
-  ElementStiffness(const TetElements& tets, Elasticity::State& state) : tets_(tets), state_(state) {}
-  ~ElementStiffness() { addAll(); }  // those that did not make four
-  ElementStiffness(const ElementStiffness&) = delete;
-  ElementStiffness& operator=(const ElementStiffness&) = delete;
-
-  /// @param F of all elements. @param sign -1: takes the share out.
-  void add(std::size_t e, const std::vector<MatrixBatch>& F, const InPatch& patch, double sign) {
-    const TetElement& element = tets_.elements[e];
-    const std::size_t batch = e / kLanes;
-    const std::size_t lane = e % kLanes;
-    for (std::size_t i = 0; i < 9; ++i) {
-      lanes_.F[i][count_] = F[batch][i][lane];
-      lanes_.rest_inverse[i][count_] = tets_.batches[batch].rest_inverse[i][lane];
-    }
-    lanes_.volume[count_] = sign * element.volume;
-    lanes_.lambda[count_] = element.lame.lambda;
-    lanes_.mu[count_] = element.lame.mu;
-    lanes_.pressure[count_] = patch.pressure;
-    lanes_.flat_modulus[count_] = patch.flat_modulus;
-    elements_[count_++] = e;
-    if (count_ == kLanes) addAll();
-  }
-
- private:
-  void addAll() {
-    if (count_ == 0) return;
-    const unsigned char failed = computeTangents(lanes_);
-    for (std::size_t lane = 0; lane < count_; ++lane) {
-      addTo(elements_[lane], (failed >> lane & 1) != 0 ? simple(lane) : fast(lane));
-    }
-    count_ = 0;
-  }
-
-  TangentBlocks fast(std::size_t lane) const {
-    TangentBlocks blocks;
-    for (std::size_t k = 0; k < kTangentBlocks; ++k) blocks[k] = matrixInLane(lanes_.blocks[k], lane);
-    return blocks;
-  }
-
-  TangentBlocks simple(std::size_t lane) const {
-    const LameParameters& material = tets_.elements[elements_[lane]].lame;
-    return tangentBlocks({matrixInLane(lanes_.F, lane), material, {lanes_.pressure[lane], lanes_.flat_modulus[lane]}},
-                         tets_.shapeGradients(elements_[lane]), lanes_.volume[lane]);
-  }
-
-  void addTo(std::size_t e, const TangentBlocks& blocks) {
-    const TetElement& element = tets_.elements[e];
-    std::size_t place = 0;
-    for (std::size_t n = 0; n < 4; ++n) {
-      for (std::size_t m = n; m < 4; ++m, ++place) {
-        const int slot = element.slots(n, m);
-        if (slot >= 0) addBlock(n == m, slot, blocks[place], element.damping_s, state_.stiffness, state_.damping);
-      }
-    }
-  }
-
-  const TetElements& tets_;
-  Elasticity::State& state_;
-  TangentLanes lanes_ = {};  // lanes that nobody fills have numbers, too
-  std::array<std::size_t, kLanes> elements_ = {};
-  std::size_t count_ = 0;
-};
-
 }  // namespace
 
 /// Deformation gradients are kept four elements at a time, column-major.
@@ -119,7 +50,9 @@ struct NeoHookean::DeformationState : State {
   std::vector<MatrixBatch> tangent_deformations;  ///< those `stiffness` was computed with
   std::vector<unsigned char> changed;             ///< scratch: elements to refresh, a bit each
   TetElements::Held held;
-  // Of patches; empty without:
+  NeoHookeanPatches::State shares;  ///< of patches that are elements
+  NeoHookeanStiffness::Scratch scratch;
+  // Of patches that average the change of volume; empty without:
   std::vector<ElementValues> volume_ratios;  ///< J at the last update
   std::vector<double> pressures;             ///< scratch, per patch: kappa (Jbar - 1), Pa
   std::vector<double> tangent_pressures;     ///< those `stiffness` was computed with
@@ -127,10 +60,13 @@ struct NeoHookean::DeformationState : State {
   std::vector<unsigned char> stale;          ///< scratch, per patch: to be refreshed
   DilatationPatches::Held held_patches;
 
+  explicit DeformationState(std::size_t most_nodes) : scratch(most_nodes) {}
+
   void carry(StateArchive& archive) override {
     State::carry(archive);
     archive.carry(tangent_deformations);
     held.carry(archive, tangent_deformations.size(), stiffness.rows());
+    shares.carry(archive);
     archive.carry(volume_ratios);
     archive.carry(tangent_pressures);
     archive.carry(tangent_gradients);
@@ -140,15 +76,24 @@ struct NeoHookean::DeformationState : State {
 
 NeoHookean::NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
                        const std::vector<bool>& fixed, const ElementMaterials& materials,
-                       const std::vector<int>& patch_of) {
+                       const std::vector<int>& patch_of, const Averages& averages) {
   if (patch_of.empty()) {
     tets_ = std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, modelParameters);
     return;
   }
   auto nodes = DilatationPatches::nodesOf(tetrahedra, patch_of);
   auto couplings = BlockPattern::forElements(nodes, fixed);
-  tets_ = std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, shapeParameters, std::move(couplings));
-  patches_ = std::make_unique<DilatationPatches>(tetrahedra, fixed, materials, patch_of, std::move(nodes), *tets_);
+  const double own = 1.0 - averages.share;
+  flat_modulus_ = kFlatModulus / own;
+  tets_ = std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, shareOfParameters(own, averages.dilatation),
+                                        std::move(couplings));
+  auto patches =
+      std::make_unique<DilatationPatches>(tetrahedra, fixed, materials, patch_of, std::move(nodes), *tets_);
+  if (averages.share > 0.0) {
+    shares_ = std::make_unique<NeoHookeanPatches>(
+        PatchElements(*patches, *tets_, materials, shareOfParameters(averages.share, averages.dilatation)));
+  }
+  if (averages.dilatation) patches_ = std::move(patches);
 }
 
 NeoHookean::~NeoHookean() = default;
@@ -156,11 +101,12 @@ NeoHookean::~NeoHookean() = default;
 std::unique_ptr<NeoHookean::DeformationState> NeoHookean::undeformed() const {
   MatrixBatch identity{};
   for (const std::size_t i : {0, 4, 8}) identity[i].fill(1.0);
-  auto state = std::make_unique<DeformationState>();
+  auto state = std::make_unique<DeformationState>(shares_ ? std::max<std::size_t>(4, shares_->mostNodes()) : 4);
   state->deformations.assign(tets_->batches.size(), identity);
   state->tangent_deformations = state->deformations;
   state->changed.assign(tets_->batches.size(), 0);
   state->held = tets_->nothingHeld();
+  if (shares_) state->shares = shares_->undeformed();
   if (patches_) {
     state->volume_ratios.resize(tets_->batches.size());
     state->pressures.assign(patches_->patches.size(), 0.0);
@@ -184,6 +130,7 @@ std::unique_ptr<Elasticity::State> NeoHookean::makeStateAt(const NodalVectors& x
   NodalVectors forces = NodalVectors::Zero(3, x.cols());
   evaluate(x, state->held.moving, *state, forces);
   state->tangent_deformations = state->deformations;
+  state->shares.tangent_deformations = state->shares.deformations;
   if (patches_) {
     patches_->meanPressures(tets_->batches, state->held.moving, state->volume_ratios, 1.0, false, state->held_patches,
                             state->tangent_pressures);
@@ -206,16 +153,26 @@ void NeoHookean::forEachChanged(const std::vector<BatchRange>& ranges, const Def
   }
 }
 
+/// Adds an element's share. @param F of all elements. @param sign -1: takes it out.
+void NeoHookean::addShare(std::size_t e, const std::vector<MatrixBatch>& F, double pressure, double sign,
+                          NeoHookeanStiffness& sum) const {
+  const TetElement& element = tets_->elements[e];
+  const InPatch patch = {pressure, patches_ ? flat_modulus_ * element.lame.mu : 0.0};
+  const Eigen::Matrix<double, 3, 4> gradients = tets_->shapeGradients(e);
+  sum.add({F[e / kLanes], e % kLanes, element.lame, patch, sign * element.volume, element.damping_s, 4,
+           element.slots.rowByRow()},
+          [&](std::size_t node) -> Vector3 { return gradients.col(static_cast<Eigen::Index>(node)); });
+}
+
 void NeoHookean::rebuildStiffness(DeformationState& state) const {
   state.stiffness.setZero();
   state.damping.setZero();
-  ElementStiffness elements(*tets_, state);
+  NeoHookeanStiffness sum(state.scratch, state);
   for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
-    InPatch patch;
-    if (patches_)
-      patch = inPatch(tets_->elements[e], state.tangent_pressures[patches_->of_batch[e / kLanes][e % kLanes]]);
-    elements.add(e, state.tangent_deformations, patch, 1.0);
+    const double pressure = patches_ ? state.tangent_pressures[patches_->of_batch[e / kLanes][e % kLanes]] : 0.0;
+    addShare(e, state.tangent_deformations, pressure, 1.0, sum);
   }
+  if (shares_) shares_->addStiffness(state.shares, sum);
   for (std::size_t p = 0; patches_ && p < patches_->patches.size(); ++p) addPatchStiffness(p, 1.0, state);
 }
 
@@ -235,22 +192,27 @@ void NeoHookean::addPatchStiffness(std::size_t p, double sign, DeformationState&
   DilatationPatches::addStiffness(patch, sign > 0.0 ? b : nullptr, sign > 0.0 ? nullptr : b, state);
 }
 
-void NeoHookean::refreshStiffness(const std::vector<BatchRange>& ranges, DeformationState& state) const {
-  std::size_t changes = 0;
-  bool cancels = false;
-  forEachChanged(ranges, state, [&](std::size_t batch, std::size_t lane) {
-    ++changes;
-    cancels = cancels || matrixInLane(state.tangent_deformations[batch], lane).squaredNorm() > kLargeDeformation;
-  });
-  const bool rebuild = cancels || 2 * changes > tets_->elements.size();
-  ElementStiffness elements(*tets_, state);
+/// Shares of elements and patches that have changed, among those that are still, or those that are not.
+void NeoHookean::refreshStiffness(bool still, DeformationState& state) const {
+  const std::vector<BatchRange>& elements = still ? state.held.still : state.held.moving;
+  const std::vector<BatchRange>& patches = still ? state.shares.still : state.shares.moving;
+  const bool rebuilds = rebuildsFor(elements, patches, state);
+  {
+    NeoHookeanStiffness sum(state.scratch, state);
+    patches_ ? refreshPatches(rebuilds, state, sum) : refreshElements(elements, rebuilds, state, sum);
+    if (shares_) shares_->refresh(patches, rebuilds, state.shares, sum);
+  }
+  if (rebuilds) rebuildStiffness(state);
+}
+
+void NeoHookean::refreshElements(const std::vector<BatchRange>& ranges, bool rebuilds, DeformationState& state,
+                                 NeoHookeanStiffness& sum) const {
   forEachChanged(ranges, state, [&](std::size_t batch, std::size_t lane) {
     const std::size_t e = batch * kLanes + lane;
-    if (!rebuild) elements.add(e, state.tangent_deformations, {}, -1.0);
+    if (!rebuilds) addShare(e, state.tangent_deformations, 0.0, -1.0, sum);
     for (std::size_t i = 0; i < 9; ++i) state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];
-    if (!rebuild) elements.add(e, state.deformations, {}, 1.0);
+    if (!rebuilds) addShare(e, state.deformations, 0.0, 1.0, sum);
   });
-  if (rebuild) rebuildStiffness(state);
 }
 
 /// Those of which an element, or the mean, has changed, among the patches that are still, or those that are not.
@@ -266,70 +228,67 @@ void NeoHookean::markStalePatches(const std::vector<BatchRange>& ranges, bool st
   });
 }
 
-/// Whether the stale patches are many, or leave round-off behind.
-bool NeoHookean::rebuildsFor(const DeformationState& state) const {
-  const std::vector<DilatationPatches::Patch>& patches = patches_->patches;
+/// Whether those that have changed are many, or leave round-off behind.
+bool NeoHookean::rebuildsFor(const std::vector<BatchRange>& elements, const std::vector<BatchRange>& patches,
+                             const DeformationState& state) const {
   std::size_t changes = 0;
-  bool cancels = false;
-  for (std::size_t p = 0; p < patches.size(); ++p) {
+  bool cancels = shares_ && shares_->countChanged(patches, state.shares, changes);
+  const auto count = [&](std::size_t batch, std::size_t lane) {
+    ++changes;
+    cancels = cancels || isLargeDeformation(state.tangent_deformations[batch], lane);
+  };
+  if (!patches_) forEachChanged(elements, state, count);
+  for (std::size_t p = 0; patches_ && p < patches_->patches.size(); ++p) {
     if (state.stale[p] == 0) continue;
-    changes += patches[p].members.size();
-    for (const DilatationPatches::Member& member : patches[p].members) {
-      const std::size_t e = member.element;
-      cancels =
-          cancels || matrixInLane(state.tangent_deformations[e / kLanes], e % kLanes).squaredNorm() > kLargeDeformation;
+    for (const DilatationPatches::Member& member : patches_->patches[p].members) {
+      count(member.element / kLanes, member.element % kLanes);
     }
   }
-  return cancels || 2 * changes > tets_->elements.size();
+  return cancels || 2 * changes > tets_->elements.size() + (shares_ ? shares_->size() : 0);
 }
 
-void NeoHookean::refreshPatches(DeformationState& state) const {
+void NeoHookean::refreshPatches(bool rebuilds, DeformationState& state, NeoHookeanStiffness& sum) const {
   const std::vector<DilatationPatches::Patch>& patches = patches_->patches;
-  const bool rebuild = rebuildsFor(state);
-  ElementStiffness elements(*tets_, state);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     if (state.stale[p] == 0) continue;
-    if (!rebuild) addPatchStiffness(p, -1.0, state);
+    if (!rebuilds) addPatchStiffness(p, -1.0, state);
     for (const DilatationPatches::Member& member : patches[p].members) {
-      const std::size_t batch = member.element / kLanes;
-      const std::size_t lane = member.element % kLanes;
-      const TetElement& element = tets_->elements[member.element];
-      const auto add = [&](const std::vector<MatrixBatch>& F, double pressure, double sign) {
-        elements.add(member.element, F, inPatch(element, pressure), sign);
-      };
-      if (!rebuild) add(state.tangent_deformations, state.tangent_pressures[p], -1.0);
+      const std::size_t e = member.element;
+      const std::size_t batch = e / kLanes;
+      const std::size_t lane = e % kLanes;
+      if (!rebuilds) addShare(e, state.tangent_deformations, state.tangent_pressures[p], -1.0, sum);
       for (std::size_t i = 0; i < 9; ++i)
         state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];
       state.changed[batch] &= static_cast<unsigned char>(~(1u << lane));
-      if (!rebuild) add(state.deformations, state.pressures[p], 1.0);
+      if (!rebuilds) addShare(e, state.deformations, state.pressures[p], 1.0, sum);
     }
     state.tangent_pressures[p] = state.pressures[p];
-    if (!rebuild) addPatchStiffness(p, 1.0, state);
+    if (!rebuilds) addPatchStiffness(p, 1.0, state);
   }
-  if (rebuild) rebuildStiffness(state);
 }
 
 void NeoHookean::update(const NodalVectors& x, State& any_state, NodalVectors& forces) const {
   auto& state = static_cast<DeformationState&>(any_state);  // made by makeState()
   state.held.startForces(forces);
   evaluate(x, state.held.moving, state, forces);
-  if (patches_) {
-    addPatches(state.held_patches.pressed, false, state, forces);
-  } else {
-    refreshStiffness(state.held.moving, state);
-  }
+  if (shares_) shares_->addForces(x, state.shares.moving, kTangentChange, state.shares, forces);
+  if (patches_) addPatches(state.held_patches.pressed, false, state, forces);
+  refreshStiffness(false, state);
 }
 
 void NeoHookean::holdStill(const std::vector<bool>& still, const NodalVectors& x, State& any_state) const {
   auto& state = static_cast<DeformationState&>(any_state);
   tets_->split(still, state.held);
   evaluate(x, state.held.still, state, state.held.forces);
+  if (shares_) {
+    shares_->split(still, state.shares);
+    shares_->addForces(x, state.shares.still, kTangentChange, state.shares, state.held.forces);
+  }
   if (patches_) {
     patches_->split(state.held, state.held_patches);
     addPatches(state.held.still, true, state, state.held.forces);
-  } else {
-    refreshStiffness(state.held.still, state);
   }
+  refreshStiffness(true, state);
 }
 
 /// Adds what the elements of these batches do by themselves.
@@ -337,15 +296,15 @@ void NeoHookean::evaluate(const NodalVectors& x, const std::vector<BatchRange>& 
                           NodalVectors& forces) const {
   const auto add = [&](BatchRange range, const auto& material) {
     addNeoHookeanForces(tets_->batches, range, material, kTangentChange, x.data(), state.tangent_deformations,
-                        state.deformations, state.changed, patches_ ? state.volume_ratios.data() : nullptr,
-                        forces.data());
+                        state.deformations, state.changed, flat_modulus_,
+                        patches_ ? state.volume_ratios.data() : nullptr, forces.data());
   };
   for (const BatchRange range : ranges) {
     tets_->batch_materials.empty() ? add(range, tets_->material) : add(range, tets_->batch_materials);
   }
 }
 
-/// Adds the forces of the patches that are still, or of those that are not, and brings their stiffness up to date.
+/// Adds the forces of the patches' pressure, of those that are still, or of those that are not, and marks those whose stiffness is stale.
 /// @param ranges batches that hold all their elements; what has changed in those of others stays marked.
 void NeoHookean::addPatches(const std::vector<BatchRange>& ranges, bool still, DeformationState& state,
                             NodalVectors& forces) const {
@@ -354,26 +313,20 @@ void NeoHookean::addPatches(const std::vector<BatchRange>& ranges, bool still, D
     addCofactorForces(tets_->batches, range, state.deformations, patches_->of_batch, state.pressures, forces.data());
   }
   markStalePatches(ranges, still, state);
-  refreshPatches(state);
 }
 
 double NeoHookean::energy(const NodalVectors& x) const {
-  double energy = 0.0;
+  double energy = shares_ ? shares_->energy(x) : 0.0;
   std::vector<double> changes(patches_ ? patches_->patches.size() : 0, 0.0);  // of volume, m^3
   for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
     const TetElement& element = tets_->elements[e];
     const Matrix3 F = tets_->deformationGradient(e, x);
-    const double I = F.squaredNorm();
+    energy += element.volume * neoHookeanEnergy(F, element.lame);
+    if (!patches_) continue;
     const double J = F.determinant();
-    const LameParameters& material = element.lame;
-    // lambda/2 ((J - alpha)^2 - (1 - alpha)^2) = (J - 1) (lambda/2 (J - 1) - 3/4 mu)
-    energy += element.volume * (0.5 * material.mu * (I - 3.0 - std::log((I + 1.0) / 4.0)) +
-                                (J - 1.0) * (0.5 * material.lambda * (J - 1.0) - 0.75 * material.mu));
-    if (patches_) {
-      const double flat = std::min(0.0, J - kFlat);
-      energy += element.volume * 0.5 * kFlatModulus * material.mu * flat * flat;
-      changes[patches_->of_batch[e / kLanes][e % kLanes]] += element.volume * (J - 1.0);
-    }
+    const double flat = std::min(0.0, J - kFlat);
+    energy += element.volume * 0.5 * flat_modulus_ * element.lame.mu * flat * flat;
+    changes[patches_->of_batch[e / kLanes][e % kLanes]] += element.volume * (J - 1.0);
   }
   for (std::size_t p = 0; p < changes.size(); ++p) {
     energy += 0.5 * patches_->patches[p].bulk * changes[p] * changes[p] / patches_->patches[p].volume;

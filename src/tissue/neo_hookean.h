@@ -29,6 +29,7 @@
 #include <memory>
 #include <vector>
 
+#include "tissue/neo_hookean_kernel.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/tissue/elasticity.h"
 #include "tissue_contact/tissue/element_materials.h"
@@ -38,15 +39,26 @@ namespace tissue_contact {
 struct BatchRange;
 struct DilatationPatches;
 struct TetElements;
+class NeoHookeanPatches;
+class NeoHookeanStiffness;
 
 /// Model: const after construction. Thread-safe for different states.
 class NeoHookean : public Elasticity {
  public:
+  /// What is averaged over patches.
+  struct Averages {
+    bool dilatation = true;  ///< the change of volume
+    double share = 0.0;      ///< s, 0 to below 1
+  };
+
   /// @param rest 3 x n, m.
   /// @param patch_of per tetrahedron, from 0 without gaps; empty: every element by itself.
   /// @throws std::invalid_argument for a material out of range or a patch_of of the wrong size.
   NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
-             const ElementMaterials& materials, const std::vector<int>& patch_of = {});
+             const ElementMaterials& materials)
+      : NeoHookean(rest, tetrahedra, fixed, materials, {}, {}) {}
+  NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra, const std::vector<bool>& fixed,
+             const ElementMaterials& materials, const std::vector<int>& patch_of, const Averages& averages);
   ~NeoHookean() override;
 
   std::unique_ptr<State> makeState() const override;
@@ -73,17 +85,24 @@ class NeoHookean : public Elasticity {
                 NodalVectors& forces) const;
   void addPatches(const std::vector<BatchRange>& ranges, bool still, DeformationState& state,
                   NodalVectors& forces) const;
+  void addShare(std::size_t e, const std::vector<MatrixBatch>& F, double pressure, double sign,
+                NeoHookeanStiffness& sum) const;
   void addPatchStiffness(std::size_t patch, double sign, DeformationState& state) const;
   void rebuildStiffness(DeformationState& state) const;
   template <typename Call>
   void forEachChanged(const std::vector<BatchRange>& ranges, const DeformationState& state, const Call& call) const;
-  void refreshStiffness(const std::vector<BatchRange>& ranges, DeformationState& state) const;
+  void refreshStiffness(bool still, DeformationState& state) const;
+  void refreshElements(const std::vector<BatchRange>& ranges, bool rebuilds, DeformationState& state,
+                       NeoHookeanStiffness& sum) const;
   void markStalePatches(const std::vector<BatchRange>& ranges, bool still, DeformationState& state) const;
-  bool rebuildsFor(const DeformationState& state) const;
-  void refreshPatches(DeformationState& state) const;
+  bool rebuildsFor(const std::vector<BatchRange>& elements, const std::vector<BatchRange>& patches,
+                   const DeformationState& state) const;
+  void refreshPatches(bool rebuilds, DeformationState& state, NeoHookeanStiffness& sum) const;
 
   std::unique_ptr<const TetElements> tets_;
-  std::unique_ptr<const DilatationPatches> patches_;  ///< null: every element by itself
+  std::unique_ptr<const NeoHookeanPatches> shares_;   ///< what patches resist as elements; null: nothing
+  std::unique_ptr<const DilatationPatches> patches_;  ///< that average the change of volume; null: every element by itself
+  double flat_modulus_ = 0.0;                         ///< over an element's mu
 };
 
 }  // namespace tissue_contact

@@ -17,18 +17,31 @@ using MatrixBatch = std::array<std::array<double, kLanes>, 9>;
 constexpr double kFlat = 0.5;
 constexpr double kFlatModulus = 8.0;
 
+/// Whether F is so large that taking its share out of the stiffness again, which grows as |F|^4, would leave round-off behind that
+/// others notice.
+bool isLargeDeformation(const MatrixBatch& F, std::size_t lane);
+
+/// psi of neo_hookean.h, J/m^3. @param material lambda and mu of the model.
+double neoHookeanEnergy(const Matrix3& F, const LameParameters& material);
+
 /// Computes `deformations` F at positions x (3 x n) and adds the elastic forces to `forces` (3 x n). `changed[b]` gets
 /// bit `lane` set where F is further than `tangent_change` (Frobenius norm) away from `tangents`. `volume_ratios`, unless null,
 /// gets J = det F of every element, by batch; elements are then those of patches, which resist being flat by themselves.
-/// @param material lambda and mu of the model, which are not Lame's.
+/// @param material lambda and mu of the model, which are not Lame's. @param flat_modulus over mu.
 void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
                          double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
                          std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed,
-                         ElementValues* volume_ratios, double* forces);
+                         double flat_modulus, ElementValues* volume_ratios, double* forces);
 void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range,
                          const std::vector<BatchMaterial>& materials, double tangent_change, const double* x,
                          const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
-                         std::vector<unsigned char>& changed, ElementValues* volume_ratios, double* forces);
+                         std::vector<unsigned char>& changed, double flat_modulus, ElementValues* volume_ratios,
+                         double* forces);
+
+/// The same of patches as elements: their stress is that of their mean F. All by batches of patches.
+void addNeoHookeanPatchForces(const PatchElements& patches, BatchRange range, double tangent_change, const double* x,
+                              const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
+                              std::vector<unsigned char>& changed, double* forces);
 
 /// Adds the forces of stresses p dJ/dF: -V p dJ/dF grad N. `group_of` names for each element of a batch its place in
 /// `pressures`, Pa.

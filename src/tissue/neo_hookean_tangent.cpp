@@ -15,50 +15,11 @@
 namespace tissue_contact {
 namespace {
 
-struct SpectralTangent {
-  Matrix3 U, V;
-  Matrix3 stretch;
-  Matrix3 direct, crossed;  ///< symmetric, diagonals unused
-};
-
 Matrix3 withoutNegativeEigenvalues(const Matrix3& symmetric) {
   const double minor = symmetric(0, 0) * symmetric(1, 1) - symmetric(1, 0) * symmetric(1, 0);
   if (symmetric(0, 0) > 0.0 && minor > 0.0 && symmetric.determinant() > 0.0) return symmetric;
   const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(symmetric);
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
-}
-
-SpectralTangent spectralTangent(const TangentPoint& point) {
-  // F = R S = (R V) diag(sigma) V', R a proper rotation: J = product of sigma carries the sign of det F.
-  const Matrix3 R = nearestRotation(point.F, Quaternion::Identity()).toRotationMatrix();
-  const Matrix3 S = R.transpose() * point.F;
-  const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(0.5 * (S + S.transpose()));
-  const Vector3& sigma = eigen.eigenvalues();
-  const LameParameters& material = point.material;
-  SpectralTangent tangent;
-  tangent.V = eigen.eigenvectors();
-  tangent.U = R * tangent.V;
-  const double I = sigma.squaredNorm();
-  const double along_F = material.mu - material.mu / (I + 1.0);
-  const double J = sigma.prod();
-  const double flat = J < kFlat ? point.patch.flat_modulus : 0.0;
-  const double along_C = material.lambda * (J - 1.0) - 0.75 * material.mu + flat * (J - kFlat) + point.patch.pressure;
-  const Vector3 cofactors(sigma[1] * sigma[2], sigma[2] * sigma[0], sigma[0] * sigma[1]);
-  tangent.stretch = 2.0 * material.mu / ((I + 1.0) * (I + 1.0)) * sigma * sigma.transpose() +
-                    (material.lambda + flat) * cofactors * cofactors.transpose();
-  tangent.stretch.diagonal().array() += along_F;
-  for (int k = 0; k < 3; ++k) {
-    const int i = (k + 1) % 3;
-    const int j = (k + 2) % 3;
-    tangent.stretch(i, j) += along_C * sigma[k];
-    tangent.stretch(j, i) += along_C * sigma[k];
-    const double twist = std::max(0.0, along_F + along_C * sigma[k]);
-    const double flip = std::max(0.0, along_F - along_C * sigma[k]);
-    tangent.direct(i, j) = tangent.direct(j, i) = 0.5 * (flip + twist);
-    tangent.crossed(i, j) = tangent.crossed(j, i) = 0.5 * (flip - twist);
-  }
-  tangent.stretch = withoutNegativeEigenvalues(tangent.stretch);
-  return tangent;
 }
 
 /// Symmetric 3 x 3 matrices.
@@ -186,7 +147,7 @@ TISSUE_CONTACT_INLINE void dropNegativeEigenvalues(LaneSymmetric& A) {
   A.zx = is_positive ? A.zx : entry(2, 0);
 }
 
-/// As SpectralTangent, times the volume; direct[k] and crossed[k] are of the pair without k.
+/// As Tangent, times the volume; direct[k] and crossed[k] are of the pair without k.
 struct LaneTangent {
   LaneSymmetric stretch;
   Lanes direct[3], crossed[3];
@@ -254,53 +215,80 @@ TISSUE_CONTACT_INLINE void block(const LaneTangent& tangent, const LaneMatrix& U
   }
 }
 
-/// b_n = V' grad N_n.
-TISSUE_CONTACT_INLINE void gradientsIn(const LaneMatrix& V, const MatrixBatch& rest_inverse, Lanes (*b)[3]) {
-  for (std::size_t node = 0; node < 3; ++node) {
+/// V' grad N.
+TISSUE_CONTACT_INLINE void turnBack(const LaneMatrix& V, const GradientLanes* gradients, std::size_t count,
+                                    GradientLanes* turned) {
+  for (std::size_t n = 0; n < count; ++n) {
     Lanes gradient[3];
-    for (std::size_t k = 0; k < 3; ++k) load(rest_inverse[node + 3 * k], gradient[k]);
-    for (std::size_t i = 0; i < 3; ++i) b[node + 1][i] = dot(V.m + 3 * i, gradient);
+    for (std::size_t k = 0; k < 3; ++k) load(gradients[n][k], gradient[k]);
+    for (std::size_t i = 0; i < 3; ++i) store(dot(V.m + 3 * i, gradient), turned[n][i]);
   }
-  for (std::size_t i = 0; i < 3; ++i) b[0][i] = -(b[1][i] + b[2][i] + b[3][i]);
 }
 
 }  // namespace
 
-TangentBlocks tangentBlocks(const TangentPoint& point, const Eigen::Matrix<double, 3, 4>& gradients, double volume_m3) {
-  const SpectralTangent tangent = spectralTangent(point);
-  const Eigen::Matrix<double, 3, 4> b = tangent.V.transpose() * gradients;
-  TangentBlocks blocks;
-  std::size_t place = 0;
-  for (int n = 0; n < 4; ++n) {
-    for (int m = n; m < 4; ++m) {
-      Matrix3 inner;
-      for (int i = 0; i < 3; ++i) {
-        const int j = (i + 1) % 3;
-        const int k = (i + 2) % 3;
-        inner(i, i) = tangent.stretch(i, i) * b(i, n) * b(i, m) + tangent.direct(i, j) * b(j, n) * b(j, m) +
-                      tangent.direct(i, k) * b(k, n) * b(k, m);
-        inner(i, j) = tangent.stretch(i, j) * b(i, n) * b(j, m) + tangent.crossed(i, j) * b(j, n) * b(i, m);
-        inner(j, i) = tangent.stretch(i, j) * b(j, n) * b(i, m) + tangent.crossed(i, j) * b(i, n) * b(j, m);
-      }
-      blocks[place++] = volume_m3 * tangent.U * inner * tangent.U.transpose();
-    }
+Tangent::Tangent(const TangentPoint& point) {
+  // F = R S = (R V) diag(sigma) V', R a proper rotation: J = product of sigma carries the sign of det F.
+  const Matrix3 R = nearestRotation(point.F, Quaternion::Identity()).toRotationMatrix();
+  const Matrix3 S = R.transpose() * point.F;
+  const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(0.5 * (S + S.transpose()));
+  const Vector3& sigma = eigen.eigenvalues();
+  const LameParameters& material = point.material;
+  V_ = eigen.eigenvectors();
+  U_ = R * V_;
+  const double I = sigma.squaredNorm();
+  const double along_F = material.mu - material.mu / (I + 1.0);
+  const double J = sigma.prod();
+  const double flat = J < kFlat ? point.patch.flat_modulus : 0.0;
+  const double along_C = material.lambda * (J - 1.0) - 0.75 * material.mu + flat * (J - kFlat) + point.patch.pressure;
+  const Vector3 cofactors(sigma[1] * sigma[2], sigma[2] * sigma[0], sigma[0] * sigma[1]);
+  stretch_ = 2.0 * material.mu / ((I + 1.0) * (I + 1.0)) * sigma * sigma.transpose() +
+                    (material.lambda + flat) * cofactors * cofactors.transpose();
+  stretch_.diagonal().array() += along_F;
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3;
+    const int j = (k + 2) % 3;
+    stretch_(i, j) += along_C * sigma[k];
+    stretch_(j, i) += along_C * sigma[k];
+    const double twist = std::max(0.0, along_F + along_C * sigma[k]);
+    const double flip = std::max(0.0, along_F - along_C * sigma[k]);
+    direct_(i, j) = direct_(j, i) = 0.5 * (flip + twist);
+    crossed_(i, j) = crossed_(j, i) = 0.5 * (flip - twist);
   }
-  return blocks;
+  stretch_ = withoutNegativeEigenvalues(stretch_);
+}
+
+Matrix3 Tangent::block(const Vector3& gradient_n, const Vector3& gradient_m) const {
+  const Vector3 n = V_.transpose() * gradient_n;
+  const Vector3 m = V_.transpose() * gradient_m;
+  Matrix3 inner;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    const int k = (i + 2) % 3;
+    inner(i, i) = stretch_(i, i) * n[i] * m[i] + direct_(i, j) * n[j] * m[j] + direct_(i, k) * n[k] * m[k];
+    inner(i, j) = stretch_(i, j) * n[i] * m[j] + crossed_(i, j) * n[j] * m[i];
+    inner(j, i) = stretch_(i, j) * n[j] * m[i] + crossed_(i, j) * n[i] * m[j];
+  }
+  return U_ * inner * U_.transpose();
 }
 
 TISSUE_CONTACT_CLONES
-unsigned char computeTangents(TangentLanes& lanes) {
+unsigned char computeTangents(const TangentLanes& lanes, const GradientLanes* gradients, std::size_t count,
+                              GradientLanes* turned, MatrixBatch* blocks) {
   LaneMatrix F, U, V;
   Lanes sigma[3];
   for (std::size_t i = 0; i < 9; ++i) load(lanes.F[i], F.m[i]);
   const Mask failed = decompose(F, U, sigma, V);
   LaneTangent tangent;
   spectralTangents(lanes, sigma, tangent);
-  Lanes b[4][3];
-  gradientsIn(V, lanes.rest_inverse, b);
-  std::size_t place = 0;
-  for (std::size_t n = 0; n < 4; ++n) {
-    for (std::size_t m = n; m < 4; ++m) block(tangent, U, b[n], b[m], lanes.blocks[place++]);
+  turnBack(V, gradients, count, turned);
+  for (std::size_t n = 0; n < count; ++n) {
+    Lanes of_n[3], of_m[3];
+    for (std::size_t k = 0; k < 3; ++k) load(turned[n][k], of_n[k]);
+    for (std::size_t m = n; m < count; ++m) {
+      for (std::size_t k = 0; k < 3; ++k) load(turned[m][k], of_m[k]);
+      block(tangent, U, of_n, of_m, *blocks++);
+    }
   }
   return bits(failed);
 }

@@ -5,7 +5,7 @@
 namespace tissue_contact {
 
 PatchElements::PatchElements(const DilatationPatches& averaged, const TetElements& tets,
-                             const ElementMaterials& element_materials, double shape_share) {
+                             const ElementMaterials& element_materials, const TetElements::Lame& lameOf) {
   const std::vector<DilatationPatches::Patch>& patches = averaged.patches;
   batches.resize((patches.size() + kLanes - 1) / kLanes);
   materials.resize(batches.size());
@@ -28,12 +28,14 @@ PatchElements::PatchElements(const DilatationPatches& averaged, const TetElement
     }
     const DilatationPatches::Patch& patch = patches[p];
     std::vector<Vector3> gradients(batch.count, Vector3::Zero());
-    double mu = 0.0;
+    LameParameters mean = {0.0, 0.0};
     for (const DilatationPatches::Member& member : patch.members) {
       const double part = tets.elements[member.element].volume / patch.volume;
       const Eigen::Matrix<double, 3, 4> c = tets.shapeGradients(member.element);
       for (int i = 0; i < 4; ++i) gradients[member.local[i]] += part * c.col(i);
-      mu += part * shape_share * lameParameters(element_materials.of(member.element)).mu;
+      const LameParameters lame = lameOf(element_materials.of(member.element));
+      mean.lambda += part * lame.lambda;
+      mean.mu += part * lame.mu;
     }
     for (std::size_t i = 0; i < batch.count; ++i) {
       PatchNode& node = nodes[batch.first + i];
@@ -41,8 +43,8 @@ PatchElements::PatchElements(const DilatationPatches& averaged, const TetElement
       for (int r = 0; r < 3; ++r) node.gradient[r][lane % kLanes] = gradients[i][r];
     }
     batch.volume[lane % kLanes] = lane < patches.size() ? patch.volume : 0.0;
-    materials[lane / kLanes].lambda[lane % kLanes] = patch.bulk - 2.0 / 3.0 * mu;
-    materials[lane / kLanes].mu[lane % kLanes] = mu;
+    materials[lane / kLanes].lambda[lane % kLanes] = mean.lambda;
+    materials[lane / kLanes].mu[lane % kLanes] = mean.mu;
   }
 }
 
@@ -77,7 +79,7 @@ Matrix3 PatchElements::deformationGradient(std::size_t patch, const NodalVectors
 /// @param blockOf nodes i <= j: the block of K to be added.
 template <typename BlockOf>
 void PatchElements::addBlocks(std::size_t patch, const BlockOf& blockOf, Elasticity::State& state) const {
-  const int* next = &slots_[slots_of_[patch]];
+  const int* next = slots(patch);
   for (std::size_t i = 0; i < counts_[patch]; ++i) {
     for (std::size_t j = i; j < counts_[patch]; ++j) {
       const int slot = *next++;

@@ -26,10 +26,10 @@ struct PatchNode {
 };
 
 struct PatchElements {
-  /// @param shape_share of the elements' resistance to changes of shape that is the patches', 0 to 1.
   /// @param averaged the same tetrahedra in patches.
+  /// @param lame what of a material is the patches', as the model's parameters.
   PatchElements(const DilatationPatches& averaged, const TetElements& tets, const ElementMaterials& materials,
-                double shape_share);
+                const TetElements::Lame& lame);
 
   /// Sorts the batches by whether all nodes of their patches are in `still`.
   void split(const std::vector<bool>& still, std::vector<BatchRange>& moving, std::vector<BatchRange>& resting) const;
@@ -45,7 +45,12 @@ struct PatchElements {
   void turnStiffness(std::size_t patch, const Matrix3& old, const Matrix3& R, std::vector<Vector3>& scratch,
                      Elasticity::State& state) const;
 
+  Vector3 gradient(std::size_t patch, std::size_t node) const;  ///< 1/m
+
   std::size_t size() const { return slots_of_.size() - 1; }
+  std::size_t nodeCount(std::size_t patch) const { return counts_[patch]; }
+  const int* slots(std::size_t patch) const { return &slots_[slots_of_[patch]]; }  ///< as DilatationPatches::Patch
+  double damping(std::size_t patch) const { return damping_s_[patch]; }
   double volume(std::size_t patch) const { return batches[patch / kLanes].volume[patch % kLanes]; }
   LameParameters material(std::size_t patch) const {
     const BatchMaterial& four = materials[patch / kLanes];
@@ -53,16 +58,13 @@ struct PatchElements {
   }
 
   std::vector<PatchBatch> batches;
-  std::vector<PatchNode> nodes;  ///< batch after batch
-  /// lambda = kappa - 2/3 mu and mu, both means over the volume, mu times its share; Pa.
-  std::vector<BatchMaterial> materials;
+  std::vector<PatchNode> nodes;          ///< batch after batch
+  std::vector<BatchMaterial> materials;  ///< means over the volume, Pa
   std::size_t most_nodes = 0;  ///< of a patch
 
  private:
   template <typename BlockOf>
   void addBlocks(std::size_t patch, const BlockOf& blockOf, Elasticity::State& state) const;
-  Vector3 gradient(std::size_t patch, std::size_t node) const;
-
   std::vector<std::size_t> counts_;    ///< nodes of each patch
   std::vector<std::size_t> slots_of_;  ///< where those of each patch begin, and the end
   std::vector<int> slots_;             ///< of node pairs i <= j, row by row, as BlockSlots

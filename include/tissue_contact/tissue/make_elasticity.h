@@ -16,17 +16,14 @@ namespace tissue_contact {
 /// press on coarse cells (validation case coarse-press), for twice the blocks of K.
 constexpr double kAveragedPoissonsRatio = 0.3;
 
-/// Whether the model is of tetrahedra that obey a law of stress and strain: those may average their change of volume and relax
-/// (MaterialDescription::dilatation, prony_series).
+/// Whether the model is of tetrahedra that obey a law of stress and strain: those may average their strain and relax
+/// (MaterialDescription::dilatation, distortion, prony_series).
 bool isContinuum(ElasticModel model);
-
-/// Whether the model may average its change of shape (MaterialDescription::distortion).
-bool mayAverageDistortion(ElasticModel model);
 
 /// Whether volume changes of these materials are averaged over patches: what they ask for, or what kAuto chooses.
 bool averagesDilatation(const ElementMaterials& materials);
 
-/// Whether a part of their changes of shape is, likewise.
+/// Whether a part of their changes of shape is, likewise; of neo-Hookean ones without the former, a part of all strain.
 bool averagesDistortion(const ElementMaterials& materials);
 
 /// Of the tissue and of its regions.

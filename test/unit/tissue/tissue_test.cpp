@@ -130,7 +130,7 @@ TEST(Tissue, RefusesModelsThatDoNotSuitTheGeometry) {
   description.material.distortion = Distortion::kPatch;
   description.material.model = ElasticModel::kNeoHookean;
   expectRefused(description,
-                {"tissue 'block'", "distortion is 'patch', which only the models linear and corotational"});
+                {"tissue 'block'", "distortion is 'patch', which only the models linear, corotational and neo_hookean"});
   description = sheetDescription();
   std::get<SheetDescription>(description.geometry).thickness_m = 0.0;
   expectRefused(description, {"tissue 'flap'", "thickness_m", "> 0"});
