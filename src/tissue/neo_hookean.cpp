@@ -87,8 +87,7 @@ NeoHookean::NeoHookean(const NodalVectors& rest, const std::vector<Tetrahedron>&
   flat_modulus_ = kFlatModulus / own;
   tets_ = std::make_unique<TetElements>(rest, tetrahedra, fixed, materials, shareOfParameters(own, averages.dilatation),
                                         std::move(couplings));
-  auto patches =
-      std::make_unique<DilatationPatches>(tetrahedra, fixed, materials, patch_of, std::move(nodes), *tets_);
+  auto patches = std::make_unique<DilatationPatches>(tetrahedra, fixed, materials, patch_of, std::move(nodes), *tets_);
   if (averages.share > 0.0) {
     shares_ = std::make_unique<NeoHookeanPatches>(
         PatchElements(*patches, *tets_, materials, shareOfParameters(averages.share, averages.dilatation)));
@@ -157,7 +156,7 @@ void NeoHookean::forEachChanged(const std::vector<BatchRange>& ranges, const Def
 void NeoHookean::addShare(std::size_t e, const std::vector<MatrixBatch>& F, double pressure, double sign,
                           NeoHookeanStiffness& sum) const {
   const TetElement& element = tets_->elements[e];
-  const InPatch patch = {pressure, patches_ ? flat_modulus_ * element.lame.mu : 0.0};
+  const InPatch patch = {pressure, flat_modulus_ * element.lame.mu};
   const Eigen::Matrix<double, 3, 4> gradients = tets_->shapeGradients(e);
   sum.add({F[e / kLanes], e % kLanes, element.lame, patch, sign * element.volume, element.damping_s, 4,
            element.slots.rowByRow()},
@@ -321,11 +320,11 @@ double NeoHookean::energy(const NodalVectors& x) const {
   for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
     const TetElement& element = tets_->elements[e];
     const Matrix3 F = tets_->deformationGradient(e, x);
-    energy += element.volume * neoHookeanEnergy(F, element.lame);
-    if (!patches_) continue;
     const double J = F.determinant();
     const double flat = std::min(0.0, J - kFlat);
-    energy += element.volume * 0.5 * flat_modulus_ * element.lame.mu * flat * flat;
+    energy +=
+        element.volume * (neoHookeanEnergy(F, element.lame) + 0.5 * flat_modulus_ * element.lame.mu * flat * flat);
+    if (!patches_) continue;
     changes[patches_->of_batch[e / kLanes][e % kLanes]] += element.volume * (J - 1.0);
   }
   for (std::size_t p = 0; p < changes.size(); ++p) {

@@ -13,13 +13,18 @@
 ///
 /// Stiffness: the exact second derivative with its negative eigenvalues set to zero, element by element, in closed form
 /// from the singular values of F (one 3 x 3 eigenproblem is left).
-/// With a patch_of (scenes ask for it by `dilatation: patch`, since single elements lock where Poisson's ratio is near 1/2) the energy
-/// of the change of volume beyond what elements need to keep their shape is that of each patch,
-///   sum_e V (psi with mu/8 for lambda + 4 mu min(0, J - 1/2)^2)  +  sum_p V_p kappa/2 (Jbar - 1)^2,   Jbar = sum_e V J / V_p,
+/// With a patch_of, a share s of psi is that of patches of neighbours as elements of several nodes, with the mean F of their
+/// tetrahedra (patch_elements.h), as in mean_strain.h and for its reasons:
+///   sum_e V ((1 - s) psi(F) + 8 mu min(0, J - 0.3)^2)  +  sum_p V_p s psi_p(Fbar),   psi_p of mean mu and lambda.
+/// The second term, twice as stiff as a whole element at nu = .45, holds up what the patch would let go flat: without it single
+/// elements turn inside out where a narrow tool sweeps deep, and hook it (doc/method.md). Under it nothing changes while J > 0.3.
+///
+/// Where the change of volume is averaged as well (scenes ask for it by `dilatation: patch`, since single elements lock where
+/// Poisson's ratio is near 1/2), its energy beyond what elements need to keep their shape is that of each patch: psi has mu/8 for
+/// lambda, and there is
+///   sum_p V_p kappa/2 (Jbar - 1)^2,   Jbar = sum_e V J / V_p,
 /// kappa = lambda - mu/8 = lambda_Lame + 2/3 mu_Lame: at small strain the elements' part is mu_Lame |dev e|^2, and the whole that
-/// of mean_strain.h. The second term, as stiff as a whole element at nu = .45, holds up what the patch would let go flat: without
-/// it single elements turn inside out where a narrow tool sweeps (4 in the recorded motion of config/psm_dvrk.yaml with patches).
-/// The patch's pressure kappa (Jbar - 1) joins the factor of dJ/dF in each of its elements; with b = sum_e V dJ/dF grad N its own
+/// of mean_strain.h. The patch's pressure kappa (Jbar - 1) joins the factor of dJ/dF in each of its elements; with b = sum_e V dJ/dF grad N its own
 /// stiffness is kappa/V_p b b'. Forces are the gradient of this energy, which F-bar (one J for all of a patch put into psi: de Souza
 /// Neto, Andrade Pires & Owen, IJNME 62 (2005) 353-383) does not have without an unsymmetric stiffness; it is the mean dilatation of
 /// Simo, Taylor & Pister, CMAME 51 (1985) 177-208, on patches.
@@ -41,6 +46,10 @@ struct DilatationPatches;
 struct TetElements;
 class NeoHookeanPatches;
 class NeoHookeanStiffness;
+
+/// s: of what elements resist, what the patches do. With it the five tetrahedra of a cell bend exactly where dilatation is averaged;
+/// doc/method.md has what was measured.
+constexpr double kNeoHookeanPatchShare = 0.6;
 
 /// Model: const after construction. Thread-safe for different states.
 class NeoHookean : public Elasticity {
@@ -100,9 +109,10 @@ class NeoHookean : public Elasticity {
   void refreshPatches(bool rebuilds, DeformationState& state, NeoHookeanStiffness& sum) const;
 
   std::unique_ptr<const TetElements> tets_;
-  std::unique_ptr<const NeoHookeanPatches> shares_;   ///< what patches resist as elements; null: nothing
-  std::unique_ptr<const DilatationPatches> patches_;  ///< that average the change of volume; null: every element by itself
-  double flat_modulus_ = 0.0;                         ///< over an element's mu
+  std::unique_ptr<const NeoHookeanPatches> shares_;  ///< what patches resist as elements; null: nothing
+  std::unique_ptr<const DilatationPatches>
+      patches_;                ///< that average the change of volume; null: every element by itself
+  double flat_modulus_ = 0.0;  ///< over an element's mu
 };
 
 }  // namespace tissue_contact

@@ -58,11 +58,11 @@ TISSUE_CONTACT_INLINE void neoHookean(const std::vector<ElementBatch>& batches, 
     material.get(b, lambda, mu);
     Lanes J, against_flat = {};
     determinant(F, C, J);
-    if (volume_ratios != nullptr) {
+    if (flat_modulus > 0.0) {
       const Lanes flat = J - kFlat;
       against_flat = flat_modulus * mu * (flat < 0.0 ? flat : Lanes{});
-      store(J, volume_ratios[b]);
     }
+    if (volume_ratios != nullptr) store(J, volume_ratios[b]);
     stress(lambda, mu, F, C, J, against_flat, P);
     addStressForces(batches[b], P, forces);
     for (std::size_t i = 0; i < 9; ++i) store(F.m[i], deformations[b][i]);

@@ -14,8 +14,8 @@ namespace tissue_contact {
 using MatrixBatch = std::array<std::array<double, kLanes>, 9>;
 
 /// Elements of patches resist by kFlatModulus mu (J - kFlat) dJ/dF where J is below kFlat.
-constexpr double kFlat = 0.5;
-constexpr double kFlatModulus = 8.0;
+constexpr double kFlat = 0.3;
+constexpr double kFlatModulus = 16.0;
 
 /// Whether F is so large that taking its share out of the stiffness again, which grows as |F|^4, would leave round-off behind that
 /// others notice.
@@ -26,8 +26,8 @@ double neoHookeanEnergy(const Matrix3& F, const LameParameters& material);
 
 /// Computes `deformations` F at positions x (3 x n) and adds the elastic forces to `forces` (3 x n). `changed[b]` gets
 /// bit `lane` set where F is further than `tangent_change` (Frobenius norm) away from `tangents`. `volume_ratios`, unless null,
-/// gets J = det F of every element, by batch; elements are then those of patches, which resist being flat by themselves.
-/// @param material lambda and mu of the model, which are not Lame's. @param flat_modulus over mu.
+/// gets J = det F of every element, by batch.
+/// @param material lambda and mu of the model, which are not Lame's. @param flat_modulus over mu; 0: no patches.
 void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
                          double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
                          std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed,

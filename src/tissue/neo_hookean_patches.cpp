@@ -67,8 +67,14 @@ void NeoHookeanPatches::addStiffness(const State& state, NeoHookeanStiffness& su
 }
 
 void NeoHookeanPatches::addShare(std::size_t patch, const MatrixBatch& F, double sign, NeoHookeanStiffness& sum) const {
-  sum.add({F, patch % kLanes, patches_.material(patch), {}, sign * patches_.volume(patch), patches_.damping(patch),
-           patches_.nodeCount(patch), patches_.slots(patch)},
+  sum.add({F,
+           patch % kLanes,
+           patches_.material(patch),
+           {},
+           sign * patches_.volume(patch),
+           patches_.damping(patch),
+           patches_.nodeCount(patch),
+           patches_.slots(patch)},
           [&](std::size_t node) { return patches_.gradient(patch, node); });
 }
 

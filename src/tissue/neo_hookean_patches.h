@@ -29,9 +29,7 @@ class NeoHookeanPatches {
   explicit NeoHookeanPatches(PatchElements patches) : patches_(std::move(patches)) {}
 
   State undeformed() const;
-  void split(const std::vector<bool>& still, State& state) const {
-    patches_.split(still, state.moving, state.still);
-  }
+  void split(const std::vector<bool>& still, State& state) const { patches_.split(still, state.moving, state.still); }
 
   /// Adds the forces of these batches of patches (N) at positions x, and marks those whose F has changed by more than
   /// `tangent_change` since their stiffness was made.

@@ -19,8 +19,8 @@ void NeoHookeanStiffness::addAll() {
   std::size_t most = 0;
   for (std::size_t lane = 0; lane < count_; ++lane) most = std::max(most, waiting_[lane].nodes);
   if (most == 0) return;
-  const unsigned char failed = computeTangents(lanes_, scratch_.gradients.data(), most, scratch_.turned.data(),
-                                               scratch_.blocks.data());
+  const unsigned char failed =
+      computeTangents(lanes_, scratch_.gradients.data(), most, scratch_.turned.data(), scratch_.blocks.data());
   for (std::size_t lane = 0; lane < count_; ++lane) addTo(lane, most, (failed >> lane & 1) != 0);
   count_ = 0;
 }
@@ -45,9 +45,8 @@ void NeoHookeanStiffness::addTo(std::size_t lane, std::size_t most, bool failed)
     add([&](std::size_t n, std::size_t m) { return matrix(scratch_.blocks[n * (2 * most - n - 1) / 2 + m]); });
     return;
   }
-  const Tangent simple({matrix(lanes_.F),
-                        {lanes_.lambda[lane], lanes_.mu[lane]},
-                        {lanes_.pressure[lane], lanes_.flat_modulus[lane]}});
+  const Tangent simple(
+      {matrix(lanes_.F), {lanes_.lambda[lane], lanes_.mu[lane]}, {lanes_.pressure[lane], lanes_.flat_modulus[lane]}});
   const auto gradient = [&](std::size_t n) {
     const GradientLanes& at = scratch_.gradients[n];
     return Vector3(at[0][lane], at[1][lane], at[2][lane]);

@@ -243,7 +243,7 @@ Tangent::Tangent(const TangentPoint& point) {
   const double along_C = material.lambda * (J - 1.0) - 0.75 * material.mu + flat * (J - kFlat) + point.patch.pressure;
   const Vector3 cofactors(sigma[1] * sigma[2], sigma[2] * sigma[0], sigma[0] * sigma[1]);
   stretch_ = 2.0 * material.mu / ((I + 1.0) * (I + 1.0)) * sigma * sigma.transpose() +
-                    (material.lambda + flat) * cofactors * cofactors.transpose();
+             (material.lambda + flat) * cofactors * cofactors.transpose();
   stretch_.diagonal().array() += along_F;
   for (int k = 0; k < 3; ++k) {
     const int i = (k + 1) % 3;

@@ -60,7 +60,7 @@ struct PatchElements {
   std::vector<PatchBatch> batches;
   std::vector<PatchNode> nodes;          ///< batch after batch
   std::vector<BatchMaterial> materials;  ///< means over the volume, Pa
-  std::size_t most_nodes = 0;  ///< of a patch
+  std::size_t most_nodes = 0;            ///< of a patch
 
  private:
   template <typename BlockOf>

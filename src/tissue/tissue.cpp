@@ -39,9 +39,10 @@ void checkModel(const TissueDescription& description) {
                          "neo_hookean know; remove the key");
   }
   if (material.distortion == Distortion::kPatch && !isContinuum(material.model)) {
-    throw EntryError("material.distortion", tissueLabel(description) +
-                                                ": distortion is 'patch', which only the models linear, corotational and "
-                                                "neo_hookean know; remove the key");
+    throw EntryError("material.distortion",
+                     tissueLabel(description) +
+                         ": distortion is 'patch', which only the models linear, corotational and "
+                         "neo_hookean know; remove the key");
   }
   if (material.distortion == Distortion::kPatch && !material.prony_series.empty()) {
     throw EntryError("material.distortion", tissueLabel(description) +

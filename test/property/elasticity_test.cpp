@@ -114,10 +114,17 @@ ElementMaterials layered(ElasticModel model, Dilatation dilatation = Dilatation:
   return materials;
 }
 
-/// Volume averaged over patches, nearly incompressible.
+/// Strain averaged over patches, nearly incompressible.
 MaterialDescription averaged(ElasticModel model) {
   MaterialDescription description = material(model, 5e3, 0.49);
   description.dilatation = Dilatation::kPatch;
+  return description;
+}
+
+/// Volume alone.
+MaterialDescription volumeAveraged(ElasticModel model) {
+  MaterialDescription description = averaged(model);
+  description.distortion = Distortion::kElement;
   return description;
 }
 
@@ -143,6 +150,8 @@ std::vector<Model> models() {
           {"MeanStrainCorotational", makeBlock, averaged(E::kCorotational)},
           {"MeanStrainLayered", makeBlock, layered(E::kCorotational, Dilatation::kPatch)},
           {"AveragedNeoHookean", makeBlock, averaged(E::kNeoHookean)},
+          {"VolumeAveragedNeoHookean", makeBlock, volumeAveraged(E::kNeoHookean)},
+          {"SharedLayeredNeoHookean", makeBlock, layered(E::kNeoHookean, Dilatation::kAuto)},
           {"AveragedLayeredNeoHookean", makeBlock, layered(E::kNeoHookean, Dilatation::kPatch)},
           {"ViscoelasticLinear", makeBlock, viscous(material(E::kLinear, 5e3, 0.4)), false},
           {"ViscoelasticCorotational", makeBlock, viscous(averaged(E::kCorotational))},

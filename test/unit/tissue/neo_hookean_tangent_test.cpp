@@ -1,10 +1,10 @@
-/// Blocks of the neo-Hookean stiffness, four elements at a time, against the simple version and against what they are for.
+/// Blocks of the neo-Hookean stiffness, four elements or patches at a time, against the simple version and against what they are for.
 #include "tissue/neo_hookean_tangent.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -17,10 +17,15 @@ namespace {
 constexpr double kMu = 2300.0;  // of E = 5000 Pa
 constexpr double kVolume = 1e-9;
 
+// Nodes: those of a tetrahedron, and as many as a patch of five has.
+constexpr std::size_t kNodes = 8;
+
+using Gradients = Eigen::Matrix<double, 3, kNodes>;
+
 struct Case {
   std::string name;
   TangentPoint point;
-  Matrix3 rest_inverse;
+  Gradients gradients;
 };
 
 Matrix3 randomMatrix(std::mt19937& random, double size) {
@@ -36,8 +41,14 @@ Matrix3 randomRotation(std::mt19937& random) {
   return q.normalized().toRotationMatrix();
 }
 
-/// A tetrahedron of some millimetres.
-Matrix3 randomRestInverse(std::mt19937& random) { return 1e3 * (Matrix3::Identity() + randomMatrix(random, 0.3)); }
+/// Of an element of some millimetres: gradients sum to zero.
+Gradients randomGradients(std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-1e3, 1e3);
+  Gradients gradients;
+  for (Eigen::Index i = 0; i < gradients.size(); ++i) gradients.data()[i] = uniform(random);
+  gradients.colwise() -= gradients.rowwise().mean().eval();
+  return gradients;
+}
 
 std::vector<Case> cases() {
   std::mt19937 random(7);
@@ -46,7 +57,7 @@ std::vector<Case> cases() {
     for (const double lambda : {1500.0, 16000.0, 800000.0}) {  // nu up to .499
       for (const double flat_modulus : {0.0, 8.0 * kMu}) {
         for (const double pressure : {0.0, -3000.0, 5000.0}) {
-          all.push_back({name, {F, {lambda, kMu}, {pressure, flat_modulus}}, randomRestInverse(random)});
+          all.push_back({name, {F, {lambda, kMu}, {pressure, flat_modulus}}, randomGradients(random)});
         }
       }
     }
@@ -69,42 +80,49 @@ std::vector<Case> cases() {
   return all;
 }
 
-void place(const Case& from, std::size_t lane, TangentLanes& lanes) {
-  for (std::size_t i = 0; i < 9; ++i) {
-    lanes.F[i][lane] = from.point.F.data()[i];
-    lanes.rest_inverse[i][lane] = from.rest_inverse.data()[i];
-  }
-  lanes.volume[lane] = kVolume;
-  lanes.lambda[lane] = from.point.material.lambda;
-  lanes.mu[lane] = from.point.material.mu;
-  lanes.pressure[lane] = from.point.patch.pressure;
-  lanes.flat_modulus[lane] = from.point.patch.flat_modulus;
-}
-
-Eigen::Matrix<double, 3, 4> gradients(const Case& from) {
-  Eigen::Matrix<double, 3, 4> all;
-  all.rightCols<3>() = from.rest_inverse.transpose();
-  all.col(0) = -all.rightCols<3>().rowwise().sum();
-  return all;
-}
-
-Matrix3 inLane(const TangentLanes& lanes, std::size_t block, std::size_t lane) {
-  Matrix3 matrix;
-  for (std::size_t i = 0; i < 9; ++i) matrix.data()[i] = lanes.blocks[block][i][lane];
-  return matrix;
-}
-
-Eigen::Matrix<double, 12, 12> whole(const TangentLanes& lanes, std::size_t lane) {
-  Eigen::Matrix<double, 12, 12> K;
-  std::size_t block = 0;
-  for (int n = 0; n < 4; ++n) {
-    for (int m = n; m < 4; ++m) {
-      K.block<3, 3>(3 * n, 3 * m) = inLane(lanes, block++, lane);
-      if (m > n) K.block<3, 3>(3 * m, 3 * n) = K.block<3, 3>(3 * n, 3 * m).transpose();
+/// Four cases side by side and what is computed of them.
+class FourLanes {
+ public:
+  void place(const Case& from, std::size_t lane) {
+    for (std::size_t i = 0; i < 9; ++i) lanes_.F[i][lane] = from.point.F.data()[i];
+    lanes_.volume[lane] = kVolume;
+    lanes_.lambda[lane] = from.point.material.lambda;
+    lanes_.mu[lane] = from.point.material.mu;
+    lanes_.pressure[lane] = from.point.patch.pressure;
+    lanes_.flat_modulus[lane] = from.point.patch.flat_modulus;
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        gradients_[n][k][lane] = from.gradients(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(n));
+      }
     }
   }
-  return K;
-}
+
+  unsigned char compute() { return computeTangents(lanes_, gradients_.data(), kNodes, turned_.data(), blocks_.data()); }
+
+  /// @param n, m n <= m.
+  Matrix3 block(std::size_t n, std::size_t m, std::size_t lane) const {
+    Matrix3 matrix;
+    for (std::size_t i = 0; i < 9; ++i) matrix.data()[i] = blocks_[n * (2 * kNodes - n - 1) / 2 + m][i][lane];
+    return matrix;
+  }
+
+  Eigen::MatrixXd whole(std::size_t lane) const {
+    Eigen::MatrixXd K(3 * kNodes, 3 * kNodes);
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      for (std::size_t m = n; m < kNodes; ++m) {
+        K.block<3, 3>(3 * n, 3 * m) = block(n, m, lane);
+        if (m > n) K.block<3, 3>(3 * m, 3 * n) = block(n, m, lane).transpose();
+      }
+    }
+    return K;
+  }
+
+ private:
+  TangentLanes lanes_ = {};
+  std::array<GradientLanes, kNodes> gradients_ = {};
+  std::array<GradientLanes, kNodes> turned_ = {};
+  std::array<MatrixBatch, kNodes*(kNodes + 1) / 2> blocks_ = {};
+};
 
 // 1e-10: singular values come from F'F, whose round-off of 1e-16 is as much of the smallest one squared, 1e-6 of the largest in
 // "nearly a line".
@@ -112,17 +130,21 @@ TEST(NeoHookeanTangent, OfFourElementsIsThatOfOne) {
   const std::vector<Case> all = cases();
   ASSERT_EQ(all.size() % kLanes, 0u);
   for (std::size_t first = 0; first < all.size(); first += kLanes) {
-    TangentLanes lanes = {};
-    for (std::size_t lane = 0; lane < kLanes; ++lane) place(all[first + lane], lane, lanes);
-    ASSERT_EQ(computeTangents(lanes), 0) << all[first].name;
+    FourLanes lanes;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) lanes.place(all[first + lane], lane);
+    ASSERT_EQ(lanes.compute(), 0) << all[first].name;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Case& one = all[first + lane];
-      const TangentBlocks simple = tangentBlocks(one.point, gradients(one), kVolume);
+      const Tangent simple(one.point);
       double size = 0.0;
       double off = 0.0;
-      for (std::size_t k = 0; k < kTangentBlocks; ++k) {
-        size = std::max(size, simple[k].norm());
-        off = std::max(off, (inLane(lanes, k, lane) - simple[k]).norm());
+      for (std::size_t n = 0; n < kNodes; ++n) {
+        for (std::size_t m = n; m < kNodes; ++m) {
+          const Matrix3 expected = kVolume * simple.block(one.gradients.col(static_cast<Eigen::Index>(n)),
+                                                          one.gradients.col(static_cast<Eigen::Index>(m)));
+          size = std::max(size, expected.norm());
+          off = std::max(off, (lanes.block(n, m, lane) - expected).norm());
+        }
       }
       EXPECT_LT(off, 1e-10 * size) << one.name << ":\n" << one.point.F;
     }
@@ -131,10 +153,10 @@ TEST(NeoHookeanTangent, OfFourElementsIsThatOfOne) {
 
 TEST(NeoHookeanTangent, HasNoNegativeEigenvalue) {
   for (const Case& one : cases()) {
-    TangentLanes lanes = {};
-    place(one, 2, lanes);
-    computeTangents(lanes);
-    const auto values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 12, 12>>(whole(lanes, 2)).eigenvalues();
+    FourLanes lanes;
+    lanes.place(one, 2);
+    lanes.compute();
+    const auto values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(lanes.whole(2)).eigenvalues();
     EXPECT_GE(values.minCoeff(), -1e-10 * values.maxCoeff()) << one.name << ":\n" << one.point.F;
     EXPECT_GT(values.maxCoeff(), 0.0);
   }
@@ -144,31 +166,29 @@ TEST(NeoHookeanTangent, HasNoNegativeEigenvalue) {
 TEST(NeoHookeanTangent, OfALaneIsTheSameWhateverTheOthersAre) {
   const std::vector<Case> all = cases();
   for (std::size_t k = 0; k < all.size(); ++k) {
-    TangentLanes together = {};
-    for (std::size_t lane = 0; lane < kLanes; ++lane) place(all[(k + 37 * lane) % all.size()], lane, together);
-    computeTangents(together);
-    TangentLanes alone = {};
-    place(all[k], 3, alone);
-    computeTangents(alone);
-    for (std::size_t block = 0; block < kTangentBlocks; ++block) {
-      EXPECT_EQ(inLane(together, block, 0), inLane(alone, block, 3)) << all[k].name;
-    }
+    FourLanes together;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) together.place(all[(k + 37 * lane) % all.size()], lane);
+    together.compute();
+    FourLanes alone;
+    alone.place(all[k], 3);
+    alone.compute();
+    EXPECT_EQ(together.whole(0), alone.whole(3)) << all[k].name;
   }
 }
 
 TEST(NeoHookeanTangent, TellsWhereItMeansNothing) {
   std::mt19937 random(3);
   const Matrix3 line = Vector3(1.0, 0.2, -0.4) * Vector3(0.3, 1.0, 0.1).transpose();
-  TangentLanes lanes = {};
+  FourLanes lanes;
   const double infinity = std::numeric_limits<double>::infinity();
   const std::vector<Matrix3> gradients = {line, Matrix3::Zero(), 1e31 * Matrix3::Identity(),
                                           infinity * Matrix3::Ones()};
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    place({"", {gradients[lane], {16000.0, kMu}, {}}, randomRestInverse(random)}, lane, lanes);
+    lanes.place({"", {gradients[lane], {16000.0, kMu}, {}}, randomGradients(random)}, lane);
   }
-  EXPECT_EQ(computeTangents(lanes), 0b1111);
-  place({"", {Matrix3::Identity(), {16000.0, kMu}, {}}, randomRestInverse(random)}, 1, lanes);
-  EXPECT_EQ(computeTangents(lanes), 0b1101);
+  EXPECT_EQ(lanes.compute(), 0b1111);
+  lanes.place({"", {Matrix3::Identity(), {16000.0, kMu}, {}}, randomGradients(random)}, 1);
+  EXPECT_EQ(lanes.compute(), 0b1101);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "tissue/element_patches.h"
 #include "tissue/mean_strain.h"
+#include "tissue/neo_hookean.h"
 #include "tissue_contact/mesh/tet_mesh.h"
 #include "tissue_contact/tissue/make_elasticity.h"
 #include "tissue_contact/tissue/tet_elasticity.h"
@@ -104,19 +105,32 @@ class PlainForces : public testing::TestWithParam<Case> {
     }
     return means;
   }
-  double patchShare() const { return GetParam().distortion == Distortion::kPatch ? kPatchShapeShare : 0.0; }
+  double patchShare() const {
+    if (GetParam().distortion != Distortion::kPatch) return 0.0;
+    return GetParam().model == ElasticModel::kNeoHookean ? kNeoHookeanPatchShare : kPatchShapeShare;
+  }
+
+  /// Stress of neo_hookean.h, Pa. @param pressure to the factor of dJ/dF.
+  static Matrix3 neoHookean(const Matrix3& F, double lambda, double mu, double pressure) {
+    return mu * (1.0 - 1.0 / (F.squaredNorm() + 1.0)) * F +
+           (lambda * (F.determinant() - 1.0) - 0.75 * mu + pressure) * cofactors(F);
+  }
+  Matrix3 neoHookeanStress(const LameParameters& lame, const Matrix3& F, const Mean& mean) const {
+    const double mu = 4.0 / 3.0 * lame.mu;
+    const double lambda = averages() ? mu / 8.0 : lame.lambda + 5.0 / 6.0 * lame.mu;
+    const bool patches = averages() || patchShare() > 0.0;
+    const double flat = patches ? 16.0 * mu * std::min(0.0, F.determinant() - 0.3) : 0.0;
+    const double pressure = averages() ? mean.bulk_and_mu.lambda * (mean.J - 1.0) : 0.0;
+    const double mean_mu = 4.0 / 3.0 * mean.bulk_and_mu.mu;
+    const double mean_lambda = averages() ? mean_mu / 8.0 : mean.bulk_and_mu.lambda + 1.0 / 6.0 * mean.bulk_and_mu.mu;
+    const double own = 1.0 - patchShare();
+    return neoHookean(F, own * lambda, own * mu, flat + pressure) +
+           neoHookean(mean.F, patchShare() * mean_lambda, patchShare() * mean_mu, 0.0);
+  }
 
   /// First Piola-Kirchhoff stress of an element, Pa. @param mean of its patch.
   Matrix3 stress(const LameParameters& lame, const Matrix3& F, const Mean& mean) const {
-    if (GetParam().model == ElasticModel::kNeoHookean) {
-      const double mu = 4.0 / 3.0 * lame.mu;
-      const double lambda = averages() ? mu / 8.0 : lame.lambda + 5.0 / 6.0 * lame.mu;
-      const double J = F.determinant();
-      const double flat = averages() ? 8.0 * mu * std::min(0.0, J - 0.5) : 0.0;
-      const double pressure = averages() ? mean.bulk_and_mu.lambda * (mean.J - 1.0) : 0.0;
-      return mu * (1.0 - 1.0 / (F.squaredNorm() + 1.0)) * F +
-             (lambda * (J - 1.0) - 0.75 * mu + flat + pressure) * cofactors(F);
-    }
+    if (GetParam().model == ElasticModel::kNeoHookean) return neoHookeanStress(lame, F, mean);
     const Matrix3 e = strain(F);
     if (!averages()) return rotation(F) * (2.0 * lame.mu * e + lame.lambda * e.trace() * Matrix3::Identity());
     const Matrix3 of_patch = strain(mean.F);
@@ -174,7 +188,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"AveragedCorotational", ElasticModel::kCorotational, Dilatation::kPatch},
                     Case{"MeanStrainCorotational", ElasticModel::kCorotational, Dilatation::kPatch, Distortion::kPatch},
                     Case{"NeoHookean", ElasticModel::kNeoHookean, Dilatation::kElement},
-                    Case{"AveragedNeoHookean", ElasticModel::kNeoHookean, Dilatation::kPatch}),
+                    Case{"AveragedNeoHookean", ElasticModel::kNeoHookean, Dilatation::kPatch},
+                    Case{"SharedNeoHookean", ElasticModel::kNeoHookean, Dilatation::kAuto, Distortion::kPatch},
+                    Case{"AveragedSharedNeoHookean", ElasticModel::kNeoHookean, Dilatation::kPatch,
+                         Distortion::kPatch}),
     [](const auto& one) { return std::string(one.param.name); });
 
 class PlainOverstress : public PlainForces {};

@@ -1,0 +1,62 @@
+/// What is averaged over patches where the scene leaves it to `auto`, and what it may ask for.
+#include "tissue_contact/tissue/make_elasticity.h"
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+
+namespace tissue_contact {
+namespace {
+
+struct Case {
+  ElasticModel model;
+  double poissons_ratio;
+  Dilatation dilatation;
+  Distortion distortion;
+  bool averages_dilatation;
+  bool averages_distortion;
+};
+
+constexpr auto kLinear = ElasticModel::kLinear;
+constexpr auto kNeoHookean = ElasticModel::kNeoHookean;
+
+constexpr Case kCases[] = {
+    {kLinear, 0.45, Dilatation::kAuto, Distortion::kAuto, true, true},
+    {kLinear, 0.2, Dilatation::kAuto, Distortion::kAuto, false, false},
+    {kLinear, 0.2, Dilatation::kAuto, Distortion::kPatch, true, true},
+    {kLinear, 0.45, Dilatation::kAuto, Distortion::kElement, true, false},
+    {kLinear, 0.45, Dilatation::kElement, Distortion::kAuto, false, false},
+    {ElasticModel::kCorotational, 0.2, Dilatation::kPatch, Distortion::kAuto, true, true},
+    // Neo-Hookean tissue averages a part of all strain; of the change of volume all only where asked to.
+    {kNeoHookean, 0.45, Dilatation::kAuto, Distortion::kAuto, false, true},
+    {kNeoHookean, 0.2, Dilatation::kAuto, Distortion::kAuto, false, false},
+    {kNeoHookean, 0.2, Dilatation::kAuto, Distortion::kPatch, false, true},
+    {kNeoHookean, 0.45, Dilatation::kPatch, Distortion::kAuto, true, true},
+    {kNeoHookean, 0.45, Dilatation::kPatch, Distortion::kElement, true, false},
+    {kNeoHookean, 0.45, Dilatation::kElement, Distortion::kAuto, false, false},
+    {kNeoHookean, 0.45, Dilatation::kAuto, Distortion::kElement, false, false},
+    {ElasticModel::kMassSpring, 0.45, Dilatation::kAuto, Distortion::kAuto, false, false},
+};
+
+void PrintTo(const Case& one, std::ostream* out) {
+  *out << elasticModelName(one.model) << " " << one.poissons_ratio << " dilatation " << static_cast<int>(one.dilatation)
+       << " distortion " << static_cast<int>(one.distortion);
+}
+
+class Averages : public testing::TestWithParam<Case> {};
+
+TEST_P(Averages, AreWhatIsAskedForOrFits) {
+  MaterialDescription material{GetParam().model, 5e3, GetParam().poissons_ratio, 1000.0};
+  material.dilatation = GetParam().dilatation;
+  material.distortion = GetParam().distortion;
+  EXPECT_EQ(averagesDilatation(material), GetParam().averages_dilatation);
+  EXPECT_EQ(averagesDistortion(material), GetParam().averages_distortion);
+  material.prony_series = {{0.5, 0.1}};  // its stress is that of elements
+  EXPECT_EQ(averagesDilatation(material), GetParam().averages_dilatation);
+  EXPECT_FALSE(averagesDistortion(material));
+}
+
+INSTANTIATE_TEST_SUITE_P(, Averages, testing::ValuesIn(kCases));
+
+}  // namespace
+}  // namespace tissue_contact
