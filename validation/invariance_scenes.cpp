@@ -94,6 +94,8 @@ Scene twoToolsScene() {
 
 Scene sharpToolsScene(const std::string& stl_file) {
   Scene scene = makeScene(makeSoftBlock(ElasticModel::kNeoHookean));
+  // By element: over what is averaged an edge snaps from one vertex to the next, at a step that round-off decides (doc/method.md).
+  scene.tissues[0].material.dilatation = Dilatation::kElement;
   TissueRegion core;
   core.name = "core";
   core.where = {SphereRegion{Vector3(0.005, 0.0, 0.01), 0.009}};

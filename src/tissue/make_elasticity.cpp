@@ -72,7 +72,7 @@ std::unique_ptr<const Elasticity> makeElasticBody(const NodalVectors& rest, cons
       return std::make_unique<TetElasticity>(rest, tetrahedra, fixed, materials);
     case ElasticModel::kNeoHookean: {
       const NeoHookean::Averages averages = {averagesDilatation(materials),
-                                             averagesDistortion(materials) ? kNeoHookeanPatchShare : 0.0};
+                                             averagesDistortion(materials) ? kPatchShapeShare : 0.0};
       if (!averages.dilatation && averages.share == 0.0) {
         return std::make_unique<NeoHookean>(rest, tetrahedra, fixed, materials);
       }

@@ -47,10 +47,6 @@ struct TetElements;
 class NeoHookeanPatches;
 class NeoHookeanStiffness;
 
-/// s: of what elements resist, what the patches do. With it the five tetrahedra of a cell bend exactly where dilatation is averaged;
-/// doc/method.md has what was measured.
-constexpr double kNeoHookeanPatchShare = 0.6;
-
 /// Model: const after construction. Thread-safe for different states.
 class NeoHookean : public Elasticity {
  public:

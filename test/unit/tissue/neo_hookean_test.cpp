@@ -55,8 +55,8 @@ struct Variant {
 };
 constexpr Variant kByElement = {"ByElement", {false, 0.0}};
 constexpr Variant kDilatation = {"Dilatation", {true, 0.0}};
-constexpr Variant kShare = {"Share", {false, kNeoHookeanPatchShare}};
-constexpr Variant kBoth = {"Both", {true, kNeoHookeanPatchShare}};
+constexpr Variant kShare = {"Share", {false, kPatchShapeShare}};
+constexpr Variant kBoth = {"Both", {true, kPatchShapeShare}};
 const auto kVariants = ::testing::Values(kByElement, kDilatation, kShare, kBoth);
 
 void PrintTo(const Variant& variant, std::ostream* out) { *out << variant.name; }
