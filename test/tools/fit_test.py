@@ -309,7 +309,7 @@ class CommandTest(Folder):
     def test_it_refuses_to_separate_stiffness_from_thickness(self):
         """Under a flat tool the force is a stiffness times the depth, whatever that stiffness is made of."""
         flat = {"instruments.indenter.contact_links": [{"link": "tip", "shapes": [{"box": {"size_m": [0.014, 0.012, 0.024]}}]}],
-                "tissues.phantom.material.model": "corotational"}
+                "tissues.phantom.material.model": "corotational", "tissues.phantom.material.distortion": "auto"}
         self.scene = self.write("flat.yaml", fitted_scene.fitted_text(self.scene, flat, self.folder, []))
         motion = study.press(0.8, 2.0)
         recording = study.record("flat", motion, study.true_forces(self.truth, motion, self.scene), study.Noise(), numpy.zeros(3),
