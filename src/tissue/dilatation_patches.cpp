@@ -92,6 +92,7 @@ void DilatationPatches::split(const TetElements::Held& batches, Held& held) cons
     }
   }
   held.pressed.clear();
+  held.pressed.reserve((of_batch.size() + 1) / 2);  // the most there can be
   for (std::size_t b = 0; b < of_batch.size(); ++b) {
     if (std::all_of(of_batch[b].begin(), of_batch[b].end(), [&](int p) { return held.still[p]; })) continue;
     if (!held.pressed.empty() && held.pressed.back().end == b) {

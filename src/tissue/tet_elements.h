@@ -34,6 +34,8 @@ void splitBatches(std::size_t batches, const Rests& rests, std::vector<BatchRang
                   std::vector<BatchRange>& still) {
   moving.clear();
   still.clear();
+  moving.reserve((batches + 1) / 2);  // the most there can be: no later step allocates
+  still.reserve((batches + 1) / 2);
   for (std::size_t b = 0; b < batches; ++b) {
     std::vector<BatchRange>& ranges = rests(b) ? still : moving;
     if (!ranges.empty() && ranges.back().end == b) {

@@ -45,7 +45,8 @@ class ViscoelasticPress : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Models, ViscoelasticPress,
                          ::testing::Values("linear, dilatation: patch, distortion: element",
                                            "corotational, dilatation: patch, distortion: element",
-                                           "neo_hookean, dilatation: element", "neo_hookean, dilatation: patch"));
+                                           "neo_hookean, dilatation: element",
+                                           "neo_hookean, dilatation: patch, distortion: element"));
 
 TEST_P(ViscoelasticPress, GoesFromTheModulusAtOnceToTheRelaxedOne) {
   const double shear = kYoung / (2.0 * (1.0 + kPoisson));
