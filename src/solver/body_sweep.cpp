@@ -12,30 +12,21 @@ struct Work {
   const std::vector<BlockLanes>& inverse;
   const std::vector<SliceVectors>& right;
   const std::vector<std::array<double, kLanes>>& free;
-  double* lower;
-  double* v;
+  PaddedVector* lower;
+  PaddedVector* v;
 };
-
-TISSUE_CONTACT_INLINE void store(const LaneVectors& from, const int* at, double* v) {
-  for (int lane = kLanes; lane-- > 0;) {  // the first one last: a slice with fewer rows repeats it, unmoved
-    double* const to = v + at[lane];
-    to[0] = from[0][lane];
-    to[1] = from[1][lane];
-    to[2] = from[2][lane];
-  }
-}
 
 /// Gauss-Seidel step of a slice's rows. @param squares |defect|^2 of each free row, else 0.
 template <bool kDamped>
 TISSUE_CONTACT_INLINE void relax(const Work& all, int slice, Lanes& squares) {
   const BlockMatrix& K = *all.body.K;
-  const std::array<int, kLanes> rows = rowsOf(*K.pattern, slice);
+  const int* const rows = rowsOf(*K.pattern, slice);
   LaneVectors elastic{};
   addUpperProduct(K, slice, all.v, elastic);
   LaneVectors defect, lower, v;
   load(all.right[slice], defect);
-  gather(all.lower, rows.data(), lower);
-  gather(all.v, rows.data(), v);
+  gather(all.lower, rows, lower);
+  gather(all.v, rows, v);
   const double scale = all.body.stiffness_scale;
   defect[0] -= lower[0] + scale * elastic[0];
   defect[1] -= lower[1] + scale * elastic[1];
@@ -54,7 +45,7 @@ TISSUE_CONTACT_INLINE void relax(const Work& all, int slice, Lanes& squares) {
   defect[1] -= own[1];
   defect[2] -= own[2];
   addProduct(all.inverse[slice], defect, v);
-  store(v, rows.data(), all.v);
+  scatter(v, rows, all.v);  // a slice with fewer rows repeats the first, unmoved
   Lanes free;
   load(all.free[slice].data(), free);
   squares = free * (defect[0] * defect[0] + defect[1] * defect[1] + defect[2] * defect[2]);
@@ -65,7 +56,7 @@ template <bool kDamped>
 TISSUE_CONTACT_INLINE void carry(const Work& all, int slice) {
   const BlockMatrix& K = *all.body.K;
   LaneVectors v;
-  gather(all.v, rowsOf(*K.pattern, slice).data(), v);
+  gather(all.v, rowsOf(*K.pattern, slice), v);
   scatterMirrored(K, slice, all.body.stiffness_scale, v, all.lower);
   if (kDamped) scatterMirrored(*all.body.D, slice, all.body.damping_scale, v, all.lower);
 }
@@ -152,7 +143,8 @@ void BodySweep::prepare(const BodySystem& body) {
   right_.resize(slices);
   free_.resize(slices);
   moves_.resize(slices);
-  lower_.resize(3, body.K->rows());
+  lower_.resize(static_cast<std::size_t>(body.K->rows()));
+  v_.resize(lower_.size());
   prepareSlices();
   invertAll(diagonal_, free_, inverse_);
 }
@@ -199,29 +191,29 @@ void BodySweep::follow(int node, const Vector3& change) {
   const auto add = [&](const BlockMatrix& matrix, double scale) {
     const Vector3 scaled = scale * change;
     matrix.pattern->forRow(node, [&](int j, int place) {
-      if (j > node) lower_.col(j) += matrix.block(place).transpose() * scaled;  // A is symmetric
+      if (j > node) vectorOf(lower_[j]) += matrix.block(place).transpose() * scaled;  // A is symmetric
     });
   };
   add(*body_->K, body_->stiffness_scale);
   if (body_->D != nullptr) add(*body_->D, body_->damping_scale);
 }
 
-double BodySweep::forth(int begin, int end, NodalVectors& v) {
-  return runForth({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v.data()}, moves_, begin, end);
+double BodySweep::forth(int begin, int end) {
+  return runForth({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, moves_, begin, end);
 }
 
-double BodySweep::back(int begin, int end, NodalVectors& v) {
-  return runBack({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v.data()}, moves_, begin, end);
+double BodySweep::back(int begin, int end) {
+  return runBack({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, moves_, begin, end);
 }
 
-BodySweep::SquaresOfLanes BodySweep::relaxSlice(int slice, NodalVectors& v) {
+BodySweep::SquaresOfLanes BodySweep::relaxSlice(int slice) {
   SquaresOfLanes squares{};
-  runRelax({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v.data()}, slice, squares.data());
+  runRelax({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, slice, squares.data());
   return squares;
 }
 
-void BodySweep::carrySlice(int slice, NodalVectors& v) {
-  runCarry({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v.data()}, slice);
+void BodySweep::carrySlice(int slice) {
+  runCarry({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, slice);
 }
 
 }  // namespace tissue_contact

@@ -176,10 +176,10 @@ TISSUE_CONTACT_INLINE LaneQuaternion shareOf(const LaneQuaternion& q, double sha
 
 template <typename Material>
 TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches, BatchRange range,
-                                        const Material& material, double tangent_angle, double share, const double* x,
-                                        const std::vector<RotationBatch>& tangents,
+                                        const Material& material, double tangent_angle, double share,
+                                        const PaddedVector* x, const std::vector<RotationBatch>& tangents,
                                         std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
-                                        double* forces) {
+                                        PaddedVector* forces) {
   for (std::size_t b = range.begin; b < range.end; ++b) {
     LaneMatrix F, R, S, P;
     typename Material::Value lambda, mu;
@@ -206,7 +206,7 @@ TISSUE_CONTACT_INLINE void watchTurn(const LaneMatrix& F, Lanes& most) {
 
 template <bool kWatch, typename Material>
 TISSUE_CONTACT_INLINE void linear(const std::vector<ElementBatch>& batches, BatchRange range, const Material& material,
-                                  const double* x, double* forces, double* turn_squared) {
+                                  const PaddedVector* x, PaddedVector* forces, double* turn_squared) {
   Lanes most = {0.0, 0.0, 0.0, 0.0};
   for (std::size_t b = range.begin; b < range.end; ++b) {
     LaneMatrix F, P;
@@ -221,33 +221,26 @@ TISSUE_CONTACT_INLINE void linear(const std::vector<ElementBatch>& batches, Batc
 }
 
 /// Mean F of each of four patches.
-TISSUE_CONTACT_INLINE void meanGradients(const PatchNode* nodes, std::size_t count, const double* x, LaneMatrix& F) {
-  Lanes x0, y0, z0;
-  gather(nodes[0].nodes, x, 0, x0);
-  gather(nodes[0].nodes, x, 1, y0);
-  gather(nodes[0].nodes, x, 2, z0);
+TISSUE_CONTACT_INLINE void meanGradients(const PatchNode* nodes, std::size_t count, const PaddedVector* x,
+                                         LaneMatrix& F) {
+  Lanes origin[3];
+  gather(x, nodes[0].nodes.data(), origin);
   for (Lanes& entry : F.m) entry = Lanes{};
   for (std::size_t i = 1; i < count; ++i) {
-    Lanes dx, dy, dz;
-    gather(nodes[i].nodes, x, 0, dx);
-    gather(nodes[i].nodes, x, 1, dy);
-    gather(nodes[i].nodes, x, 2, dz);
-    dx -= x0;
-    dy -= y0;
-    dz -= z0;
+    Lanes d[3];
+    gather(x, nodes[i].nodes.data(), d);
+    for (std::size_t r = 0; r < 3; ++r) d[r] -= origin[r];
     for (std::size_t c = 0; c < 3; ++c) {
       Lanes g;
       load(nodes[i].gradient[c], g);
-      F.m[3 * c] += dx * g;
-      F.m[3 * c + 1] += dy * g;
-      F.m[3 * c + 2] += dz * g;
+      for (std::size_t r = 0; r < 3; ++r) F.m[r + 3 * c] += d[r] * g;
     }
   }
 }
 
 /// Forces -V P grad N of the stresses P of four patches, added to their nodes.
 TISSUE_CONTACT_INLINE void addPatchStressForces(const PatchBatch& batch, const PatchNode* nodes, LaneMatrix& P,
-                                                double* forces) {
+                                                PaddedVector* forces) {
   Lanes volume;
   load(batch.volume, volume);
   for (Lanes& entry : P.m) entry *= -volume;
@@ -258,7 +251,7 @@ TISSUE_CONTACT_INLINE void addPatchStressForces(const PatchBatch& batch, const P
     load(nodes[i].gradient[2], g2);
     Lanes force[3];
     for (std::size_t r = 0; r < 3; ++r) force[r] = P.m[r] * g0 + P.m[r + 3] * g1 + P.m[r + 6] * g2;
-    scatter(nodes[i].nodes, force, forces);
+    scatterAdd(force, nodes[i].nodes.data(), forces);
   }
 }
 
@@ -291,10 +284,11 @@ TISSUE_CONTACT_INLINE void relax(const Lanes* d, const std::vector<PronyStep>& s
 
 template <typename Material>
 TISSUE_CONTACT_INLINE void overstress(const std::vector<ElementBatch>& batches, const Material& material, bool turns,
-                                      double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
-                                      std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
-                                      const std::vector<PronyStep>& steps, std::vector<StrainBatch>& strains,
-                                      std::vector<StrainBatch>& held, double* forces) {
+                                      double tangent_angle, const PaddedVector* x,
+                                      const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
+                                      std::vector<unsigned char>& turned, const std::vector<PronyStep>& steps,
+                                      std::vector<StrainBatch>& strains, std::vector<StrainBatch>& held,
+                                      PaddedVector* forces) {
   constexpr std::size_t kPlace[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2};  // of a matrix entry among the six
   for (std::size_t b = 0; b < batches.size(); ++b) {
     LaneMatrix F, R, S, P;
@@ -323,40 +317,41 @@ TISSUE_CONTACT_INLINE void overstress(const std::vector<ElementBatch>& batches, 
 
 TISSUE_CONTACT_CLONES
 void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
-                           double tangent_angle, double share, const double* x,
+                           double tangent_angle, double share, const PaddedVector* x,
                            const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
-                           std::vector<unsigned char>& turned, double* forces) {
+                           std::vector<unsigned char>& turned, PaddedVector* forces) {
   corotational(batches, range, UniformMaterial{material}, tangent_angle, share, x, tangents, rotations, turned, forces);
 }
 
 TISSUE_CONTACT_CLONES
 void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range,
                            const std::vector<BatchMaterial>& materials, double tangent_angle, double share,
-                           const double* x, const std::vector<RotationBatch>& tangents,
-                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces) {
+                           const PaddedVector* x, const std::vector<RotationBatch>& tangents,
+                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
+                           PaddedVector* forces) {
   corotational(batches, range, VaryingMaterial{materials}, tangent_angle, share, x, tangents, rotations, turned,
                forces);
 }
 
 TISSUE_CONTACT_CLONES
 void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
-                     const double* x, double* forces, double* turn_squared) {
+                     const PaddedVector* x, PaddedVector* forces, double* turn_squared) {
   turn_squared == nullptr ? linear<false>(batches, range, UniformMaterial{material}, x, forces, nullptr)
                           : linear<true>(batches, range, UniformMaterial{material}, x, forces, turn_squared);
 }
 
 TISSUE_CONTACT_CLONES
 void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range,
-                     const std::vector<BatchMaterial>& materials, const double* x, double* forces,
+                     const std::vector<BatchMaterial>& materials, const PaddedVector* x, PaddedVector* forces,
                      double* turn_squared) {
   turn_squared == nullptr ? linear<false>(batches, range, VaryingMaterial{materials}, x, forces, nullptr)
                           : linear<true>(batches, range, VaryingMaterial{materials}, x, forces, turn_squared);
 }
 
 TISSUE_CONTACT_CLONES
-void addPatchForces(const PatchElements& patches, BatchRange range, bool turns, double tangent_angle, const double* x,
-                    const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
-                    std::vector<unsigned char>& turned, double* forces) {
+void addPatchForces(const PatchElements& patches, BatchRange range, bool turns, double tangent_angle,
+                    const PaddedVector* x, const std::vector<RotationBatch>& tangents,
+                    std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, PaddedVector* forces) {
   const VaryingMaterial material{patches.materials};
   for (std::size_t b = range.begin; b < range.end; ++b) {
     const PatchBatch& batch = patches.batches[b];
@@ -377,20 +372,20 @@ void addPatchForces(const PatchElements& patches, BatchRange range, bool turns, 
 
 TISSUE_CONTACT_CLONES
 void addOverstressForces(const std::vector<ElementBatch>& batches, const LameParameters& material, bool turns,
-                         double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
+                         double tangent_angle, const PaddedVector* x, const std::vector<RotationBatch>& tangents,
                          std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
                          const std::vector<PronyStep>& steps, std::vector<StrainBatch>& strains,
-                         std::vector<StrainBatch>& held, double* forces) {
+                         std::vector<StrainBatch>& held, PaddedVector* forces) {
   overstress(batches, UniformMaterial{material}, turns, tangent_angle, x, tangents, rotations, turned, steps, strains,
              held, forces);
 }
 
 TISSUE_CONTACT_CLONES
 void addOverstressForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
-                         bool turns, double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
-                         std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
-                         const std::vector<PronyStep>& steps, std::vector<StrainBatch>& strains,
-                         std::vector<StrainBatch>& held, double* forces) {
+                         bool turns, double tangent_angle, const PaddedVector* x,
+                         const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
+                         std::vector<unsigned char>& turned, const std::vector<PronyStep>& steps,
+                         std::vector<StrainBatch>& strains, std::vector<StrainBatch>& held, PaddedVector* forces) {
   overstress(batches, VaryingMaterial{materials}, turns, tangent_angle, x, tangents, rotations, turned, steps, strains,
              held, forces);
 }

@@ -119,6 +119,7 @@ struct NeoHookean::DeformationState : State {
   std::vector<MatrixBatch> tangent_deformations;  ///< those `stiffness` was computed with
   std::vector<unsigned char> changed;             ///< scratch: elements to refresh, a bit each
   TetElements::Held held;
+  KernelNodes nodes;  ///< scratch
   // Of patches; empty without:
   std::vector<ElementValues> volume_ratios;  ///< J at the last update
   std::vector<double> pressures;             ///< scratch, per patch: kappa (Jbar - 1), Pa
@@ -170,6 +171,8 @@ std::unique_ptr<NeoHookean::DeformationState> NeoHookean::undeformed() const {
     state->held_patches = patches_->nothingHeld();
   }
   tets_->prepare(*state);
+  state->nodes.x.resize(static_cast<std::size_t>(state->stiffness.rows()));
+  state->nodes.forces.resize(state->nodes.x.size());
   return state;
 }
 
@@ -335,14 +338,16 @@ void NeoHookean::holdStill(const std::vector<bool>& still, const NodalVectors& x
 /// Adds what the elements of these batches do by themselves.
 void NeoHookean::evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, DeformationState& state,
                           NodalVectors& forces) const {
+  state.nodes.begin(x, forces);
   const auto add = [&](BatchRange range, const auto& material) {
-    addNeoHookeanForces(tets_->batches, range, material, kTangentChange, x.data(), state.tangent_deformations,
-                        state.deformations, state.changed, patches_ ? state.volume_ratios.data() : nullptr,
-                        forces.data());
+    addNeoHookeanForces(tets_->batches, range, material, kTangentChange, state.nodes.x.data(),
+                        state.tangent_deformations, state.deformations, state.changed,
+                        patches_ ? state.volume_ratios.data() : nullptr, state.nodes.forces.data());
   };
   for (const BatchRange range : ranges) {
     tets_->batch_materials.empty() ? add(range, tets_->material) : add(range, tets_->batch_materials);
   }
+  unpad(state.nodes.forces, forces);
 }
 
 /// Adds the forces of the patches that are still, or of those that are not, and brings their stiffness up to date.
@@ -350,9 +355,12 @@ void NeoHookean::evaluate(const NodalVectors& x, const std::vector<BatchRange>& 
 void NeoHookean::addPatches(const std::vector<BatchRange>& ranges, bool still, DeformationState& state,
                             NodalVectors& forces) const {
   patches_->meanPressures(tets_->batches, ranges, state.volume_ratios, 1.0, still, state.held_patches, state.pressures);
+  pad(forces, state.nodes.forces);
   for (const BatchRange range : ranges) {
-    addCofactorForces(tets_->batches, range, state.deformations, patches_->of_batch, state.pressures, forces.data());
+    addCofactorForces(tets_->batches, range, state.deformations, patches_->of_batch, state.pressures,
+                      state.nodes.forces.data());
   }
+  unpad(state.nodes.forces, forces);
   markStalePatches(ranges, still, state);
   refreshPatches(state);
 }

@@ -17,24 +17,24 @@ using MatrixBatch = std::array<std::array<double, kLanes>, 9>;
 constexpr double kFlat = 0.5;
 constexpr double kFlatModulus = 8.0;
 
-/// Computes `deformations` F at positions x (3 x n) and adds the elastic forces to `forces` (3 x n). `changed[b]` gets
+/// Computes `deformations` F at positions x and adds the elastic forces to `forces`. `changed[b]` gets
 /// bit `lane` set where F is further than `tangent_change` (Frobenius norm) away from `tangents`. `volume_ratios`, unless null,
 /// gets J = det F of every element, by batch; elements are then those of patches, which resist being flat by themselves.
 /// @param material lambda and mu of the model, which are not Lame's.
 void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
-                         double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
+                         double tangent_change, const PaddedVector* x, const std::vector<MatrixBatch>& tangents,
                          std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed,
-                         ElementValues* volume_ratios, double* forces);
+                         ElementValues* volume_ratios, PaddedVector* forces);
 void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range,
-                         const std::vector<BatchMaterial>& materials, double tangent_change, const double* x,
+                         const std::vector<BatchMaterial>& materials, double tangent_change, const PaddedVector* x,
                          const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
-                         std::vector<unsigned char>& changed, ElementValues* volume_ratios, double* forces);
+                         std::vector<unsigned char>& changed, ElementValues* volume_ratios, PaddedVector* forces);
 
 /// Adds the forces of stresses p dJ/dF: -V p dJ/dF grad N. `group_of` names for each element of a batch its place in
 /// `pressures`, Pa.
 void addCofactorForces(const std::vector<ElementBatch>& batches, BatchRange range,
                        const std::vector<MatrixBatch>& deformations,
                        const std::vector<std::array<int, kLanes>>& group_of, const std::vector<double>& pressures,
-                       double* forces);
+                       PaddedVector* forces);
 
 }  // namespace tissue_contact
