@@ -42,37 +42,33 @@ inline void unpad(const PaddedVectors& from, NodalVectors& to) {
 
 TISSUE_CONTACT_INLINE void load(const PaddedVector& from, Lanes& to) { std::memcpy(&to, &from, sizeof(Lanes)); }
 
+/// to[r] is place r of a, b, c and d. What nobody uses of it costs nothing.
+TISSUE_CONTACT_INLINE void transpose(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d, Lanes* to) {
+  const Lanes even_ab = TISSUE_CONTACT_SHUFFLE(a, b, 0, 4, 2, 6);
+  const Lanes even_cd = TISSUE_CONTACT_SHUFFLE(c, d, 0, 4, 2, 6);
+  const Lanes odd_ab = TISSUE_CONTACT_SHUFFLE(a, b, 1, 5, 3, 7);
+  const Lanes odd_cd = TISSUE_CONTACT_SHUFFLE(c, d, 1, 5, 3, 7);
+  to[0] = TISSUE_CONTACT_SHUFFLE(even_ab, even_cd, 0, 1, 4, 5);
+  to[1] = TISSUE_CONTACT_SHUFFLE(odd_ab, odd_cd, 0, 1, 4, 5);
+  to[2] = TISSUE_CONTACT_SHUFFLE(even_ab, even_cd, 2, 3, 6, 7);
+  to[3] = TISSUE_CONTACT_SHUFFLE(odd_ab, odd_cd, 2, 3, 6, 7);
+}
+
 /// x, y and z of four nodes.
 TISSUE_CONTACT_INLINE void gather(const PaddedVector* v, const int* nodes, Lanes* to) {
-  Lanes a, b, c, d;
+  Lanes a, b, c, d, all[kLanes];
   load(v[nodes[0]], a);
   load(v[nodes[1]], b);
   load(v[nodes[2]], c);
   load(v[nodes[3]], d);
-  const Lanes xz_ab = TISSUE_CONTACT_SHUFFLE(a, b, 0, 4, 2, 6);
-  const Lanes xz_cd = TISSUE_CONTACT_SHUFFLE(c, d, 0, 4, 2, 6);
-  const Lanes y_ab = TISSUE_CONTACT_SHUFFLE(a, b, 1, 5, 3, 7);
-  const Lanes y_cd = TISSUE_CONTACT_SHUFFLE(c, d, 1, 5, 3, 7);
-  to[0] = TISSUE_CONTACT_SHUFFLE(xz_ab, xz_cd, 0, 1, 4, 5);
-  to[1] = TISSUE_CONTACT_SHUFFLE(y_ab, y_cd, 0, 1, 4, 5);
-  to[2] = TISSUE_CONTACT_SHUFFLE(xz_ab, xz_cd, 2, 3, 6, 7);
-}
-
-/// The vectors of four nodes, one each, of their x, y and z.
-TISSUE_CONTACT_INLINE void transpose(const Lanes* from, Lanes* to) {
-  const Lanes xy_ac = TISSUE_CONTACT_SHUFFLE(from[0], from[1], 0, 4, 2, 6);
-  const Lanes xy_bd = TISSUE_CONTACT_SHUFFLE(from[0], from[1], 1, 5, 3, 7);
-  const Lanes z_bd = TISSUE_CONTACT_SHUFFLE(from[2], from[2], 1, 1, 3, 3);
-  to[0] = TISSUE_CONTACT_SHUFFLE(xy_ac, from[2], 0, 1, 4, 5);
-  to[1] = TISSUE_CONTACT_SHUFFLE(xy_bd, z_bd, 0, 1, 4, 5);
-  to[2] = TISSUE_CONTACT_SHUFFLE(xy_ac, from[2], 2, 3, 6, 7);
-  to[3] = TISSUE_CONTACT_SHUFFLE(xy_bd, z_bd, 2, 3, 6, 7);
+  transpose(a, b, c, d, all);
+  for (int r = 0; r < 3; ++r) to[r] = all[r];
 }
 
 /// Node after node, for two may be the same.
 TISSUE_CONTACT_INLINE void scatterAdd(const Lanes* from, const int* nodes, PaddedVector* v) {
   Lanes added[kLanes];
-  transpose(from, added);
+  transpose(from[0], from[1], from[2], from[2], added);
   for (int lane = 0; lane < kLanes; ++lane) {
     Lanes sum;
     load(v[nodes[lane]], sum);
@@ -84,7 +80,7 @@ TISSUE_CONTACT_INLINE void scatterAdd(const Lanes* from, const int* nodes, Padde
 /// The last one first: where a node is there twice, its first vector stays.
 TISSUE_CONTACT_INLINE void scatter(const Lanes* from, const int* nodes, PaddedVector* v) {
   Lanes vectors[kLanes];
-  transpose(from, vectors);
+  transpose(from[0], from[1], from[2], from[2], vectors);
   for (int lane = kLanes; lane-- > 0;) std::memcpy(&v[nodes[lane]], &vectors[lane], sizeof(Lanes));
 }
 

@@ -23,6 +23,11 @@ struct alignas(32) SliceVectors {
   std::array<std::array<double, kLanes>, 3> at;
 };
 
+/// Symmetric blocks of four rows: xx, xy, xz, yy, yz, zz.
+struct alignas(32) SymmetricBlocks {
+  std::array<std::array<double, kLanes>, 6> at;
+};
+
 TISSUE_CONTACT_INLINE void load(const double* from, Lanes& to) { std::memcpy(&to, from, sizeof(Lanes)); }
 
 TISSUE_CONTACT_INLINE void load(const SliceVectors& from, LaneVectors& to) {
@@ -31,8 +36,17 @@ TISSUE_CONTACT_INLINE void load(const SliceVectors& from, LaneVectors& to) {
   load(from.at[2].data(), to[2]);
 }
 
+// One by one: copied at once or in a loop, they would go through the stack.
+TISSUE_CONTACT_INLINE void load(const SymmetricBlocks& from, Lanes (&to)[6]) {
+  load(from.at[0].data(), to[0]);
+  load(from.at[1].data(), to[1]);
+  load(from.at[2].data(), to[2]);
+  load(from.at[3].data(), to[3]);
+  load(from.at[4].data(), to[4]);
+  load(from.at[5].data(), to[5]);
+}
+
 TISSUE_CONTACT_INLINE void load(const BlockLanes& from, Lanes (&to)[9]) {
-  // One by one: copied at once or in a loop, they would go through the stack.
   load(from.at[0].data(), to[0]);
   load(from.at[1].data(), to[1]);
   load(from.at[2].data(), to[2]);
@@ -78,6 +92,14 @@ TISSUE_CONTACT_INLINE void addProduct(const BlockLanes& blocks, const LaneVector
   sum[0] += m[0] * v[0] + m[3] * v[1] + m[6] * v[2];
   sum[1] += m[1] * v[0] + m[4] * v[1] + m[7] * v[2];
   sum[2] += m[2] * v[0] + m[5] * v[1] + m[8] * v[2];
+}
+
+TISSUE_CONTACT_INLINE void addProduct(const SymmetricBlocks& blocks, const LaneVectors& v, LaneVectors& sum) {
+  Lanes m[6];
+  load(blocks, m);
+  sum[0] += m[0] * v[0] + m[1] * v[1] + m[2] * v[2];
+  sum[1] += m[1] * v[0] + m[3] * v[1] + m[4] * v[2];
+  sum[2] += m[2] * v[0] + m[4] * v[1] + m[5] * v[2];
 }
 
 /// blocks' * v.

@@ -5,11 +5,14 @@
 namespace tissue_contact {
 namespace {
 
+/// Where Matrix3 has what SymmetricBlocks have.
+constexpr std::array<std::size_t, 6> kLowerPart = {0, 1, 2, 4, 5, 8};
+
 /// What the kernels read and write, of one body.
 struct Work {
   const BodySystem& body;
-  const std::vector<BlockLanes>& diagonal;
-  const std::vector<BlockLanes>& inverse;
+  const std::vector<SymmetricBlocks>& diagonal;
+  const std::vector<SymmetricBlocks>& inverse;
   const std::vector<SliceVectors>& right;
   const std::vector<std::array<double, kLanes>>& free;
   PaddedVector* lower;
@@ -110,25 +113,25 @@ void runCarry(const Work& all, int slice) {
   all.body.D != nullptr ? carry<true>(all, slice) : carry<false>(all, slice);
 }
 
-/// Of symmetric blocks, in closed form: cofactors over the determinant.
-TISSUE_CONTACT_INLINE void invert(const BlockLanes& blocks, const double* free, BlockLanes& inverse) {
-  Lanes m[9], by;
+/// In closed form: cofactors over the determinant.
+TISSUE_CONTACT_INLINE void invert(const SymmetricBlocks& blocks, const double* free, SymmetricBlocks& inverse) {
+  Lanes m[6], by;
   load(blocks, m);
   load(free, by);
-  const Lanes xx = m[4] * m[8] - m[7] * m[5];
-  const Lanes xy = m[7] * m[2] - m[1] * m[8];
-  const Lanes xz = m[1] * m[5] - m[4] * m[2];
-  const Lanes yy = m[0] * m[8] - m[6] * m[2];
-  const Lanes yz = m[6] * m[1] - m[0] * m[7];
-  const Lanes zz = m[0] * m[4] - m[3] * m[1];
-  by /= m[0] * xx + m[3] * xy + m[6] * xz;
-  const Lanes result[9] = {by * xx, by * xy, by * xz, by * xy, by * yy, by * yz, by * xz, by * yz, by * zz};
-  std::memcpy(inverse.at.data(), result, sizeof(result));
+  const Lanes xx = m[3] * m[5] - m[4] * m[4];
+  const Lanes xy = m[4] * m[2] - m[1] * m[5];
+  const Lanes xz = m[1] * m[4] - m[3] * m[2];
+  const Lanes yy = m[0] * m[5] - m[2] * m[2];
+  const Lanes yz = m[2] * m[1] - m[0] * m[4];
+  const Lanes zz = m[0] * m[3] - m[1] * m[1];
+  by /= m[0] * xx + m[1] * xy + m[2] * xz;
+  const Lanes result[6] = {by * xx, by * xy, by * xz, by * yy, by * yz, by * zz};
+  for (std::size_t k = 0; k < 6; ++k) std::memcpy(inverse.at[k].data(), &result[k], sizeof(Lanes));
 }
 
 TISSUE_CONTACT_CLONES
-void invertAll(const std::vector<BlockLanes>& blocks, const std::vector<std::array<double, kLanes>>& free,
-               std::vector<BlockLanes>& inverse) {
+void invertAll(const std::vector<SymmetricBlocks>& blocks, const std::vector<std::array<double, kLanes>>& free,
+               std::vector<SymmetricBlocks>& inverse) {
   for (std::size_t slice = 0; slice < blocks.size(); ++slice) invert(blocks[slice], free[slice].data(), inverse[slice]);
 }
 
@@ -158,15 +161,15 @@ void BodySweep::prepareSlices() {
     const int i = rows[place];
     const bool repeats = lane > 0 && i == rows[place - lane];
     const bool free = !repeats && !(*body.fixed)[i];
-    BlockLanes& block = diagonal_[slice];
-    const double* const stiffness = body.K->diagonal[i].data();
-    for (std::size_t m = 0; m < 9; ++m) block.at[m][lane] = free ? body.stiffness_scale * stiffness[m] : 0.0;
-    if (body.D != nullptr && free) {
-      const double* const damping = body.D->diagonal[i].data();
-      for (std::size_t m = 0; m < 9; ++m) block.at[m][lane] += body.damping_scale * damping[m];
-    }
+    SymmetricBlocks& block = diagonal_[slice];
+    const auto add = [&](double scale, const Matrix3& matrix) {
+      for (std::size_t k = 0; k < 6; ++k) block.at[k][lane] += scale * matrix.data()[kLowerPart[k]];
+    };
+    for (std::size_t k = 0; k < 6; ++k) block.at[k][lane] = 0.0;
+    if (free) add(body.stiffness_scale, body.K->diagonal[i]);
+    if (free && body.D != nullptr) add(body.damping_scale, body.D->diagonal[i]);
     const double mass = free ? body.mass[i] : 1.0;  // of rows that stay: anything with an inverse
-    for (std::size_t m = 0; m < 9; m += 4) block.at[m][lane] += mass;
+    for (const std::size_t k : {0, 3, 5}) block.at[k][lane] += mass;
     for (std::size_t r = 0; r < 3; ++r) right_[slice].at[r][lane] = body.b(static_cast<Eigen::Index>(r), i);
     free_[slice][lane] = free ? 1.0 : 0.0;
     moves_[slice] = static_cast<unsigned char>((lane > 0 ? moves_[slice] : 0) | static_cast<int>(free));
@@ -177,8 +180,8 @@ Matrix3 BodySweep::inverse(int node) const {
   if (body_ == nullptr) return Matrix3::Zero();
   const auto place = static_cast<std::size_t>(pattern().lane_of[node]);
   Matrix3 inverse;
-  for (std::size_t m = 0; m < 9; ++m) inverse.data()[m] = inverse_[place / kLanes].at[m][place % kLanes];
-  return inverse;
+  for (std::size_t k = 0; k < 6; ++k) inverse.data()[kLowerPart[k]] = inverse_[place / kLanes].at[k][place % kLanes];
+  return inverse.selfadjointView<Eigen::Lower>();
 }
 
 void BodySweep::addImpulse(int node, const Vector3& impulse_W) {

@@ -24,7 +24,7 @@ struct MeanStrain::PatchState : RotationState {
   std::vector<RotationBatch> patch_rotations;
   std::vector<RotationBatch> tangent_patch_rotations;
   std::vector<unsigned char> turned_patches;  ///< scratch
-  std::vector<Vector3> gradients;             ///< scratch
+  std::vector<PaddedGradient> gradients;      ///< scratch
   std::vector<BatchRange> moving_patches;
   std::vector<BatchRange> still_patches;
 

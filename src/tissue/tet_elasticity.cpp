@@ -1,12 +1,14 @@
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "core/rotation_by_svd.h"
 #include "tissue/element_kernel.h"
 #include "tissue/rotation_state.h"
 #include "tissue/tet_elements.h"
+#include "tissue/turned_block.h"
 
 namespace tissue_contact {
 namespace {
@@ -96,7 +98,7 @@ void TetElasticity::prepare(const NodalVectors* x, RotationState& state) const {
   state.nodes.forces.resize(state.nodes.x.size());
   if (x != nullptr && corotational_) findRotations(*x, state);
   for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
-    addStiffness(e, rotationInLane(state.tangent_rotations[e / kLanes], e % kLanes), 1.0, state);
+    addStiffness(e, rotationInLane(state.tangent_rotations[e / kLanes], e % kLanes), state);
   }
 }
 
@@ -112,11 +114,11 @@ void TetElasticity::findRotations(const NodalVectors& x, RotationState& state) c
   state.tangent_rotations = state.rotations;
 }
 
-void TetElasticity::addStiffness(std::size_t e, const Quaternion& rotation, double sign, State& state) const {
+void TetElasticity::addStiffness(std::size_t e, const Quaternion& rotation, State& state) const {
   const TetElement& element = tets_->elements[e];
   const Eigen::Matrix<double, 3, 4> c = rotation.toRotationMatrix() * tets_->shapeGradients(e);
-  const double lambda = sign * element.volume * element.lame.lambda;
-  const double mu = sign * element.volume * element.lame.mu;
+  const double lambda = element.volume * element.lame.lambda;
+  const double mu = element.volume * element.lame.mu;
   for (int i = 0; i < 4; ++i) {
     for (int j = i; j < 4; ++j) {
       if (element.slots(i, j) < 0) continue;
@@ -127,12 +129,35 @@ void TetElasticity::addStiffness(std::size_t e, const Quaternion& rotation, doub
   }
 }
 
+/// Puts that of `rotation` in the place of that of `old`.
+void TetElasticity::turnStiffness(std::size_t e, const Quaternion& old, const Quaternion& rotation,
+                                  State& state) const {
+  const TetElement& element = tets_->elements[e];
+  const Eigen::Matrix<double, 3, 4> gradients = tets_->shapeGradients(e);
+  const Matrix3 R = rotation.toRotationMatrix();
+  const Matrix3 R_old = old.toRotationMatrix();
+  std::array<PaddedGradient, 4> a, b;
+  for (std::size_t i = 0; i < 4; ++i) {
+    a[i] = turnedGradient(R, gradients.col(static_cast<int>(i)));
+    b[i] = turnedGradient(R_old, gradients.col(static_cast<int>(i)));
+  }
+  const double lambda = element.volume * element.lame.lambda;
+  const double mu = element.volume * element.lame.mu;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = i; j < 4; ++j) {
+      if (element.slots(i, j) < 0) continue;
+      addBlock(i == j, element.slots(i, j), turnedBlock(lambda, mu, a[i], a[j], b[i], b[j]), element.damping_s,
+               state.stiffness, state.damping);
+    }
+  }
+}
+
 void TetElasticity::refreshStiffness(std::size_t batch, RotationState& state) const {
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::size_t e = batch * kLanes + lane;
     if ((state.turned[batch] >> lane & 1) == 0 || e >= tets_->elements.size()) continue;
-    addStiffness(e, rotationInLane(state.tangent_rotations[batch], lane), -1.0, state);
-    addStiffness(e, rotationInLane(state.rotations[batch], lane), 1.0, state);
+    turnStiffness(e, rotationInLane(state.tangent_rotations[batch], lane), rotationInLane(state.rotations[batch], lane),
+                  state);
     for (std::size_t i = 0; i < 4; ++i) state.tangent_rotations[batch][i][lane] = state.rotations[batch][i][lane];
   }
 }

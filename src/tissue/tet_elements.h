@@ -18,7 +18,6 @@ namespace tissue_contact {
 
 /// What of a tetrahedron the force kernels do not need, or not one by one.
 struct TetElement {
-  Tetrahedron nodes;
   double volume;        ///< m^3
   LameParameters lame;  ///< Pa; for some models their own parameters in the place of Lame's
   double damping_s;     ///< what of its stiffness goes into State::damping

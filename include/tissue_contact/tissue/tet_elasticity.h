@@ -75,7 +75,8 @@ class TetElasticity : public Elasticity {
   void evaluateStill(const NodalVectors& x, RotationState& state) const;
   void evaluate(const std::vector<BatchRange>& ranges, RotationState& state) const;
   void findRotations(const NodalVectors& x, RotationState& state) const;
-  void addStiffness(std::size_t element, const Quaternion& rotation, double sign, State& state) const;
+  void addStiffness(std::size_t element, const Quaternion& rotation, State& state) const;
+  void turnStiffness(std::size_t element, const Quaternion& old, const Quaternion& rotation, State& state) const;
   void adaptRotations(const NodalVectors& x, RotationState& state) const;
 
   bool corotational_;
