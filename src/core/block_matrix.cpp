@@ -132,10 +132,10 @@ void addEntries(const Neighbours& neighbours, const std::vector<int>& slice, Blo
     for (const int column : neighbours[slice[lane]]) {
       if (column < slice[lane]) continue;
       if (next == entries) {
-        for (const int row : rows) pattern.columns.push_back(3 * row);
+        pattern.columns.insert(pattern.columns.end(), rows.begin(), rows.end());
         ++entries;
       }
-      pattern.columns[static_cast<std::size_t>(next++) * BlockPattern::kRows + lane] = 3 * column;
+      pattern.columns[static_cast<std::size_t>(next++) * BlockPattern::kRows + lane] = column;
     }
   }
   pattern.first.push_back(entries);
@@ -182,7 +182,7 @@ std::shared_ptr<const BlockPattern> BlockPattern::fromElements(const std::vector
 int BlockPattern::find(int row, int column) const {
   if (row == column) return -1;
   const int low = std::min(row, column);
-  const int wanted = 3 * std::max(row, column);
+  const int wanted = std::max(row, column);
   const int lane = lane_of[low] % kRows;
   int from = first[lane_of[low] / kRows];
   int to = first[lane_of[low] / kRows + 1];
@@ -190,7 +190,7 @@ int BlockPattern::find(int row, int column) const {
     const int middle = (from + to) / 2;
     const int there = columns[kRows * middle + lane];
     if (there == wanted) return placeOf(middle, lane, row > column);
-    if (there < wanted && there != 3 * low) {
+    if (there < wanted && there != low) {
       from = middle + 1;
     } else {
       to = middle;

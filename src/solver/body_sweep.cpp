@@ -5,37 +5,31 @@
 namespace tissue_contact {
 namespace {
 
+/// Where Matrix3 has what SymmetricBlocks have.
+constexpr std::array<std::size_t, 6> kLowerPart = {0, 1, 2, 4, 5, 8};
+
 /// What the kernels read and write, of one body.
 struct Work {
   const BodySystem& body;
-  const std::vector<BlockLanes>& diagonal;
-  const std::vector<BlockLanes>& inverse;
+  const std::vector<SymmetricBlocks>& diagonal;
+  const std::vector<SymmetricBlocks>& inverse;
   const std::vector<SliceVectors>& right;
   const std::vector<std::array<double, kLanes>>& free;
-  double* lower;
-  double* v;
+  PaddedVector* lower;
+  PaddedVector* v;
 };
-
-TISSUE_CONTACT_INLINE void store(const LaneVectors& from, const int* at, double* v) {
-  for (int lane = kLanes; lane-- > 0;) {  // the first one last: a slice with fewer rows repeats it, unmoved
-    double* const to = v + at[lane];
-    to[0] = from[0][lane];
-    to[1] = from[1][lane];
-    to[2] = from[2][lane];
-  }
-}
 
 /// Gauss-Seidel step of a slice's rows. @param squares |defect|^2 of each free row, else 0.
 template <bool kDamped>
 TISSUE_CONTACT_INLINE void relax(const Work& all, int slice, Lanes& squares) {
   const BlockMatrix& K = *all.body.K;
-  const std::array<int, kLanes> rows = rowsOf(*K.pattern, slice);
+  const int* const rows = rowsOf(*K.pattern, slice);
   LaneVectors elastic{};
   addUpperProduct(K, slice, all.v, elastic);
   LaneVectors defect, lower, v;
   load(all.right[slice], defect);
-  gather(all.lower, rows.data(), lower);
-  gather(all.v, rows.data(), v);
+  gather(all.lower, rows, lower);
+  gather(all.v, rows, v);
   const double scale = all.body.stiffness_scale;
   defect[0] -= lower[0] + scale * elastic[0];
   defect[1] -= lower[1] + scale * elastic[1];
@@ -54,7 +48,7 @@ TISSUE_CONTACT_INLINE void relax(const Work& all, int slice, Lanes& squares) {
   defect[1] -= own[1];
   defect[2] -= own[2];
   addProduct(all.inverse[slice], defect, v);
-  store(v, rows.data(), all.v);
+  scatter(v, rows, all.v);  // a slice with fewer rows repeats the first, unmoved
   Lanes free;
   load(all.free[slice].data(), free);
   squares = free * (defect[0] * defect[0] + defect[1] * defect[1] + defect[2] * defect[2]);
@@ -65,7 +59,7 @@ template <bool kDamped>
 TISSUE_CONTACT_INLINE void carry(const Work& all, int slice) {
   const BlockMatrix& K = *all.body.K;
   LaneVectors v;
-  gather(all.v, rowsOf(*K.pattern, slice).data(), v);
+  gather(all.v, rowsOf(*K.pattern, slice), v);
   scatterMirrored(K, slice, all.body.stiffness_scale, v, all.lower);
   if (kDamped) scatterMirrored(*all.body.D, slice, all.body.damping_scale, v, all.lower);
 }
@@ -119,25 +113,25 @@ void runCarry(const Work& all, int slice) {
   all.body.D != nullptr ? carry<true>(all, slice) : carry<false>(all, slice);
 }
 
-/// Of symmetric blocks, in closed form: cofactors over the determinant.
-TISSUE_CONTACT_INLINE void invert(const BlockLanes& blocks, const double* free, BlockLanes& inverse) {
-  Lanes m[9], by;
+/// In closed form: cofactors over the determinant.
+TISSUE_CONTACT_INLINE void invert(const SymmetricBlocks& blocks, const double* free, SymmetricBlocks& inverse) {
+  Lanes m[6], by;
   load(blocks, m);
   load(free, by);
-  const Lanes xx = m[4] * m[8] - m[7] * m[5];
-  const Lanes xy = m[7] * m[2] - m[1] * m[8];
-  const Lanes xz = m[1] * m[5] - m[4] * m[2];
-  const Lanes yy = m[0] * m[8] - m[6] * m[2];
-  const Lanes yz = m[6] * m[1] - m[0] * m[7];
-  const Lanes zz = m[0] * m[4] - m[3] * m[1];
-  by /= m[0] * xx + m[3] * xy + m[6] * xz;
-  const Lanes result[9] = {by * xx, by * xy, by * xz, by * xy, by * yy, by * yz, by * xz, by * yz, by * zz};
-  std::memcpy(inverse.at.data(), result, sizeof(result));
+  const Lanes xx = m[3] * m[5] - m[4] * m[4];
+  const Lanes xy = m[4] * m[2] - m[1] * m[5];
+  const Lanes xz = m[1] * m[4] - m[3] * m[2];
+  const Lanes yy = m[0] * m[5] - m[2] * m[2];
+  const Lanes yz = m[2] * m[1] - m[0] * m[4];
+  const Lanes zz = m[0] * m[3] - m[1] * m[1];
+  by /= m[0] * xx + m[1] * xy + m[2] * xz;
+  const Lanes result[6] = {by * xx, by * xy, by * xz, by * yy, by * yz, by * zz};
+  for (std::size_t k = 0; k < 6; ++k) std::memcpy(inverse.at[k].data(), &result[k], sizeof(Lanes));
 }
 
 TISSUE_CONTACT_CLONES
-void invertAll(const std::vector<BlockLanes>& blocks, const std::vector<std::array<double, kLanes>>& free,
-               std::vector<BlockLanes>& inverse) {
+void invertAll(const std::vector<SymmetricBlocks>& blocks, const std::vector<std::array<double, kLanes>>& free,
+               std::vector<SymmetricBlocks>& inverse) {
   for (std::size_t slice = 0; slice < blocks.size(); ++slice) invert(blocks[slice], free[slice].data(), inverse[slice]);
 }
 
@@ -152,7 +146,8 @@ void BodySweep::prepare(const BodySystem& body) {
   right_.resize(slices);
   free_.resize(slices);
   moves_.resize(slices);
-  lower_.resize(3, body.K->rows());
+  lower_.resize(static_cast<std::size_t>(body.K->rows()));
+  v_.resize(lower_.size());
   prepareSlices();
   invertAll(diagonal_, free_, inverse_);
 }
@@ -166,15 +161,15 @@ void BodySweep::prepareSlices() {
     const int i = rows[place];
     const bool repeats = lane > 0 && i == rows[place - lane];
     const bool free = !repeats && !(*body.fixed)[i];
-    BlockLanes& block = diagonal_[slice];
-    const double* const stiffness = body.K->diagonal[i].data();
-    for (std::size_t m = 0; m < 9; ++m) block.at[m][lane] = free ? body.stiffness_scale * stiffness[m] : 0.0;
-    if (body.D != nullptr && free) {
-      const double* const damping = body.D->diagonal[i].data();
-      for (std::size_t m = 0; m < 9; ++m) block.at[m][lane] += body.damping_scale * damping[m];
-    }
+    SymmetricBlocks& block = diagonal_[slice];
+    const auto add = [&](double scale, const Matrix3& matrix) {
+      for (std::size_t k = 0; k < 6; ++k) block.at[k][lane] += scale * matrix.data()[kLowerPart[k]];
+    };
+    for (std::size_t k = 0; k < 6; ++k) block.at[k][lane] = 0.0;
+    if (free) add(body.stiffness_scale, body.K->diagonal[i]);
+    if (free && body.D != nullptr) add(body.damping_scale, body.D->diagonal[i]);
     const double mass = free ? body.mass[i] : 1.0;  // of rows that stay: anything with an inverse
-    for (std::size_t m = 0; m < 9; m += 4) block.at[m][lane] += mass;
+    for (const std::size_t k : {0, 3, 5}) block.at[k][lane] += mass;
     for (std::size_t r = 0; r < 3; ++r) right_[slice].at[r][lane] = body.b(static_cast<Eigen::Index>(r), i);
     free_[slice][lane] = free ? 1.0 : 0.0;
     moves_[slice] = static_cast<unsigned char>((lane > 0 ? moves_[slice] : 0) | static_cast<int>(free));
@@ -185,8 +180,8 @@ Matrix3 BodySweep::inverse(int node) const {
   if (body_ == nullptr) return Matrix3::Zero();
   const auto place = static_cast<std::size_t>(pattern().lane_of[node]);
   Matrix3 inverse;
-  for (std::size_t m = 0; m < 9; ++m) inverse.data()[m] = inverse_[place / kLanes].at[m][place % kLanes];
-  return inverse;
+  for (std::size_t k = 0; k < 6; ++k) inverse.data()[kLowerPart[k]] = inverse_[place / kLanes].at[k][place % kLanes];
+  return inverse.selfadjointView<Eigen::Lower>();
 }
 
 void BodySweep::addImpulse(int node, const Vector3& impulse_W) {
@@ -199,29 +194,29 @@ void BodySweep::follow(int node, const Vector3& change) {
   const auto add = [&](const BlockMatrix& matrix, double scale) {
     const Vector3 scaled = scale * change;
     matrix.pattern->forRow(node, [&](int j, int place) {
-      if (j > node) lower_.col(j) += matrix.block(place).transpose() * scaled;  // A is symmetric
+      if (j > node) vectorOf(lower_[j]) += matrix.block(place).transpose() * scaled;  // A is symmetric
     });
   };
   add(*body_->K, body_->stiffness_scale);
   if (body_->D != nullptr) add(*body_->D, body_->damping_scale);
 }
 
-double BodySweep::forth(int begin, int end, NodalVectors& v) {
-  return runForth({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v.data()}, moves_, begin, end);
+double BodySweep::forth(int begin, int end) {
+  return runForth({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, moves_, begin, end);
 }
 
-double BodySweep::back(int begin, int end, NodalVectors& v) {
-  return runBack({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v.data()}, moves_, begin, end);
+double BodySweep::back(int begin, int end) {
+  return runBack({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, moves_, begin, end);
 }
 
-BodySweep::SquaresOfLanes BodySweep::relaxSlice(int slice, NodalVectors& v) {
+BodySweep::SquaresOfLanes BodySweep::relaxSlice(int slice) {
   SquaresOfLanes squares{};
-  runRelax({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v.data()}, slice, squares.data());
+  runRelax({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, slice, squares.data());
   return squares;
 }
 
-void BodySweep::carrySlice(int slice, NodalVectors& v) {
-  runCarry({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v.data()}, slice);
+void BodySweep::carrySlice(int slice) {
+  runCarry({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, slice);
 }
 
 }  // namespace tissue_contact

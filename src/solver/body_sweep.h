@@ -7,6 +7,7 @@
 /// Wallach, "Alternating Methods for Sets of Linear Equations", Numer. Math. 32 (1979) 105-108).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -39,7 +40,8 @@ class BodySweep {
   /// @return |defects met|^2, (N s)^2.
   template <class Hold>
   double sweep(bool forward, const std::vector<int>& held, NodalVectors& v, const Hold& hold) {
-    if (forward) lower_.setZero();
+    if (forward) std::fill(lower_.begin(), lower_.end(), PaddedVector{});
+    pad(v, v_);
     const int slices = pattern().slices();
     int begin = 0;  // of what is left
     int end = slices;
@@ -47,16 +49,21 @@ class BodySweep {
     for (std::size_t done = 0; done < held.size();) {
       const auto next = [&] { return held[forward ? done : held.size() - 1 - done]; };
       const int slice = next() / kLanes;
-      change += forward ? forth(begin, slice, v) : back(slice + 1, end, v);
-      SquaresOfLanes squares = relaxSlice(slice, v);
+      change += forward ? forth(begin, slice) : back(slice + 1, end);
+      SquaresOfLanes squares = relaxSlice(slice);
       for (; done < held.size() && next() / kLanes == slice; ++done) {
-        if (hold(pattern().rows[next()])) squares[next() % kLanes] = 0.0;
+        const int node = pattern().rows[next()];
+        v.col(node) = vectorOf(v_[node]);
+        if (hold(node)) squares[next() % kLanes] = 0.0;
+        vectorOf(v_[node]) = v.col(node);
       }
       for (const double square : squares) change += square;
-      if (forward) carrySlice(slice, v);
+      if (forward) carrySlice(slice);
       (forward ? begin : end) = forward ? slice + 1 : slice;
     }
-    return change + (forward ? forth(begin, end, v) : back(begin, end, v));
+    change += forward ? forth(begin, end) : back(begin, end);
+    unpad(v_, v);
+    return change;
   }
 
  private:
@@ -64,18 +71,19 @@ class BodySweep {
 
   const BlockPattern& pattern() const { return *body_->K->pattern; }
   void prepareSlices();
-  double forth(int begin, int end, NodalVectors& v);
-  double back(int begin, int end, NodalVectors& v);
-  SquaresOfLanes relaxSlice(int slice, NodalVectors& v);
-  void carrySlice(int slice, NodalVectors& v);
+  double forth(int begin, int end);
+  double back(int begin, int end);
+  SquaresOfLanes relaxSlice(int slice);
+  void carrySlice(int slice);
 
-  const BodySystem* body_ = nullptr;  ///< of the step; null: it sleeps
-  std::vector<BlockLanes> diagonal_;  ///< A_ii of each slice's rows
-  std::vector<BlockLanes> inverse_;   ///< A_ii^-1, 0 for fixed nodes
-  std::vector<SliceVectors> right_;   ///< b + J'lambda, N s
-  std::vector<SquaresOfLanes> free_;  ///< 1 for a row that is free, else 0
-  std::vector<unsigned char> moves_;  ///< some row of the slice is free
-  NodalVectors lower_;                ///< sum_{j<i} A_ij v_j after the sweep forth, N s
+  const BodySystem* body_ = nullptr;       ///< of the step; null: it sleeps
+  std::vector<SymmetricBlocks> diagonal_;  ///< A_ii of each slice's rows
+  std::vector<SymmetricBlocks> inverse_;   ///< A_ii^-1, 0 for fixed nodes
+  std::vector<SliceVectors> right_;        ///< b + J'lambda, N s
+  std::vector<SquaresOfLanes> free_;       ///< 1 for a row that is free, else 0
+  std::vector<unsigned char> moves_;       ///< some row of the slice is free
+  PaddedVectors lower_;                    ///< sum_{j<i} A_ij v_j after the sweep forth, N s
+  PaddedVectors v_;                        ///< scratch: what a sweep works on, m/s
 };
 
 }  // namespace tissue_contact

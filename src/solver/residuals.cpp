@@ -61,13 +61,13 @@ double kineticAngle(const CoulombLaw& law, const Vector2& friction, const Vector
 TISSUE_CONTACT_INLINE void subtractOffDiagonal(const BlockMatrix& matrix, double scale, const NodalVectors& v,
                                                NodalVectors& defect) {
   for (int slice = 0; slice < matrix.pattern->slices(); ++slice) {
-    const std::array<int, kLanes> rows = rowsOf(*matrix.pattern, slice);
+    const int* const rows = rowsOf(*matrix.pattern, slice);
     LaneVectors own;
-    gather(v.data(), rows.data(), own);
+    gather(v.data(), rows, own);
     LaneVectors sum{};
     addUpperProduct(matrix, slice, v.data(), sum);
     const LaneVectors product = {-scale * sum[0], -scale * sum[1], -scale * sum[2]};
-    scatterAdd(product, rows.data(), defect.data());
+    scatterAdd(product, rows, defect.data());
     scatterMirrored(matrix, slice, -scale, own, defect.data());
   }
 }

@@ -176,10 +176,10 @@ TISSUE_CONTACT_INLINE LaneQuaternion shareOf(const LaneQuaternion& q, double sha
 
 template <typename Material>
 TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches, BatchRange range,
-                                        const Material& material, double tangent_angle, double share, const double* x,
-                                        const std::vector<RotationBatch>& tangents,
+                                        const Material& material, double tangent_angle, double share,
+                                        const PaddedVector* x, const std::vector<RotationBatch>& tangents,
                                         std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
-                                        double* forces) {
+                                        PaddedVector* forces) {
   for (std::size_t b = range.begin; b < range.end; ++b) {
     LaneMatrix F, R, S, P;
     typename Material::Value lambda, mu;
@@ -206,7 +206,7 @@ TISSUE_CONTACT_INLINE void watchTurn(const LaneMatrix& F, Lanes& most) {
 
 template <bool kWatch, typename Material>
 TISSUE_CONTACT_INLINE void linear(const std::vector<ElementBatch>& batches, BatchRange range, const Material& material,
-                                  const double* x, double* forces, double* turn_squared) {
+                                  const PaddedVector* x, PaddedVector* forces, double* turn_squared) {
   Lanes most = {0.0, 0.0, 0.0, 0.0};
   for (std::size_t b = range.begin; b < range.end; ++b) {
     LaneMatrix F, P;
@@ -249,10 +249,11 @@ TISSUE_CONTACT_INLINE void relax(const Lanes* d, const std::vector<PronyStep>& s
 
 template <typename Material>
 TISSUE_CONTACT_INLINE void overstress(const std::vector<ElementBatch>& batches, const Material& material, bool turns,
-                                      double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
-                                      std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
-                                      const std::vector<PronyStep>& steps, std::vector<StrainBatch>& strains,
-                                      std::vector<StrainBatch>& held, double* forces) {
+                                      double tangent_angle, const PaddedVector* x,
+                                      const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
+                                      std::vector<unsigned char>& turned, const std::vector<PronyStep>& steps,
+                                      std::vector<StrainBatch>& strains, std::vector<StrainBatch>& held,
+                                      PaddedVector* forces) {
   constexpr std::size_t kPlace[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2};  // of a matrix entry among the six
   for (std::size_t b = 0; b < batches.size(); ++b) {
     LaneMatrix F, R, S, P;
@@ -281,40 +282,41 @@ TISSUE_CONTACT_INLINE void overstress(const std::vector<ElementBatch>& batches, 
 
 TISSUE_CONTACT_CLONES
 void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
-                           double tangent_angle, double share, const double* x,
+                           double tangent_angle, double share, const PaddedVector* x,
                            const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
-                           std::vector<unsigned char>& turned, double* forces) {
+                           std::vector<unsigned char>& turned, PaddedVector* forces) {
   corotational(batches, range, UniformMaterial{material}, tangent_angle, share, x, tangents, rotations, turned, forces);
 }
 
 TISSUE_CONTACT_CLONES
 void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range,
                            const std::vector<BatchMaterial>& materials, double tangent_angle, double share,
-                           const double* x, const std::vector<RotationBatch>& tangents,
-                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces) {
+                           const PaddedVector* x, const std::vector<RotationBatch>& tangents,
+                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
+                           PaddedVector* forces) {
   corotational(batches, range, VaryingMaterial{materials}, tangent_angle, share, x, tangents, rotations, turned,
                forces);
 }
 
 TISSUE_CONTACT_CLONES
 void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
-                     const double* x, double* forces, double* turn_squared) {
+                     const PaddedVector* x, PaddedVector* forces, double* turn_squared) {
   turn_squared == nullptr ? linear<false>(batches, range, UniformMaterial{material}, x, forces, nullptr)
                           : linear<true>(batches, range, UniformMaterial{material}, x, forces, turn_squared);
 }
 
 TISSUE_CONTACT_CLONES
 void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range,
-                     const std::vector<BatchMaterial>& materials, const double* x, double* forces,
+                     const std::vector<BatchMaterial>& materials, const PaddedVector* x, PaddedVector* forces,
                      double* turn_squared) {
   turn_squared == nullptr ? linear<false>(batches, range, VaryingMaterial{materials}, x, forces, nullptr)
                           : linear<true>(batches, range, VaryingMaterial{materials}, x, forces, turn_squared);
 }
 
 TISSUE_CONTACT_CLONES
-void addPatchForces(const PatchElements& patches, BatchRange range, bool turns, double tangent_angle, const double* x,
-                    const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
-                    std::vector<unsigned char>& turned, double* forces) {
+void addPatchForces(const PatchElements& patches, BatchRange range, bool turns, double tangent_angle,
+                    const PaddedVector* x, const std::vector<RotationBatch>& tangents,
+                    std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, PaddedVector* forces) {
   const VaryingMaterial material{patches.materials};
   for (std::size_t b = range.begin; b < range.end; ++b) {
     const PatchBatch& batch = patches.batches[b];
@@ -335,20 +337,20 @@ void addPatchForces(const PatchElements& patches, BatchRange range, bool turns, 
 
 TISSUE_CONTACT_CLONES
 void addOverstressForces(const std::vector<ElementBatch>& batches, const LameParameters& material, bool turns,
-                         double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
+                         double tangent_angle, const PaddedVector* x, const std::vector<RotationBatch>& tangents,
                          std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
                          const std::vector<PronyStep>& steps, std::vector<StrainBatch>& strains,
-                         std::vector<StrainBatch>& held, double* forces) {
+                         std::vector<StrainBatch>& held, PaddedVector* forces) {
   overstress(batches, UniformMaterial{material}, turns, tangent_angle, x, tangents, rotations, turned, steps, strains,
              held, forces);
 }
 
 TISSUE_CONTACT_CLONES
 void addOverstressForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
-                         bool turns, double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
-                         std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
-                         const std::vector<PronyStep>& steps, std::vector<StrainBatch>& strains,
-                         std::vector<StrainBatch>& held, double* forces) {
+                         bool turns, double tangent_angle, const PaddedVector* x,
+                         const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
+                         std::vector<unsigned char>& turned, const std::vector<PronyStep>& steps,
+                         std::vector<StrainBatch>& strains, std::vector<StrainBatch>& held, PaddedVector* forces) {
   overstress(batches, VaryingMaterial{materials}, turns, tangent_angle, x, tangents, rotations, turned, steps, strains,
              held, forces);
 }

@@ -20,29 +20,30 @@ using RotationBatch = std::array<std::array<double, kLanes>, 4>;
 /// A number for each of four elements.
 using ElementValues = std::array<double, kLanes>;
 
-/// For the batches of `range`: brings `rotations` up to date with positions x (3 x n) and adds the elastic forces to `forces` (3 x n).
+/// For the batches of `range`: brings `rotations` up to date with positions x and adds the elastic forces to `forces`.
 /// `turned[b]` gets bit `lane` set where the rotation is more than `tangent_angle` (rad, small) away from `tangents`.
 /// The forces are those of `share` (0 to 1) of each rotation.
 void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
-                           double tangent_angle, double share, const double* x,
+                           double tangent_angle, double share, const PaddedVector* x,
                            const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
-                           std::vector<unsigned char>& turned, double* forces);
+                           std::vector<unsigned char>& turned, PaddedVector* forces);
 void addCorotationalForces(const std::vector<ElementBatch>& batches, BatchRange range,
                            const std::vector<BatchMaterial>& materials, double tangent_angle, double share,
-                           const double* x, const std::vector<RotationBatch>& tangents,
-                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, double* forces);
+                           const PaddedVector* x, const std::vector<RotationBatch>& tangents,
+                           std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
+                           PaddedVector* forces);
 
 /// The same without rotations. `turn_squared`, unless null, is raised to the square of the largest turn, rad, where small.
 void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
-                     const double* x, double* forces, double* turn_squared);
+                     const PaddedVector* x, PaddedVector* forces, double* turn_squared);
 void addLinearForces(const std::vector<ElementBatch>& batches, BatchRange range,
-                     const std::vector<BatchMaterial>& materials, const double* x, double* forces,
+                     const std::vector<BatchMaterial>& materials, const PaddedVector* x, PaddedVector* forces,
                      double* turn_squared);
 
 /// The same of patches as elements, turning (`turns`) or linear: their strain is that of their mean F. All by batches of patches.
-void addPatchForces(const PatchElements& patches, BatchRange range, bool turns, double tangent_angle, const double* x,
-                    const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
-                    std::vector<unsigned char>& turned, double* forces);
+void addPatchForces(const PatchElements& patches, BatchRange range, bool turns, double tangent_angle,
+                    const PaddedVector* x, const std::vector<RotationBatch>& tangents,
+                    std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, PaddedVector* forces);
 
 /// Symmetric matrices of four elements: xx, yy, zz, xy, yz, zx.
 using StrainBatch = std::array<ElementValues, 6>;
@@ -58,14 +59,14 @@ struct PronyStep {
 /// addCorotationalForces() does (where `turns`; else R = I), takes the deviator d of R'F's strain and h <- decay h + gain
 /// (d - last d). `held` keeps h, term after term for each batch; `strains` the last d.
 void addOverstressForces(const std::vector<ElementBatch>& batches, const LameParameters& material, bool turns,
-                         double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
+                         double tangent_angle, const PaddedVector* x, const std::vector<RotationBatch>& tangents,
                          std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
                          const std::vector<PronyStep>& steps, std::vector<StrainBatch>& strains,
-                         std::vector<StrainBatch>& held, double* forces);
+                         std::vector<StrainBatch>& held, PaddedVector* forces);
 void addOverstressForces(const std::vector<ElementBatch>& batches, const std::vector<BatchMaterial>& materials,
-                         bool turns, double tangent_angle, const double* x, const std::vector<RotationBatch>& tangents,
-                         std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
-                         const std::vector<PronyStep>& steps, std::vector<StrainBatch>& strains,
-                         std::vector<StrainBatch>& held, double* forces);
+                         bool turns, double tangent_angle, const PaddedVector* x,
+                         const std::vector<RotationBatch>& tangents, std::vector<RotationBatch>& rotations,
+                         std::vector<unsigned char>& turned, const std::vector<PronyStep>& steps,
+                         std::vector<StrainBatch>& strains, std::vector<StrainBatch>& held, PaddedVector* forces);
 
 }  // namespace tissue_contact

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <vector>
 
-#include "core/lanes.h"
+#include "core/padded_vectors.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/tissue/element_materials.h"
 
@@ -18,6 +18,22 @@ struct ElementBatch {
   std::array<std::array<double, kLanes>, 9> rest_inverse;  ///< D_rest^-1, column-major, 1/m
   std::array<double, kLanes> volume;                       ///< m^3; 0 in unused lanes
   std::array<Tetrahedron, kLanes> nodes;
+};
+
+/// Of all nodes, while kernels work on them.
+struct KernelNodes {
+  PaddedVectors x;       ///< m
+  PaddedVectors forces;  ///< N
+
+  /// @param held forces to begin with; without columns: none.
+  void begin(const NodalVectors& positions, const NodalVectors& held) {
+    pad(positions, x);
+    if (held.cols() > 0) {
+      pad(held, forces);
+    } else {
+      forces.assign(x.size(), PaddedVector{});
+    }
+  }
 };
 
 /// Batches [begin, end).
@@ -53,28 +69,18 @@ TISSUE_CONTACT_INLINE unsigned char bits(const Mask& mask) {
   return set;
 }
 
-/// Place r of a node of each of four elements. From memory straight into lanes: a vector put together in memory would have to
-/// wait for its four stores.
-TISSUE_CONTACT_INLINE void gather(const std::array<int, kLanes>& nodes, const double* x, std::size_t r, Lanes& to) {
-  const auto at = [&](std::size_t lane) { return x[3 * static_cast<std::size_t>(nodes[lane]) + r]; };
-  to = Lanes{at(0), at(1), at(2), at(3)};
-}
-
 /// Node `corner` of each of the four elements.
 TISSUE_CONTACT_INLINE std::array<int, kLanes> cornerOf(const ElementBatch& batch, std::size_t corner) {
   return {batch.nodes[0][corner], batch.nodes[1][corner], batch.nodes[2][corner], batch.nodes[3][corner]};
 }
 
 /// F = D D_rest^-1.
-TISSUE_CONTACT_INLINE void deformationGradients(const ElementBatch& batch, const double* x, LaneMatrix& F) {
-  Lanes D[9];
-  for (std::size_t r = 0; r < 3; ++r) {
-    Lanes origin;
-    gather(cornerOf(batch, 0), x, r, origin);
-    for (std::size_t c = 0; c < 3; ++c) {
-      gather(cornerOf(batch, c + 1), x, r, D[r + 3 * c]);
-      D[r + 3 * c] -= origin;
-    }
+TISSUE_CONTACT_INLINE void deformationGradients(const ElementBatch& batch, const PaddedVector* x, LaneMatrix& F) {
+  Lanes origin[3], D[9];
+  gather(x, cornerOf(batch, 0).data(), origin);
+  for (std::size_t c = 0; c < 3; ++c) {
+    gather(x, cornerOf(batch, c + 1).data(), &D[3 * c]);
+    for (std::size_t r = 0; r < 3; ++r) D[r + 3 * c] -= origin[r];
   }
   for (std::size_t c = 0; c < 3; ++c) {
     Lanes a, b, d;
@@ -103,25 +109,8 @@ struct VaryingMaterial {
   using Value = Lanes;
 };
 
-/// Adds a vector to a node of each of four elements: x and y as a pair, since half as many additions wait for each other
-/// where elements share a node.
-TISSUE_CONTACT_INLINE void scatter(const std::array<int, kLanes>& nodes, const Lanes* vector, double* all) {
-  using Pair = double __attribute__((vector_size(2 * sizeof(double))));
-  const Lanes even = TISSUE_CONTACT_SHUFFLE(vector[0], vector[1], 0, 4, 2, 6);  // x, y of lanes 0 and 2
-  const Lanes odd = TISSUE_CONTACT_SHUFFLE(vector[0], vector[1], 1, 5, 3, 7);
-  const Pair pairs[kLanes] = {{even[0], even[1]}, {odd[0], odd[1]}, {even[2], even[3]}, {odd[2], odd[3]}};
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    double* const at = all + 3 * static_cast<std::ptrdiff_t>(nodes[lane]);
-    Pair sum;
-    std::memcpy(&sum, at, sizeof(Pair));
-    sum += pairs[lane];
-    std::memcpy(at, &sum, sizeof(Pair));
-    at[2] += vector[2][lane];
-  }
-}
-
 /// Forces -V P grad N of first Piola-Kirchhoff stress P, added to the nodes.
-TISSUE_CONTACT_INLINE void addStressForces(const ElementBatch& batch, const LaneMatrix& P, double* forces) {
+TISSUE_CONTACT_INLINE void addStressForces(const ElementBatch& batch, const LaneMatrix& P, PaddedVector* forces) {
   Lanes volume;
   load(batch.volume, volume);
   Lanes H[9];
@@ -134,9 +123,9 @@ TISSUE_CONTACT_INLINE void addStressForces(const ElementBatch& batch, const Lane
       H[r + 3 * node] = -volume * (P.m[r] * g0 + P.m[r + 3] * g1 + P.m[r + 6] * g2);
     }
   }
-  for (std::size_t node = 0; node < 3; ++node) scatter(cornerOf(batch, node + 1), &H[3 * node], forces);
+  for (std::size_t node = 0; node < 3; ++node) scatterAdd(&H[3 * node], cornerOf(batch, node + 1).data(), forces);
   const Lanes rest[3] = {-(H[0] + H[3] + H[6]), -(H[1] + H[4] + H[7]), -(H[2] + H[5] + H[8])};
-  scatter(cornerOf(batch, 0), rest, forces);
+  scatterAdd(rest, cornerOf(batch, 0).data(), forces);
 }
 
 }  // namespace tissue_contact

@@ -32,7 +32,7 @@ struct MeanStrain::PatchState : RotationState {
   std::vector<RotationBatch> patch_rotations;
   std::vector<RotationBatch> tangent_patch_rotations;
   std::vector<unsigned char> turned_patches;  ///< scratch
-  std::vector<Vector3> gradients;             ///< scratch
+  std::vector<PaddedGradient> gradients;      ///< scratch
   std::vector<BatchRange> moving_patches;
   std::vector<BatchRange> still_patches;
 
@@ -78,9 +78,10 @@ std::unique_ptr<Elasticity::State> MeanStrain::makeState(const NodalVectors* x) 
   state->gradients.resize(2 * patches_.most_nodes);
   state->moving_patches = {{0, patches_.batches.size()}};
   if (x != nullptr && corotational_) {  // rotations are those of update(), from none
-    NodalVectors forces = NodalVectors::Zero(3, x->cols());
-    addPatchForces(patches_, {0, patches_.batches.size()}, true, kTangentAngle, x->data(),
-                   state->tangent_patch_rotations, state->patch_rotations, state->turned_patches, forces.data());
+    state->nodes.begin(*x, {});
+    addPatchForces(patches_, {0, patches_.batches.size()}, true, kTangentAngle, state->nodes.x.data(),
+                   state->tangent_patch_rotations, state->patch_rotations, state->turned_patches,
+                   state->nodes.forces.data());
     state->tangent_patch_rotations = state->patch_rotations;
   }
   for (std::size_t p = 0; p < patches_.size(); ++p) {
@@ -90,12 +91,11 @@ std::unique_ptr<Elasticity::State> MeanStrain::makeState(const NodalVectors* x) 
   return state;
 }
 
-/// Adds the forces of these batches of patches, and brings their share of the stiffness up to date.
-void MeanStrain::addForces(const NodalVectors& x, const std::vector<BatchRange>& ranges, PatchState& state,
-                           NodalVectors& forces) const {
+/// Adds the forces of these batches of patches to state.nodes, and brings their share of the stiffness up to date.
+void MeanStrain::addForces(const std::vector<BatchRange>& ranges, PatchState& state) const {
   for (const BatchRange range : ranges) {
-    addPatchForces(patches_, range, corotational_, kTangentAngle, x.data(), state.tangent_patch_rotations,
-                   state.patch_rotations, state.turned_patches, forces.data());
+    addPatchForces(patches_, range, corotational_, kTangentAngle, state.nodes.x.data(), state.tangent_patch_rotations,
+                   state.patch_rotations, state.turned_patches, state.nodes.forces.data());
     for (std::size_t b = range.begin; corotational_ && b < range.end; ++b) {
       for (std::size_t lane = 0; lane < kLanes && state.turned_patches[b] >> lane != 0; ++lane) {
         const std::size_t p = b * kLanes + lane;
@@ -110,16 +110,18 @@ void MeanStrain::addForces(const NodalVectors& x, const std::vector<BatchRange>&
 }
 
 void MeanStrain::update(const NodalVectors& x, State& any_state, NodalVectors& forces) const {
-  TetElasticity::update(x, any_state, forces);
   auto& state = static_cast<PatchState&>(any_state);  // made by makeState()
-  addForces(x, state.moving_patches, state, forces);
+  updateElements(x, state);
+  addForces(state.moving_patches, state);
+  unpad(state.nodes.forces, forces);
 }
 
 void MeanStrain::holdStill(const std::vector<bool>& still, const NodalVectors& x, State& any_state) const {
   TetElasticity::holdStill(still, x, any_state);
   auto& state = static_cast<PatchState&>(any_state);
   patches_.split(still, state.moving_patches, state.still_patches);
-  addForces(x, state.still_patches, state, state.held.forces);
+  addForces(state.still_patches, state);
+  unpad(state.nodes.forces, state.held.forces);
 }
 
 double MeanStrain::energy(const NodalVectors& x) const {

@@ -51,8 +51,7 @@ class MeanStrain : public TetElasticity {
              const ElementMaterials& materials, const std::vector<int>& patch_of,
              std::vector<std::vector<int>> patch_nodes, double shape_share);
   std::unique_ptr<State> makeState(const NodalVectors* x) const;
-  void addForces(const NodalVectors& x, const std::vector<BatchRange>& ranges, PatchState& state,
-                 NodalVectors& forces) const;
+  void addForces(const std::vector<BatchRange>& ranges, PatchState& state) const;
 
   bool corotational_;
   PatchElements patches_;

@@ -51,6 +51,7 @@ struct NeoHookean::DeformationState : State {
   std::vector<unsigned char> changed;             ///< scratch: elements to refresh, a bit each
   TetElements::Held held;
   NeoHookeanPatches::State shares;  ///< of patches that are elements
+  KernelNodes nodes;                ///< scratch
   NeoHookeanStiffness::Scratch scratch;
   // Of patches that average the change of volume; empty without:
   std::vector<ElementValues> volume_ratios;  ///< J at the last update
@@ -115,6 +116,8 @@ std::unique_ptr<NeoHookean::DeformationState> NeoHookean::undeformed() const {
     state->held_patches = patches_->nothingHeld();
   }
   tets_->prepare(*state);
+  state->nodes.x.resize(static_cast<std::size_t>(state->stiffness.rows()));
+  state->nodes.forces.resize(state->nodes.x.size());
   return state;
 }
 
@@ -126,8 +129,9 @@ std::unique_ptr<Elasticity::State> NeoHookean::makeState() const {
 
 std::unique_ptr<Elasticity::State> NeoHookean::makeStateAt(const NodalVectors& x) const {
   auto state = undeformed();
-  NodalVectors forces = NodalVectors::Zero(3, x.cols());
-  evaluate(x, state->held.moving, *state, forces);
+  state->nodes.begin(x, {});
+  evaluate(state->held.moving, *state);
+  if (shares_) shares_->addForces(state->shares.moving, kTangentChange, state->shares, state->nodes);
   state->tangent_deformations = state->deformations;
   state->shares.tangent_deformations = state->shares.deformations;
   if (patches_) {
@@ -268,35 +272,37 @@ void NeoHookean::refreshPatches(bool rebuilds, DeformationState& state, NeoHooke
 
 void NeoHookean::update(const NodalVectors& x, State& any_state, NodalVectors& forces) const {
   auto& state = static_cast<DeformationState&>(any_state);  // made by makeState()
-  state.held.startForces(forces);
-  evaluate(x, state.held.moving, state, forces);
-  if (shares_) shares_->addForces(x, state.shares.moving, kTangentChange, state.shares, forces);
-  if (patches_) addPatches(state.held_patches.pressed, false, state, forces);
+  state.nodes.begin(x, state.held.forces);
+  evaluate(state.held.moving, state);
+  if (shares_) shares_->addForces(state.shares.moving, kTangentChange, state.shares, state.nodes);
+  if (patches_) addPatches(state.held_patches.pressed, false, state);
+  unpad(state.nodes.forces, forces);
   refreshStiffness(false, state);
 }
 
 void NeoHookean::holdStill(const std::vector<bool>& still, const NodalVectors& x, State& any_state) const {
   auto& state = static_cast<DeformationState&>(any_state);
   tets_->split(still, state.held);
-  evaluate(x, state.held.still, state, state.held.forces);
+  state.nodes.begin(x, {});
+  evaluate(state.held.still, state);
   if (shares_) {
     shares_->split(still, state.shares);
-    shares_->addForces(x, state.shares.still, kTangentChange, state.shares, state.held.forces);
+    shares_->addForces(state.shares.still, kTangentChange, state.shares, state.nodes);
   }
   if (patches_) {
     patches_->split(state.held, state.held_patches);
-    addPatches(state.held.still, true, state, state.held.forces);
+    addPatches(state.held.still, true, state);
   }
+  unpad(state.nodes.forces, state.held.forces);
   refreshStiffness(true, state);
 }
 
 /// Adds what the elements of these batches do by themselves.
-void NeoHookean::evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, DeformationState& state,
-                          NodalVectors& forces) const {
+void NeoHookean::evaluate(const std::vector<BatchRange>& ranges, DeformationState& state) const {
   const auto add = [&](BatchRange range, const auto& material) {
-    addNeoHookeanForces(tets_->batches, range, material, kTangentChange, x.data(), state.tangent_deformations,
-                        state.deformations, state.changed, flat_modulus_,
-                        patches_ ? state.volume_ratios.data() : nullptr, forces.data());
+    addNeoHookeanForces(tets_->batches, range, material, kTangentChange, state.nodes.x.data(),
+                        state.tangent_deformations, state.deformations, state.changed, flat_modulus_,
+                        patches_ ? state.volume_ratios.data() : nullptr, state.nodes.forces.data());
   };
   for (const BatchRange range : ranges) {
     tets_->batch_materials.empty() ? add(range, tets_->material) : add(range, tets_->batch_materials);
@@ -305,11 +311,11 @@ void NeoHookean::evaluate(const NodalVectors& x, const std::vector<BatchRange>& 
 
 /// Adds the forces of the patches' pressure, of those that are still, or of those that are not, and marks those whose stiffness is stale.
 /// @param ranges batches that hold all their elements; what has changed in those of others stays marked.
-void NeoHookean::addPatches(const std::vector<BatchRange>& ranges, bool still, DeformationState& state,
-                            NodalVectors& forces) const {
+void NeoHookean::addPatches(const std::vector<BatchRange>& ranges, bool still, DeformationState& state) const {
   patches_->meanPressures(tets_->batches, ranges, state.volume_ratios, 1.0, still, state.held_patches, state.pressures);
   for (const BatchRange range : ranges) {
-    addCofactorForces(tets_->batches, range, state.deformations, patches_->of_batch, state.pressures, forces.data());
+    addCofactorForces(tets_->batches, range, state.deformations, patches_->of_batch, state.pressures,
+                      state.nodes.forces.data());
   }
   markStalePatches(ranges, still, state);
 }

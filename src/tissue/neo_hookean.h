@@ -86,10 +86,8 @@ class NeoHookean : public Elasticity {
   struct DeformationState;
 
   std::unique_ptr<DeformationState> undeformed() const;  ///< without stiffness
-  void evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, DeformationState& state,
-                NodalVectors& forces) const;
-  void addPatches(const std::vector<BatchRange>& ranges, bool still, DeformationState& state,
-                  NodalVectors& forces) const;
+  void evaluate(const std::vector<BatchRange>& ranges, DeformationState& state) const;
+  void addPatches(const std::vector<BatchRange>& ranges, bool still, DeformationState& state) const;
   void addShare(std::size_t e, const std::vector<MatrixBatch>& F, double pressure, double sign,
                 NeoHookeanStiffness& sum) const;
   void addPatchStiffness(std::size_t patch, double sign, DeformationState& state) const;

@@ -46,10 +46,10 @@ TISSUE_CONTACT_INLINE void determinant(const LaneMatrix& F, const LaneMatrix& C,
 
 template <typename Material>
 TISSUE_CONTACT_INLINE void neoHookean(const std::vector<ElementBatch>& batches, BatchRange range,
-                                      const Material& material, double tangent_change, const double* x,
+                                      const Material& material, double tangent_change, const PaddedVector* x,
                                       const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
                                       std::vector<unsigned char>& changed, double flat_modulus,
-                                      ElementValues* volume_ratios, double* forces) {
+                                      ElementValues* volume_ratios, PaddedVector* forces) {
   for (std::size_t b = range.begin; b < range.end; ++b) {
     LaneMatrix F, C, P;
     typename Material::Value lambda, mu;
@@ -89,27 +89,28 @@ double neoHookeanEnergy(const Matrix3& F, const LameParameters& material) {
 
 TISSUE_CONTACT_CLONES
 void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
-                         double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
+                         double tangent_change, const PaddedVector* x, const std::vector<MatrixBatch>& tangents,
                          std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed,
-                         double flat_modulus, ElementValues* volume_ratios, double* forces) {
+                         double flat_modulus, ElementValues* volume_ratios, PaddedVector* forces) {
   neoHookean(batches, range, UniformMaterial{material}, tangent_change, x, tangents, deformations, changed,
              flat_modulus, volume_ratios, forces);
 }
 
 TISSUE_CONTACT_CLONES
 void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range,
-                         const std::vector<BatchMaterial>& materials, double tangent_change, const double* x,
+                         const std::vector<BatchMaterial>& materials, double tangent_change, const PaddedVector* x,
                          const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
                          std::vector<unsigned char>& changed, double flat_modulus, ElementValues* volume_ratios,
-                         double* forces) {
+                         PaddedVector* forces) {
   neoHookean(batches, range, VaryingMaterial{materials}, tangent_change, x, tangents, deformations, changed,
              flat_modulus, volume_ratios, forces);
 }
 
 TISSUE_CONTACT_CLONES
-void addNeoHookeanPatchForces(const PatchElements& patches, BatchRange range, double tangent_change, const double* x,
-                              const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
-                              std::vector<unsigned char>& changed, double* forces) {
+void addNeoHookeanPatchForces(const PatchElements& patches, BatchRange range, double tangent_change,
+                              const PaddedVector* x, const std::vector<MatrixBatch>& tangents,
+                              std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed,
+                              PaddedVector* forces) {
   const VaryingMaterial material{patches.materials};
   for (std::size_t b = range.begin; b < range.end; ++b) {
     const PatchBatch& batch = patches.batches[b];
@@ -131,7 +132,7 @@ TISSUE_CONTACT_CLONES
 void addCofactorForces(const std::vector<ElementBatch>& batches, BatchRange range,
                        const std::vector<MatrixBatch>& deformations,
                        const std::vector<std::array<int, kLanes>>& group_of, const std::vector<double>& pressures,
-                       double* forces) {
+                       PaddedVector* forces) {
   for (std::size_t b = range.begin; b < range.end; ++b) {
     LaneMatrix F, P;
     Lanes pressure;

@@ -24,30 +24,31 @@ bool isLargeDeformation(const MatrixBatch& F, std::size_t lane);
 /// psi of neo_hookean.h, J/m^3. @param material lambda and mu of the model.
 double neoHookeanEnergy(const Matrix3& F, const LameParameters& material);
 
-/// Computes `deformations` F at positions x (3 x n) and adds the elastic forces to `forces` (3 x n). `changed[b]` gets
+/// Computes `deformations` F at positions x and adds the elastic forces to `forces`. `changed[b]` gets
 /// bit `lane` set where F is further than `tangent_change` (Frobenius norm) away from `tangents`. `volume_ratios`, unless null,
 /// gets J = det F of every element, by batch.
 /// @param material lambda and mu of the model, which are not Lame's. @param flat_modulus over mu; 0: no patches.
 void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range, const LameParameters& material,
-                         double tangent_change, const double* x, const std::vector<MatrixBatch>& tangents,
+                         double tangent_change, const PaddedVector* x, const std::vector<MatrixBatch>& tangents,
                          std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed,
-                         double flat_modulus, ElementValues* volume_ratios, double* forces);
+                         double flat_modulus, ElementValues* volume_ratios, PaddedVector* forces);
 void addNeoHookeanForces(const std::vector<ElementBatch>& batches, BatchRange range,
-                         const std::vector<BatchMaterial>& materials, double tangent_change, const double* x,
+                         const std::vector<BatchMaterial>& materials, double tangent_change, const PaddedVector* x,
                          const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
                          std::vector<unsigned char>& changed, double flat_modulus, ElementValues* volume_ratios,
-                         double* forces);
+                         PaddedVector* forces);
 
 /// The same of patches as elements: their stress is that of their mean F. All by batches of patches.
-void addNeoHookeanPatchForces(const PatchElements& patches, BatchRange range, double tangent_change, const double* x,
-                              const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
-                              std::vector<unsigned char>& changed, double* forces);
+void addNeoHookeanPatchForces(const PatchElements& patches, BatchRange range, double tangent_change,
+                              const PaddedVector* x, const std::vector<MatrixBatch>& tangents,
+                              std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed,
+                              PaddedVector* forces);
 
 /// Adds the forces of stresses p dJ/dF: -V p dJ/dF grad N. `group_of` names for each element of a batch its place in
 /// `pressures`, Pa.
 void addCofactorForces(const std::vector<ElementBatch>& batches, BatchRange range,
                        const std::vector<MatrixBatch>& deformations,
                        const std::vector<std::array<int, kLanes>>& group_of, const std::vector<double>& pressures,
-                       double* forces);
+                       PaddedVector* forces);
 
 }  // namespace tissue_contact

@@ -22,11 +22,11 @@ NeoHookeanPatches::State NeoHookeanPatches::undeformed() const {
   return state;
 }
 
-void NeoHookeanPatches::addForces(const NodalVectors& x, const std::vector<BatchRange>& ranges, double tangent_change,
-                                  State& state, NodalVectors& forces) const {
+void NeoHookeanPatches::addForces(const std::vector<BatchRange>& ranges, double tangent_change, State& state,
+                                  KernelNodes& nodes) const {
   for (const BatchRange range : ranges) {
-    addNeoHookeanPatchForces(patches_, range, tangent_change, x.data(), state.tangent_deformations, state.deformations,
-                             state.changed, forces.data());
+    addNeoHookeanPatchForces(patches_, range, tangent_change, nodes.x.data(), state.tangent_deformations,
+                             state.deformations, state.changed, nodes.forces.data());
   }
 }
 

@@ -31,10 +31,9 @@ class NeoHookeanPatches {
   State undeformed() const;
   void split(const std::vector<bool>& still, State& state) const { patches_.split(still, state.moving, state.still); }
 
-  /// Adds the forces of these batches of patches (N) at positions x, and marks those whose F has changed by more than
-  /// `tangent_change` since their stiffness was made.
-  void addForces(const NodalVectors& x, const std::vector<BatchRange>& ranges, double tangent_change, State& state,
-                 NodalVectors& forces) const;
+  /// Adds the forces of these batches of patches, and marks those whose F has changed by more than `tangent_change` since their
+  /// stiffness was made.
+  void addForces(const std::vector<BatchRange>& ranges, double tangent_change, State& state, KernelNodes& nodes) const;
 
   /// Adds the number of those marked. @return whether one was so deformed that taking its share out leaves round-off behind.
   bool countChanged(const std::vector<BatchRange>& ranges, const State& state, std::size_t& changed) const;

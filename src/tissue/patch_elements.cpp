@@ -17,6 +17,7 @@ PatchElements::PatchElements(const DilatationPatches& averaged, const TetElement
     slots_.insert(slots_.end(), patch.slots.begin(), patch.slots.end());
     slots_of_.push_back(slots_.size());
   }
+  slots_.shrink_to_fit();
   for (std::size_t lane = 0; lane < batches.size() * kLanes; ++lane) {
     const std::size_t p = std::min(lane, patches.size() - 1);
     PatchBatch& batch = batches[lane / kLanes];
@@ -46,6 +47,7 @@ PatchElements::PatchElements(const DilatationPatches& averaged, const TetElement
     materials[lane / kLanes].lambda[lane % kLanes] = mean.lambda;
     materials[lane / kLanes].mu[lane % kLanes] = mean.mu;
   }
+  nodes.shrink_to_fit();
 }
 
 void PatchElements::split(const std::vector<bool>& still, std::vector<BatchRange>& moving,
@@ -106,25 +108,18 @@ void PatchElements::addStiffness(std::size_t patch, const Matrix3& R, Elasticity
 }
 
 void PatchElements::turnStiffness(std::size_t patch, const Matrix3& old, const Matrix3& R,
-                                  std::vector<Vector3>& scratch, Elasticity::State& state) const {
+                                  std::vector<PaddedGradient>& scratch, Elasticity::State& state) const {
   const LameParameters lame = material(patch);
   const double lambda = volume(patch) * lame.lambda;
   const double mu = volume(patch) * lame.mu;
-  Vector3* const a = scratch.data();
-  Vector3* const b = a + most_nodes;
+  PaddedGradient* const a = scratch.data();
+  PaddedGradient* const b = a + most_nodes;
   for (std::size_t i = 0; i < counts_[patch]; ++i) {
-    a[i] = R * gradient(patch, i);
-    b[i] = old * gradient(patch, i);
+    a[i] = turnedGradient(R, gradient(patch, i));
+    b[i] = turnedGradient(old, gradient(patch, i));
   }
   addBlocks(
-      patch,
-      [&](std::size_t i, std::size_t j) {
-        Matrix3 block = (lambda * a[i]) * a[j].transpose() + (mu * a[j]) * a[i].transpose();
-        block -= (lambda * b[i]) * b[j].transpose();
-        block -= (mu * b[j]) * b[i].transpose();
-        return block;
-      },
-      state);
+      patch, [&](std::size_t i, std::size_t j) { return turnedBlock(lambda, mu, a[i], a[j], b[i], b[j]); }, state);
 }
 
 }  // namespace tissue_contact

@@ -9,6 +9,7 @@
 #include "tissue/dilatation_patches.h"
 #include "tissue/lanes.h"
 #include "tissue/tet_elements.h"
+#include "tissue/turned_block.h"
 
 namespace tissue_contact {
 
@@ -40,9 +41,9 @@ struct PatchElements {
   /// Adds K_ij = V (lambda c_i c_j' + mu c_j c_i' + mu (c_i . c_j) I), c_i = R times the gradient of node i.
   void addStiffness(std::size_t patch, const Matrix3& R, Elasticity::State& state) const;
 
-  /// Puts that of R in the place of that of `old`: the last term is the same for both.
+  /// Puts that of R in the place of that of `old`.
   /// @param scratch of 2 most_nodes.
-  void turnStiffness(std::size_t patch, const Matrix3& old, const Matrix3& R, std::vector<Vector3>& scratch,
+  void turnStiffness(std::size_t patch, const Matrix3& old, const Matrix3& R, std::vector<PaddedGradient>& scratch,
                      Elasticity::State& state) const;
 
   Vector3 gradient(std::size_t patch, std::size_t node) const;  ///< 1/m

@@ -9,33 +9,26 @@
 namespace tissue_contact {
 
 /// Mean F of each of four patches.
-TISSUE_CONTACT_INLINE void meanGradients(const PatchNode* nodes, std::size_t count, const double* x, LaneMatrix& F) {
-  Lanes x0, y0, z0;
-  gather(nodes[0].nodes, x, 0, x0);
-  gather(nodes[0].nodes, x, 1, y0);
-  gather(nodes[0].nodes, x, 2, z0);
+TISSUE_CONTACT_INLINE void meanGradients(const PatchNode* nodes, std::size_t count, const PaddedVector* x,
+                                         LaneMatrix& F) {
+  Lanes origin[3];
+  gather(x, nodes[0].nodes.data(), origin);
   for (Lanes& entry : F.m) entry = Lanes{};
   for (std::size_t i = 1; i < count; ++i) {
-    Lanes dx, dy, dz;
-    gather(nodes[i].nodes, x, 0, dx);
-    gather(nodes[i].nodes, x, 1, dy);
-    gather(nodes[i].nodes, x, 2, dz);
-    dx -= x0;
-    dy -= y0;
-    dz -= z0;
+    Lanes d[3];
+    gather(x, nodes[i].nodes.data(), d);
+    for (std::size_t r = 0; r < 3; ++r) d[r] -= origin[r];
     for (std::size_t c = 0; c < 3; ++c) {
       Lanes g;
       load(nodes[i].gradient[c], g);
-      F.m[3 * c] += dx * g;
-      F.m[3 * c + 1] += dy * g;
-      F.m[3 * c + 2] += dz * g;
+      for (std::size_t r = 0; r < 3; ++r) F.m[r + 3 * c] += d[r] * g;
     }
   }
 }
 
 /// Forces -V P grad N of the stresses P of four patches, added to their nodes.
 TISSUE_CONTACT_INLINE void addPatchStressForces(const PatchBatch& batch, const PatchNode* nodes, LaneMatrix& P,
-                                                double* forces) {
+                                                PaddedVector* forces) {
   Lanes volume;
   load(batch.volume, volume);
   for (Lanes& entry : P.m) entry *= -volume;
@@ -46,7 +39,7 @@ TISSUE_CONTACT_INLINE void addPatchStressForces(const PatchBatch& batch, const P
     load(nodes[i].gradient[2], g2);
     Lanes force[3];
     for (std::size_t r = 0; r < 3; ++r) force[r] = P.m[r] * g0 + P.m[r + 3] * g1 + P.m[r + 6] * g2;
-    scatter(nodes[i].nodes, force, forces);
+    scatterAdd(force, nodes[i].nodes.data(), forces);
   }
 }
 

@@ -20,6 +20,7 @@ struct TetElasticity::RotationState : State {
   std::vector<RotationBatch> tangent_rotations;  ///< those `stiffness` was computed with
   std::vector<unsigned char> turned;             ///< scratch: elements to refresh, a bit each
   TetElements::Held held;
+  KernelNodes nodes;          ///< scratch
   int blend = kBlendUpdates;  ///< of kBlendUpdates parts: how much of each rotation counts
   int blend_to = kBlendUpdates;
   int updates = 0;            ///< since rotations were last measured

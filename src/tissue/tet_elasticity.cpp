@@ -1,12 +1,14 @@
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "core/rotation_by_svd.h"
 #include "tissue/element_kernel.h"
 #include "tissue/rotation_state.h"
 #include "tissue/tet_elements.h"
+#include "tissue/turned_block.h"
 
 namespace tissue_contact {
 namespace {
@@ -92,28 +94,31 @@ void TetElasticity::prepare(const NodalVectors* x, RotationState& state) const {
   state.turned.assign(tets_->batches.size(), 0);
   state.held = tets_->nothingHeld();
   tets_->prepare(state);
+  state.nodes.x.resize(static_cast<std::size_t>(state.stiffness.rows()));
+  state.nodes.forces.resize(state.nodes.x.size());
   if (x != nullptr && corotational_) findRotations(*x, state);
   for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
-    addStiffness(e, rotationInLane(state.tangent_rotations[e / kLanes], e % kLanes), 1.0, state);
+    addStiffness(e, rotationInLane(state.tangent_rotations[e / kLanes], e % kLanes), state);
   }
 }
 
 /// Those of update(), from none; nothing has been assembled with others yet.
 void TetElasticity::findRotations(const NodalVectors& x, RotationState& state) const {
-  NodalVectors forces = NodalVectors::Zero(3, x.cols());
+  state.nodes.begin(x, {});
   const auto find = [&](const auto& material) {
-    addCorotationalForces(tets_->batches, {0, tets_->batches.size()}, material, kTangentAngle, 1.0, x.data(),
-                          state.tangent_rotations, state.rotations, state.turned, forces.data());
+    addCorotationalForces(tets_->batches, {0, tets_->batches.size()}, material, kTangentAngle, 1.0,
+                          state.nodes.x.data(), state.tangent_rotations, state.rotations, state.turned,
+                          state.nodes.forces.data());
   };
   tets_->batch_materials.empty() ? find(tets_->material) : find(tets_->batch_materials);
   state.tangent_rotations = state.rotations;
 }
 
-void TetElasticity::addStiffness(std::size_t e, const Quaternion& rotation, double sign, State& state) const {
+void TetElasticity::addStiffness(std::size_t e, const Quaternion& rotation, State& state) const {
   const TetElement& element = tets_->elements[e];
   const Eigen::Matrix<double, 3, 4> c = rotation.toRotationMatrix() * tets_->shapeGradients(e);
-  const double lambda = sign * element.volume * element.lame.lambda;
-  const double mu = sign * element.volume * element.lame.mu;
+  const double lambda = element.volume * element.lame.lambda;
+  const double mu = element.volume * element.lame.mu;
   for (int i = 0; i < 4; ++i) {
     for (int j = i; j < 4; ++j) {
       if (element.slots(i, j) < 0) continue;
@@ -124,22 +129,51 @@ void TetElasticity::addStiffness(std::size_t e, const Quaternion& rotation, doub
   }
 }
 
+/// Puts that of `rotation` in the place of that of `old`.
+void TetElasticity::turnStiffness(std::size_t e, const Quaternion& old, const Quaternion& rotation,
+                                  State& state) const {
+  const TetElement& element = tets_->elements[e];
+  const Eigen::Matrix<double, 3, 4> gradients = tets_->shapeGradients(e);
+  const Matrix3 R = rotation.toRotationMatrix();
+  const Matrix3 R_old = old.toRotationMatrix();
+  std::array<PaddedGradient, 4> a, b;
+  for (std::size_t i = 0; i < 4; ++i) {
+    a[i] = turnedGradient(R, gradients.col(static_cast<int>(i)));
+    b[i] = turnedGradient(R_old, gradients.col(static_cast<int>(i)));
+  }
+  const double lambda = element.volume * element.lame.lambda;
+  const double mu = element.volume * element.lame.mu;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = i; j < 4; ++j) {
+      if (element.slots(i, j) < 0) continue;
+      addBlock(i == j, element.slots(i, j), turnedBlock(lambda, mu, a[i], a[j], b[i], b[j]), element.damping_s,
+               state.stiffness, state.damping);
+    }
+  }
+}
+
 void TetElasticity::refreshStiffness(std::size_t batch, RotationState& state) const {
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::size_t e = batch * kLanes + lane;
     if ((state.turned[batch] >> lane & 1) == 0 || e >= tets_->elements.size()) continue;
-    addStiffness(e, rotationInLane(state.tangent_rotations[batch], lane), -1.0, state);
-    addStiffness(e, rotationInLane(state.rotations[batch], lane), 1.0, state);
+    turnStiffness(e, rotationInLane(state.tangent_rotations[batch], lane), rotationInLane(state.rotations[batch], lane),
+                  state);
     for (std::size_t i = 0; i < 4; ++i) state.tangent_rotations[batch][i][lane] = state.rotations[batch][i][lane];
   }
 }
 
 void TetElasticity::update(const NodalVectors& x, State& any_state, NodalVectors& forces) const {
   auto& state = static_cast<RotationState&>(any_state);  // made by makeState()
+  updateElements(x, state);
+  unpad(state.nodes.forces, forces);
+}
+
+/// Leaves x and the forces in state.nodes.
+void TetElasticity::updateElements(const NodalVectors& x, RotationState& state) const {
   if (adapts_ && state.adapt_rotations) adaptRotations(x, state);
   state.turn_squared = 0.0;
-  state.held.startForces(forces);
-  evaluate(x, state.held.moving, state, forces);
+  state.nodes.begin(x, state.held.forces);
+  evaluate(state.held.moving, state);
 }
 
 /// One update nearer to what the turns of the last one ask for.
@@ -158,27 +192,33 @@ void TetElasticity::adaptRotations(const NodalVectors& x, RotationState& state) 
   if (state.blend == state.blend_to) return;
   state.blend += state.blend < state.blend_to ? 1 : -1;
   if (state.held.still.empty()) return;
-  state.held.forces.setZero();
-  evaluate(x, state.held.still, state, state.held.forces);
+  evaluateStill(x, state);
 }
 
 void TetElasticity::holdStill(const std::vector<bool>& still, const NodalVectors& x, State& any_state) const {
   auto& state = static_cast<RotationState&>(any_state);
   tets_->split(still, state.held);
-  evaluate(x, state.held.still, state, state.held.forces);
+  evaluateStill(x, state);
 }
 
-/// Adds the forces of these batches, and brings their share of the stiffness up to date.
-void TetElasticity::evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, RotationState& state,
-                             NodalVectors& forces) const {
+/// Leaves x and the forces in state.nodes, too.
+void TetElasticity::evaluateStill(const NodalVectors& x, RotationState& state) const {
+  state.nodes.begin(x, {});
+  evaluate(state.held.still, state);
+  unpad(state.nodes.forces, state.held.forces);
+}
+
+/// Adds the forces of these batches to state.nodes, and brings their share of the stiffness up to date.
+void TetElasticity::evaluate(const std::vector<BatchRange>& ranges, RotationState& state) const {
+  const PaddedVector* const x = state.nodes.x.data();
+  PaddedVector* const forces = state.nodes.forces.data();
   const auto add = [&](BatchRange range, const auto& material) {
     if (!corotational_ || state.blend == 0) {
-      addLinearForces(tets_->batches, range, material, x.data(), forces.data(),
-                      corotational_ ? &state.turn_squared : nullptr);
+      addLinearForces(tets_->batches, range, material, x, forces, corotational_ ? &state.turn_squared : nullptr);
       return;
     }
-    addCorotationalForces(tets_->batches, range, material, kTangentAngle, state.blend / double{kBlendUpdates}, x.data(),
-                          state.tangent_rotations, state.rotations, state.turned, forces.data());
+    addCorotationalForces(tets_->batches, range, material, kTangentAngle, state.blend / double{kBlendUpdates}, x,
+                          state.tangent_rotations, state.rotations, state.turned, forces);
     for (std::size_t batch = range.begin; batch < range.end; ++batch) {
       if (state.turned[batch] != 0) refreshStiffness(batch, state);
     }

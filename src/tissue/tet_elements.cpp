@@ -8,17 +8,18 @@
 namespace tissue_contact {
 namespace {
 
-std::vector<ElementBatch> makeBatches(const NodalVectors& rest, const std::vector<TetElement>& elements) {
+std::vector<ElementBatch> makeBatches(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
+                                      const std::vector<TetElement>& elements) {
   std::vector<ElementBatch> batches((elements.size() + kLanes - 1) / kLanes);
   for (std::size_t slot = 0; slot < batches.size() * kLanes; ++slot) {
     const bool used = slot < elements.size();
-    const TetElement& element = used ? elements[slot] : elements.back();
+    const Tetrahedron& nodes = used ? tetrahedra[slot] : tetrahedra.back();
     ElementBatch& batch = batches[slot / kLanes];
     const std::size_t lane = slot % kLanes;
-    const Matrix3 rest_inverse = edgeMatrix(rest, element.nodes).inverse();
+    const Matrix3 rest_inverse = edgeMatrix(rest, nodes).inverse();
     for (std::size_t i = 0; i < 9; ++i) batch.rest_inverse[i][lane] = rest_inverse.data()[i];
-    batch.volume[lane] = used ? element.volume : 0.0;
-    batch.nodes[lane] = element.nodes;
+    batch.volume[lane] = used ? elements[slot].volume : 0.0;
+    batch.nodes[lane] = nodes;
   }
   return batches;
 }
@@ -43,12 +44,12 @@ TetElements::TetElements(const NodalVectors& rest, const std::vector<Tetrahedron
   elements.reserve(tetrahedra.size());
   bool same = true;
   for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
-    elements.push_back({tetrahedra[e], edgeMatrix(rest, tetrahedra[e]).determinant() / 6.0, lame(materials.of(e)),
+    elements.push_back({edgeMatrix(rest, tetrahedra[e]).determinant() / 6.0, lame(materials.of(e)),
                         materials.dampingOf(e), findSlots(*pattern, tetrahedra[e], fixed)});
     const LameParameters& first = elements.front().lame;
     same = same && elements.back().lame.lambda == first.lambda && elements.back().lame.mu == first.mu;
   }
-  batches = makeBatches(rest, elements);
+  batches = makeBatches(rest, tetrahedra, elements);
   material =
       elements.empty() ? LameParameters{} : LameParameters{elements.front().lame.lambda, elements.front().lame.mu};
   if (!same) batch_materials = makeBatchMaterials(elements);
@@ -104,7 +105,7 @@ Eigen::Matrix<double, 3, 4> TetElements::shapeGradients(std::size_t element) con
 }
 
 Matrix3 TetElements::deformationGradient(std::size_t element, const NodalVectors& x) const {
-  return edgeMatrix(x, elements[element].nodes) * restInverse(element);
+  return edgeMatrix(x, batches[element / kLanes].nodes[element % kLanes]) * restInverse(element);
 }
 
 }  // namespace tissue_contact

@@ -18,7 +18,6 @@ namespace tissue_contact {
 
 /// What of a tetrahedron the force kernels do not need, or not one by one.
 struct TetElement {
-  Tetrahedron nodes;
   double volume;        ///< m^3
   LameParameters lame;  ///< Pa; for some models their own parameters in the place of Lame's
   double damping_s;     ///< what of its stiffness goes into State::damping
@@ -68,14 +67,6 @@ struct TetElements {
     NodalVectors forces;  ///< of what is still, also of patches, N; empty: nobody has asked to hold any
 
     void carry(StateArchive& archive, std::size_t batches, int nodes);
-
-    void startForces(NodalVectors& all) const {
-      if (forces.cols() == 0) {
-        all.setZero();
-      } else {
-        all = forces;
-      }
-    }
   };
   Held nothingHeld() const { return {{{0, batches.size()}}, {}, {}}; }
 

@@ -79,11 +79,14 @@ void Overstress::addForces(const NodalVectors& x, Elasticity::State& any_state, 
     state.steps[k] = pronyStep(terms_[k], ratios_, state.elapsed_s, state.step_s);
   }
   state.elapsed_s = 0.0;
+  state.nodes.begin(x, forces);
   const auto add = [&](const auto& material) {
-    addOverstressForces(tets().batches, material, turns_, kTangentAngle, x.data(), state.tangent_rotations,
-                        state.rotations, state.turned, state.steps, state.strains, state.held, forces.data());
+    addOverstressForces(tets().batches, material, turns_, kTangentAngle, state.nodes.x.data(), state.tangent_rotations,
+                        state.rotations, state.turned, state.steps, state.strains, state.held,
+                        state.nodes.forces.data());
   };
   tets().batch_materials.empty() ? add(tets().material) : add(tets().batch_materials);
+  unpad(state.nodes.forces, forces);
   for (std::size_t batch = 0; batch < state.turned.size(); ++batch) {
     if (state.turned[batch] != 0) refreshStiffness(batch, state);
   }

@@ -33,8 +33,7 @@ struct BlockPattern {
   /// with another one of its slice, and blocks (i, j) with i < j have i in an earlier slice than j.
   std::vector<int> rows;
   std::vector<int> first;  ///< slices + 1 offsets of entries: one block for each row of the slice
-  /// kRows per entry: 3 * column, where its coordinates begin. Ascending in each lane, beyond the row; 3 * the row
-  /// itself where there is no block.
+  /// kRows per entry. Ascending in each lane, beyond the row; the row itself where there is no block.
   std::vector<int> columns;
   std::vector<int> lane_of;      ///< per node: kRows * slice + lane
   std::vector<int> lower_first;  ///< nodes + 1 offsets into `lower`
@@ -67,8 +66,8 @@ struct BlockPattern {
     for (int k = lower_first[row]; k < lower_first[row + 1]; ++k) use(lower[k].column, lower[k].place);
     const int slice = lane_of[row] / kRows;
     const int lane = lane_of[row] % kRows;
-    for (int k = first[slice]; k < first[slice + 1] && columns[kRows * k + lane] != 3 * row; ++k) {
-      use(columns[kRows * k + lane] / 3, placeOf(k, lane, false));
+    for (int k = first[slice]; k < first[slice + 1] && columns[kRows * k + lane] != row; ++k) {
+      use(columns[kRows * k + lane], placeOf(k, lane, false));
     }
   }
 

@@ -67,14 +67,16 @@ class TetElasticity : public Elasticity {
   const TetElements& tets() const { return *tets_; }
   /// @param x null: undeformed.
   void prepare(const NodalVectors* x, RotationState& state) const;
+  void updateElements(const NodalVectors& x, RotationState& state) const;
   /// Of the elements of a batch that have turned.
   void refreshStiffness(std::size_t batch, RotationState& state) const;
 
  private:
-  void evaluate(const NodalVectors& x, const std::vector<BatchRange>& ranges, RotationState& state,
-                NodalVectors& forces) const;
+  void evaluateStill(const NodalVectors& x, RotationState& state) const;
+  void evaluate(const std::vector<BatchRange>& ranges, RotationState& state) const;
   void findRotations(const NodalVectors& x, RotationState& state) const;
-  void addStiffness(std::size_t element, const Quaternion& rotation, double sign, State& state) const;
+  void addStiffness(std::size_t element, const Quaternion& rotation, State& state) const;
+  void turnStiffness(std::size_t element, const Quaternion& old, const Quaternion& rotation, State& state) const;
   void adaptRotations(const NodalVectors& x, RotationState& state) const;
 
   bool corotational_;

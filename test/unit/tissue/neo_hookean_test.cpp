@@ -124,6 +124,20 @@ TEST_P(ByElementAndByPatch, StiffnessIsThatOfTheShapeWhateverCameBefore) {
   EXPECT_GT((dense(state->stiffness) - K_rest).cwiseAbs().maxCoeff(), 1e-3 * K_rest.maxCoeff());
 }
 
+// A mesh that is made beside the steps begins where nodes are (Elasticity::makeStateAt).
+TEST_P(ByElementAndByPatch, AStateBegunAtAShapeIsThatOfGoingThere) {
+  const TetMesh mesh = smallBlock();
+  const NeoHookean elasticity = makeModel(mesh, 0.45, GetParam());
+  NodalVectors x = 1.2 * mesh.positions;
+  x.row(0) += 0.3 * mesh.positions.row(2);
+  const auto went = elasticity.makeState();
+  NodalVectors f(3, x.cols());
+  elasticity.update(x, *went, f);
+  const Eigen::MatrixXd expected = dense(went->stiffness);
+  EXPECT_LE((dense(elasticity.makeStateAt(x)->stiffness) - expected).cwiseAbs().maxCoeff(),
+            1e-12 * expected.maxCoeff());
+}
+
 // P = (mu' (1 - 1/(3 s^2 + 1)) s + (lambda' (s^3 - 1) - 3/4 mu') s^2) I where the block is s times as large; the energy is that
 // of psi (neo_hookean.h), with what holds flat elements of patches up: 8 mu' (s^3 - 0.3)^2 and 16 mu' (s^3 - 0.3) s^2.
 TEST_P(ByElementAndByPatch, ChangesOfVolumeMeetTheClosedForm) {

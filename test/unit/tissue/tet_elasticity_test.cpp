@@ -34,6 +34,25 @@ TEST(Corotational, TangentFollowsRotationAndLagsByItsThreshold) {
   EXPECT_LE((dense(state->stiffness) - expected).cwiseAbs().maxCoeff(), 1e-12 * K_rest.cwiseAbs().maxCoeff());
 }
 
+TEST(Corotational, ManyTurnsLeaveTheStiffnessThatOneDoes) {
+  const TetMesh mesh = makeBlockMesh({Vector3(0.03, 0.02, 0.02), {2, 2, 2}, {}});
+  const TetElasticity elasticity(mesh.positions, mesh.tetrahedra, std::vector<bool>(mesh.positions.cols(), false),
+                                 MaterialDescription{ElasticModel::kCorotational, 5e3, 0.4, 1000.0});
+  const auto state = elasticity.makeState();
+  NodalVectors x, f(3, mesh.positions.cols());
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> angle(-0.5, 0.5);
+  constexpr int kTurns = 1000;
+  for (int k = 0; k < kTurns; ++k) {
+    const Vector3 axis = Vector3(angle(random), angle(random), 0.3).normalized();
+    x = Eigen::AngleAxisd(angle(random), axis).toRotationMatrix() * mesh.positions;
+    elasticity.update(x, *state, f);
+  }
+  const Eigen::MatrixXd fresh = dense(elasticity.makeStateAt(x)->stiffness);
+  // What a turn takes out is what the one before put in. The rotation found step by step is that of makeStateAt() to some 1e-9.
+  EXPECT_LE((dense(state->stiffness) - fresh).cwiseAbs().maxCoeff(), 1e-8 * fresh.cwiseAbs().maxCoeff());
+}
+
 /// A block bent more and more, to `turn` rad at its end, and back: what adapting rotations make of it.
 class AdaptedRotations : public testing::Test {
  protected:
