@@ -60,8 +60,9 @@ TISSUE_CONTACT_INLINE void load(const BlockLanes& from, Lanes (&to)[9]) {
 
 /// Coordinate r of four of the vectors of `v`, 3 x nodes.
 TISSUE_CONTACT_INLINE void gather(const double* v, const int* nodes, std::size_t r, Lanes& to) {
+  constexpr std::ptrdiff_t kStride = 3;
   const double* const w = v + r;
-  to = Lanes{w[3 * nodes[0]], w[3 * nodes[1]], w[3 * nodes[2]], w[3 * nodes[3]]};
+  to = Lanes{w[kStride * nodes[0]], w[kStride * nodes[1]], w[kStride * nodes[2]], w[kStride * nodes[3]]};
 }
 
 TISSUE_CONTACT_INLINE void gather(const double* v, const int* nodes, LaneVectors& to) {
