@@ -16,12 +16,14 @@ namespace {
 
 constexpr int kMostChanges = 16;
 
-/// Two balls press two tissues that keep all there is to keep: averaged strain, Prony terms, nodes that sleep, a mesh that follows.
+/// Two balls press two tissues that keep all there is to keep: averaged strain of both kinds, Prony terms,
+/// nodes that sleep, a mesh that follows.
 Simulator pressed() {
   const std::string second =
       "  - name: other\n    block: {size_m: [0.02, 0.02, 0.01], cells: [2, 2, 1]}\n    pose: {position_m: [0.05, 0, "
       "0]}\n"
-      "    material: {model: corotational, youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}\n"
+      "    material: {model: neo_hookean, dilatation: patch, youngs_modulus_pa: 5000, poissons_ratio: 0.4, "
+      "density_kg_per_m3: 1000}\n"
       "    refinement: {cell_m: 0.004, nodes_at_most: 60}\n"
       "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n";
   const auto ball = [](const std::string& name, const std::string& at) {

@@ -39,7 +39,7 @@ struct Pressed {
 std::vector<Pressed> press(PressScene scene, const Law& law, const std::vector<double>& depths, int settle = 20) {
   scene.model = law.model;
   scene.dilatation = law.dilatation;
-  scene.distortion = "element";  // as that of the neo-Hookean law
+  scene.distortion = "element";  // laws are compared, on like elements
   Simulator simulator = makePress(scene);
   const Vector3 away(0.0, 0.0, 0.5);
   std::vector<Pressed> pressed;

@@ -135,9 +135,9 @@ Advice withExpectedError(const TissueDescription& tissue, const std::string& mes
   constexpr double kWorthAWord = 0.1;
   constexpr double kWorthAWarning = 0.5;  // good to a factor of two: off by a quarter at least
   constexpr double kCompared = 3.0;       // edges over half extents that expectedMeshError() was compared with
-  const bool averages = averagesDistortion(materialsOf(tissue));
+  const MeshErrorFactors factors = meshErrorFactors(materialsOf(tissue));
   const auto error = [&](double edge_m, double half_extent_m) {
-    return expectedMeshError(std::min(edge_m, kCompared * half_extent_m), half_extent_m, averages);
+    return expectedMeshError(std::min(edge_m, kCompared * half_extent_m), half_extent_m, factors);
   };
   const double most = error(under_smallest_m, shapes.smallest_m);
   const double least = error(under_largest_m, shapes.largest_m);

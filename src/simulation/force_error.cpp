@@ -75,13 +75,19 @@ std::vector<double> shearModuli(const TissueDescription& description) {
 
 double ForceErrorEstimate::total_n() const { return std::hypot(mesh_n, step_n, solver_n); }
 
-double likelyMeshError(double recovered, bool averages) {
-  const double share = (averages ? 0.85 : 1.7) * recovered * std::sqrt(recovered);
+MeshErrorFactors meshErrorFactors(const ElementMaterials& materials) {
+  if (!averagesDistortion(materials)) return {1.7, 0.5};
+  if (!averagesDilatation(materials)) return {1.3, 0.4};
+  return {0.85, 0.3};
+}
+
+double likelyMeshError(double recovered, const MeshErrorFactors& factors) {
+  const double share = factors.of_strain * recovered * std::sqrt(recovered);
   return share < 1.0 ? share : 1.0;  // not finite as well: nothing is known then
 }
 
-double expectedMeshError(double surface_edge_m, double half_extent_m, bool averages) {
-  return (averages ? 0.3 : 0.5) * std::pow(surface_edge_m / half_extent_m, 1.8);
+double expectedMeshError(double surface_edge_m, double half_extent_m, const MeshErrorFactors& factors) {
+  return factors.of_lengths * std::pow(surface_edge_m / half_extent_m, 1.8);
 }
 
 std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const std::vector<Tissue>& tissues,
@@ -95,7 +101,7 @@ std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const st
     const ContactKey& key = contacts[first].contact.key;
     const auto t = static_cast<std::size_t>(key.tissue);
     const bool judges_mesh = isContinuum(scene.tissues[t].material.model);
-    const bool averages = averagesDistortion(materialsOf(scene.tissues[t]));
+    const MeshErrorFactors factors = meshErrorFactors(materialsOf(scene.tissues[t]));
     Vector3 force_n = Vector3::Zero();  // jaws that grip press against each other: what is left is what the wrench has
     double sum_n = 0.0, mesh = 0.0, step = 0.0;  // shares times the forces of the shapes
     for (std::size_t shape = first; shape < contacts.size(); shape = end) {
@@ -112,10 +118,10 @@ std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const st
       if (!judges_mesh) continue;
       double share = likelyMeshError(recoveredStrainError(tissues[t], shearModuli(scene.tissues[t]), x[t],
                                                           touch.center_W, kRadiiLookedAt * touch.radius_m),
-                                     averages);
+                                     factors);
       const double half_extent_m = shapes.halfExtent(of_shape.instrument, of_shape.link, of_shape.shape);
       if (touch.nodes <= kFewNodes && half_extent_m > 0.0) {  // of the force found, not of the right one
-        share = std::max(share, 1.0 - 1.0 / (1.0 + expectedMeshError(touch.edge_m, half_extent_m, averages)));
+        share = std::max(share, 1.0 - 1.0 / (1.0 + expectedMeshError(touch.edge_m, half_extent_m, factors)));
       }
       mesh += touch.sum_n * share;
     }

@@ -15,11 +15,11 @@ namespace tissue_contact {
 namespace {
 
 /// Largest resident size while a tissue is built and stepped, over its elements: 3960 bytes on a sheet of 180 000
-/// triangles, 1440 on a block of 320 000 tetrahedra. A quarter to a third is added for what a scene may hold besides: a
+/// triangles, 1440 on a block of 320 000 tetrahedra. A tenth (neo-Hookean tissue that averages all it can) to a third is added for what a scene may hold besides: a
 /// damping matrix where regions differ in damping, regions, fibres, tissue pairs.
 std::size_t bytesOf(const TissueDescription& tissue, std::size_t elements) {
   constexpr std::size_t kPerTriangle = 5200;     // bending couples twelve nodes; both sides are surface
-  constexpr std::size_t kPerTetrahedron = 2000;  // corotational with patches; neo-Hookean 80 more, others less
+  constexpr std::size_t kPerTetrahedron = 2000;  // corotational with patches; neo-Hookean 80 to 230 more, others less
   constexpr std::size_t kPronySeries = 2200;     // a second set of elements, two matrices more
   constexpr std::size_t kPerTerm = 100;
   const std::size_t terms = tissue.material.prony_series.size();

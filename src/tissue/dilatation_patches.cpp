@@ -70,7 +70,6 @@ DilatationPatches::DilatationPatches(const std::vector<Tetrahedron>& tetrahedra,
     patch.nodes = std::move(nodes[p]);
     patch.first = first;
     first += patch.nodes.size();
-    most_nodes = std::max(most_nodes, patch.nodes.size());
     const std::size_t count = patch.nodes.size();
     patch.slots.reserve(count * (count + 1) / 2);
     for (std::size_t i = 0; i < count; ++i) {

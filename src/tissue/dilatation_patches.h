@@ -66,7 +66,6 @@ struct DilatationPatches {
 
   std::vector<Patch> patches;
   std::vector<std::array<int, kLanes>> of_batch;  ///< patch of each element; lanes not used repeat the last
-  std::size_t most_nodes = 0;                     ///< of a patch
 };
 
 double bulkModulus(const MaterialDescription& material);

@@ -46,7 +46,7 @@ Matrix3 matrixInLane(const MatrixBatch& batch, std::size_t lane) {
 
 /// Deformation gradients are kept four elements at a time, column-major.
 struct NeoHookean::DeformationState : State {
-  std::vector<MatrixBatch> deformations;          ///< scratch: of each element at the last update
+  std::vector<MatrixBatch> deformations;          ///< of each element at its last update
   std::vector<MatrixBatch> tangent_deformations;  ///< those `stiffness` was computed with
   std::vector<unsigned char> changed;             ///< scratch: elements to refresh, a bit each
   TetElements::Held held;
@@ -71,6 +71,7 @@ struct NeoHookean::DeformationState : State {
     archive.carry(volume_ratios);
     archive.carry(tangent_pressures);
     archive.carry(tangent_gradients);
+    if (!pressures.empty()) archive.carry(deformations);  // patches read those of elements at rest
     held_patches.carry(archive, pressures.size(), tangent_deformations.size());
   }
 };

@@ -52,8 +52,8 @@ class NeoHookean : public Elasticity {
  public:
   /// What is averaged over patches.
   struct Averages {
-    bool dilatation = true;  ///< the change of volume
-    double share = 0.0;      ///< s, 0 to below 1
+    bool dilatation = false;  ///< the change of volume
+    double share = 0.0;       ///< s, 0 to below 1
   };
 
   /// @param rest 3 x n, m.
@@ -70,7 +70,7 @@ class NeoHookean : public Elasticity {
   std::unique_ptr<State> makeStateAt(const NodalVectors& x) const override;
 
   /// An element's share of the stiffness is recomputed only when its F has changed by more than kTangentChange since, that of
-  /// a patch when the F of one of its elements or Jbar has;
+  /// a patch when its mean F has, and that of its mean dilatation when the F of one of its elements or Jbar has;
   /// forces are always exact.
   void update(const NodalVectors& x, State& state, NodalVectors& forces) const override;
 

@@ -44,14 +44,14 @@ class Tangent {
   Matrix3 direct_, crossed_;  ///< symmetric, diagonals unused
 };
 
-/// Four elements side by side, whatever their places in the mesh.
+/// Four elements or patches side by side, whatever their places in the mesh.
 struct TangentLanes {
   MatrixBatch F;
   ElementValues volume;  ///< m^3; negative: to be taken out of a sum
   ElementValues lambda, mu, pressure, flat_modulus;
 };
 
-/// The gradient of a node's shape function in each of four elements, 1/m.
+/// The gradient of a node's shape function in each of four elements or patches, 1/m.
 using GradientLanes = std::array<ElementValues, 3>;
 
 /// The fast version, by Jacobi rotations of F'F. What a lane gets does not depend on the others.

@@ -65,6 +65,26 @@ TEST(ForceError, OfFormHIsNeverTooSmall) {
   }
 }
 
+// Neo-Hookean tissue as it comes averages a part of the change of volume alone, and still locks: cells of 5 mm under a ball of 5 mm.
+// Truth: cells of 1.67 mm with all of it averaged (the last line of what is computed here), by which 5 mm are 44 and 57 % off.
+TEST(ForceError, OfNeoHookeanTissueKnowsThatItLocks) {
+  for (const double nu : {0.45, 0.49}) {
+    const auto press = [nu](const std::string& cells, const std::string& material) {
+      const std::string block = blockScene("[0.06, 0.06, 0.02]", cells,
+                                           "model: neo_hookean, poissons_ratio: " + std::to_string(nu) + material);
+      Simulator simulator = simulatorOf(
+          block + onlyBall("[0.0013, 0.0007, 0.025]") +
+          "friction: [{instrument: probe, tissue: block, static: 0}]\nsolver: {iterations: 500, tolerance: 1.0e-4}\n");
+      const double error_n = pressed(simulator, 0.01).total_n();
+      return std::pair(std::abs(simulator.wrench(0).force.z()), error_n);
+    };
+    const auto [force_n, expected_n] = press("[12, 12, 4]", "");
+    const double truth_n = press("[36, 36, 12]", ", dilatation: patch").first;
+    EXPECT_GT(expected_n, 0.5 * (force_n - truth_n)) << nu;
+    EXPECT_LT(expected_n, 2.0 * (force_n - truth_n)) << nu;
+  }
+}
+
 /// 20 mm/s: down by 2 mm, then along x by 5 mm. @return forces every 4 ms.
 std::vector<Vector3> dragged(double step_s, std::vector<double>* expected_n = nullptr) {
   const std::string block =
@@ -172,22 +192,25 @@ TEST(ForceError, AskingForItChangesNothing) {
   }
 }
 
+constexpr MeshErrorFactors kByElement = {1.7, 0.5};
+constexpr MeshErrorFactors kAveraged = {0.85, 0.3};
+
 TEST(LikelyMeshError, IsAShareOfTheForce) {
-  EXPECT_NEAR(likelyMeshError(0.04, false), 1.7 * 0.008, 1e-15);
-  EXPECT_NEAR(likelyMeshError(0.04, true), 0.85 * 0.008, 1e-15);
-  for (const bool averages : {false, true}) {
-    EXPECT_EQ(likelyMeshError(0.0, averages), 0.0);
-    EXPECT_EQ(likelyMeshError(5.0, averages), 1.0);
-    EXPECT_EQ(likelyMeshError(std::numeric_limits<double>::quiet_NaN(), averages), 1.0);
+  EXPECT_NEAR(likelyMeshError(0.04, kByElement), 1.7 * 0.008, 1e-15);
+  EXPECT_NEAR(likelyMeshError(0.04, kAveraged), 0.85 * 0.008, 1e-15);
+  for (const MeshErrorFactors& factors : {kByElement, kAveraged}) {
+    EXPECT_EQ(likelyMeshError(0.0, factors), 0.0);
+    EXPECT_EQ(likelyMeshError(5.0, factors), 1.0);
+    EXPECT_EQ(likelyMeshError(std::numeric_limits<double>::quiet_NaN(), factors), 1.0);
   }
 }
 
 // Press and drag of a ball of 5 mm: 138 % with even cells of 10 mm (edges of 11.4), 2 % refined to 1.5 mm (1.7); by element 164 and 4 %.
 TEST(ExpectedMeshError, IsWithinAFactorOfTwoOfWhatIsMet) {
-  EXPECT_NEAR(std::log(expectedMeshError(0.0114, 0.005, true) / 1.38), 0.0, std::log(2.0));
-  EXPECT_NEAR(std::log(expectedMeshError(0.0114, 0.005, false) / 1.64), 0.0, std::log(2.0));
-  EXPECT_NEAR(std::log(expectedMeshError(0.0017, 0.005, true) / 0.022), 0.0, std::log(2.0));
-  EXPECT_NEAR(std::log(expectedMeshError(0.0017, 0.005, false) / 0.04), 0.0, std::log(2.0));
+  EXPECT_NEAR(std::log(expectedMeshError(0.0114, 0.005, kAveraged) / 1.38), 0.0, std::log(2.0));
+  EXPECT_NEAR(std::log(expectedMeshError(0.0114, 0.005, kByElement) / 1.64), 0.0, std::log(2.0));
+  EXPECT_NEAR(std::log(expectedMeshError(0.0017, 0.005, kAveraged) / 0.022), 0.0, std::log(2.0));
+  EXPECT_NEAR(std::log(expectedMeshError(0.0017, 0.005, kByElement) / 0.04), 0.0, std::log(2.0));
 }
 
 }  // namespace
