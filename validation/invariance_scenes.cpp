@@ -81,8 +81,8 @@ double relative(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
 
 }  // namespace
 
-Scene twoToolsScene() {
-  Scene scene = makeScene(makeSoftBlock(ElasticModel::kCorotational));
+Scene twoToolsScene(ElasticModel model) {
+  Scene scene = makeScene(makeSoftBlock(model));
   ShapeDescription ball{SphereGeometry{0.005}, Pose::Identity()};
   ShapeDescription stick{CylinderGeometry{0.002, 0.012}, Pose::Identity()};
   stick.X_LS.linear() = Eigen::AngleAxisd(1.3, Vector3(1.0, 0.2, 0.0).normalized()).toRotationMatrix();

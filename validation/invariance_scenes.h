@@ -10,8 +10,8 @@
 
 namespace tissue_contact {
 
-/// A ball and a stick are pressed into a block and dragged over it, with gravity; friction .5 / .3 and .4.
-Scene twoToolsScene();
+/// A ball and a stick are pressed into a block of this model and dragged over it, with gravity; friction .5 / .3 and .4.
+Scene twoToolsScene(ElasticModel model = ElasticModel::kCorotational);
 /// A box and a tetrahedron (a closed mesh, from this STL file) are pressed into a neo-Hookean block with a stiff region.
 Scene sharpToolsScene(const std::string& stl_file);
 /// A ball presses a sheet with bending stiffness onto a soft block: tissue on tissue.

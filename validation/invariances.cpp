@@ -31,6 +31,7 @@ std::vector<NamedScene> allScenes(const std::string& stl_file) {
   std::vector<NamedScene> scenes;
   for (const RelaxationKind relaxation : {RelaxationKind::kGaussSeidel, RelaxationKind::kCholesky}) {
     for (NamedScene& one : std::vector<NamedScene>{{"two tools", twoToolsScene()},
+                                                   {"two tools, neo-Hookean", twoToolsScene(ElasticModel::kNeoHookean)},
                                                    {"sharp tools", sharpToolsScene(stl_file), kSameOfAMesh},
                                                    {"sheet on block", sheetOnBlockScene()}}) {
       one.name += relaxation == RelaxationKind::kCholesky ? ", Cholesky" : ", Gauss-Seidel";

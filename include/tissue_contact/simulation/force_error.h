@@ -3,6 +3,8 @@
 /// its parameters leave out is another matter (law_error.h).
 #pragma once
 
+#include "tissue_contact/tissue/element_materials.h"
+
 namespace tissue_contact {
 
 /// Of the force on one instrument in the last step, N: how far it likely is from what endlessly small cells and steps and an exact
