@@ -66,7 +66,7 @@ TEST(ForceError, OfFormHIsNeverTooSmall) {
 }
 
 // Neo-Hookean tissue as it comes averages a part of the change of volume alone, and still locks: cells of 5 mm under a ball of 5 mm.
-// Truth: cells of 1.67 mm with all of it averaged (the last line of what is computed here), by which 5 mm are 49 and 60 % off.
+// Truth: cells of 1.67 mm with all of it averaged (the last line of what is computed here), by which half and more of the force is too much.
 TEST(ForceError, OfNeoHookeanTissueKnowsThatItLocks) {
   for (const double nu : {0.45, 0.49}) {
     const auto press = [nu](const std::string& cells, const std::string& material) {
@@ -80,7 +80,7 @@ TEST(ForceError, OfNeoHookeanTissueKnowsThatItLocks) {
     };
     const auto [force_n, expected_n] = press("[12, 12, 4]", "");
     const double truth_n = press("[36, 36, 12]", ", dilatation: patch").first;
-    EXPECT_GT(expected_n, 0.6 * (force_n - truth_n)) << nu;
+    EXPECT_GT(expected_n, 0.5 * (force_n - truth_n)) << nu;
     EXPECT_LT(expected_n, 2.0 * (force_n - truth_n)) << nu;
   }
 }
