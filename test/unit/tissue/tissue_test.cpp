@@ -132,8 +132,8 @@ TEST(Tissue, RefusesModelsThatDoNotSuitTheGeometry) {
   EXPECT_NO_THROW(Tissue(description, Pose::Identity()));
   description.material.model = ElasticModel::kMassSpring;
   description.material.poissons_ratio = 0.25;
-  expectRefused(description,
-                {"tissue 'block'", "distortion is 'patch', which only the models linear, corotational and neo_hookean"});
+  expectRefused(description, {"tissue 'block'",
+                              "distortion is 'patch', which only the models linear, corotational and neo_hookean"});
   description = sheetDescription();
   std::get<SheetDescription>(description.geometry).thickness_m = 0.0;
   expectRefused(description, {"tissue 'flap'", "thickness_m", "> 0"});
