@@ -9,8 +9,8 @@ namespace tissue_contact {
 namespace {
 
 struct Case {
-  ElasticModel model;
   double poissons_ratio;
+  ElasticModel model;
   Dilatation dilatation;
   Distortion distortion;
   bool averages_dilatation;
@@ -21,21 +21,21 @@ constexpr auto kLinear = ElasticModel::kLinear;
 constexpr auto kNeoHookean = ElasticModel::kNeoHookean;
 
 constexpr Case kCases[] = {
-    {kLinear, 0.45, Dilatation::kAuto, Distortion::kAuto, true, true},
-    {kLinear, 0.2, Dilatation::kAuto, Distortion::kAuto, false, false},
-    {kLinear, 0.2, Dilatation::kAuto, Distortion::kPatch, true, true},
-    {kLinear, 0.45, Dilatation::kAuto, Distortion::kElement, true, false},
-    {kLinear, 0.45, Dilatation::kElement, Distortion::kAuto, false, false},
-    {ElasticModel::kCorotational, 0.2, Dilatation::kPatch, Distortion::kAuto, true, true},
+    {0.45, kLinear, Dilatation::kAuto, Distortion::kAuto, true, true},
+    {0.2, kLinear, Dilatation::kAuto, Distortion::kAuto, false, false},
+    {0.2, kLinear, Dilatation::kAuto, Distortion::kPatch, true, true},
+    {0.45, kLinear, Dilatation::kAuto, Distortion::kElement, true, false},
+    {0.45, kLinear, Dilatation::kElement, Distortion::kAuto, false, false},
+    {0.2, ElasticModel::kCorotational, Dilatation::kPatch, Distortion::kAuto, true, true},
     // Neo-Hookean tissue averages a part of all strain; of the change of volume all only where asked to.
-    {kNeoHookean, 0.45, Dilatation::kAuto, Distortion::kAuto, false, true},
-    {kNeoHookean, 0.2, Dilatation::kAuto, Distortion::kAuto, false, false},
-    {kNeoHookean, 0.2, Dilatation::kAuto, Distortion::kPatch, false, true},
-    {kNeoHookean, 0.45, Dilatation::kPatch, Distortion::kAuto, true, true},
-    {kNeoHookean, 0.45, Dilatation::kPatch, Distortion::kElement, true, false},
-    {kNeoHookean, 0.45, Dilatation::kElement, Distortion::kAuto, false, false},
-    {kNeoHookean, 0.45, Dilatation::kAuto, Distortion::kElement, false, false},
-    {ElasticModel::kMassSpring, 0.45, Dilatation::kAuto, Distortion::kAuto, false, false},
+    {0.45, kNeoHookean, Dilatation::kAuto, Distortion::kAuto, false, true},
+    {0.2, kNeoHookean, Dilatation::kAuto, Distortion::kAuto, false, false},
+    {0.2, kNeoHookean, Dilatation::kAuto, Distortion::kPatch, false, true},
+    {0.45, kNeoHookean, Dilatation::kPatch, Distortion::kAuto, true, true},
+    {0.45, kNeoHookean, Dilatation::kPatch, Distortion::kElement, true, false},
+    {0.45, kNeoHookean, Dilatation::kElement, Distortion::kAuto, false, false},
+    {0.45, kNeoHookean, Dilatation::kAuto, Distortion::kElement, false, false},
+    {0.45, ElasticModel::kMassSpring, Dilatation::kAuto, Distortion::kAuto, false, false},
 };
 
 void PrintTo(const Case& one, std::ostream* out) {

@@ -110,8 +110,10 @@ class FourLanes {
     Eigen::MatrixXd K(3 * kNodes, 3 * kNodes);
     for (std::size_t n = 0; n < kNodes; ++n) {
       for (std::size_t m = n; m < kNodes; ++m) {
-        K.block<3, 3>(3 * n, 3 * m) = block(n, m, lane);
-        if (m > n) K.block<3, 3>(3 * m, 3 * n) = block(n, m, lane).transpose();
+        const auto row = static_cast<Eigen::Index>(3 * n);
+        const auto column = static_cast<Eigen::Index>(3 * m);
+        K.block<3, 3>(row, column) = block(n, m, lane);
+        if (m > n) K.block<3, 3>(column, row) = block(n, m, lane).transpose();
       }
     }
     return K;
