@@ -143,20 +143,6 @@ std::unique_ptr<Elasticity::State> NeoHookean::makeStateAt(const NodalVectors& x
   return state;
 }
 
-template <typename Call>
-void NeoHookean::forEachChanged(const std::vector<BatchRange>& ranges, const DeformationState& state,
-                                const Call& call) const {
-  for (const BatchRange range : ranges) {
-    for (std::size_t batch = range.begin; batch < range.end; ++batch) {
-      if (state.changed[batch] == 0) continue;
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const bool used = batch * kLanes + lane < tets_->elements.size();
-        if (used && (state.changed[batch] >> lane & 1) != 0) call(batch, lane);
-      }
-    }
-  }
-}
-
 /// Adds an element's share. @param F of all elements. @param sign -1: takes it out.
 void NeoHookean::addShare(std::size_t e, const std::vector<MatrixBatch>& F, double pressure, double sign,
                           NeoHookeanStiffness& sum) const {
@@ -211,7 +197,7 @@ void NeoHookean::refreshStiffness(bool still, DeformationState& state) const {
 
 void NeoHookean::refreshElements(const std::vector<BatchRange>& ranges, bool rebuilds, DeformationState& state,
                                  NeoHookeanStiffness& sum) const {
-  forEachChanged(ranges, state, [&](std::size_t batch, std::size_t lane) {
+  forEachMarked(ranges, state.changed, tets_->elements.size(), [&](std::size_t batch, std::size_t lane) {
     const std::size_t e = batch * kLanes + lane;
     if (!rebuilds) addShare(e, state.tangent_deformations, 0.0, -1.0, sum);
     for (std::size_t i = 0; i < 9; ++i) state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];
@@ -226,7 +212,7 @@ void NeoHookean::markStalePatches(const std::vector<BatchRange>& ranges, bool st
     const bool wanted = state.held_patches.isStill(p) == still;
     state.stale[p] = wanted && change > kTangentChange * patches_->patches[p].bulk ? 1 : 0;
   }
-  forEachChanged(ranges, state, [&](std::size_t batch, std::size_t lane) {
+  forEachMarked(ranges, state.changed, tets_->elements.size(), [&](std::size_t batch, std::size_t lane) {
     const int p = patches_->of_batch[batch][lane];
     if (state.held_patches.isStill(p) == still) state.stale[p] = 1;
   });
@@ -241,7 +227,7 @@ bool NeoHookean::rebuildsFor(const std::vector<BatchRange>& elements, const std:
     ++changes;
     cancels = cancels || isLargeDeformation(state.tangent_deformations[batch], lane);
   };
-  if (!patches_) forEachChanged(elements, state, count);
+  if (!patches_) forEachMarked(elements, state.changed, tets_->elements.size(), count);
   for (std::size_t p = 0; patches_ && p < patches_->patches.size(); ++p) {
     if (state.stale[p] == 0) continue;
     for (const DilatationPatches::Member& member : patches_->patches[p].members) {

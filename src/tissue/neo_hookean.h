@@ -92,8 +92,6 @@ class NeoHookean : public Elasticity {
                 NeoHookeanStiffness& sum) const;
   void addPatchStiffness(std::size_t patch, double sign, DeformationState& state) const;
   void rebuildStiffness(DeformationState& state) const;
-  template <typename Call>
-  void forEachChanged(const std::vector<BatchRange>& ranges, const DeformationState& state, const Call& call) const;
   void refreshStiffness(bool still, DeformationState& state) const;
   void refreshElements(const std::vector<BatchRange>& ranges, bool rebuilds, DeformationState& state,
                        NeoHookeanStiffness& sum) const;

@@ -30,22 +30,10 @@ void NeoHookeanPatches::addForces(const std::vector<BatchRange>& ranges, double 
   }
 }
 
-template <typename Call>
-void NeoHookeanPatches::forEachChanged(const std::vector<BatchRange>& ranges, const State& state,
-                                       const Call& call) const {
-  for (const BatchRange range : ranges) {
-    for (std::size_t batch = range.begin; batch < range.end; ++batch) {
-      for (std::size_t lane = 0; lane < kLanes && state.changed[batch] >> lane != 0; ++lane) {
-        if ((state.changed[batch] >> lane & 1) != 0 && batch * kLanes + lane < size()) call(batch, lane);
-      }
-    }
-  }
-}
-
 bool NeoHookeanPatches::countChanged(const std::vector<BatchRange>& ranges, const State& state,
                                      std::size_t& changed) const {
   bool cancels = false;
-  forEachChanged(ranges, state, [&](std::size_t batch, std::size_t lane) {
+  forEachMarked(ranges, state.changed, size(), [&](std::size_t batch, std::size_t lane) {
     ++changed;
     cancels = cancels || isLargeDeformation(state.tangent_deformations[batch], lane);
   });
@@ -54,7 +42,7 @@ bool NeoHookeanPatches::countChanged(const std::vector<BatchRange>& ranges, cons
 
 void NeoHookeanPatches::refresh(const std::vector<BatchRange>& ranges, bool rebuilds, State& state,
                                 NeoHookeanStiffness& sum) const {
-  forEachChanged(ranges, state, [&](std::size_t batch, std::size_t lane) {
+  forEachMarked(ranges, state.changed, size(), [&](std::size_t batch, std::size_t lane) {
     const std::size_t patch = batch * kLanes + lane;
     if (!rebuilds) addShare(patch, state.tangent_deformations[batch], -1.0, sum);
     for (std::size_t i = 0; i < 9; ++i) state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];

@@ -51,8 +51,6 @@ class NeoHookeanPatches {
 
  private:
   void addShare(std::size_t patch, const MatrixBatch& F, double sign, NeoHookeanStiffness& sum) const;
-  template <typename Call>
-  void forEachChanged(const std::vector<BatchRange>& ranges, const State& state, const Call& call) const;
 
   PatchElements patches_;
 };

@@ -45,6 +45,19 @@ void splitBatches(std::size_t batches, const Rests& rests, std::vector<BatchRang
   }
 }
 
+/// Calls call(batch, lane) for each bit of `marks` that is set within the ranges. @param count of elements, or of patches: lanes beyond are not used.
+template <typename Call>
+void forEachMarked(const std::vector<BatchRange>& ranges, const std::vector<unsigned char>& marks, std::size_t count,
+                   const Call& call) {
+  for (const BatchRange range : ranges) {
+    for (std::size_t batch = range.begin; batch < range.end; ++batch) {
+      for (std::size_t lane = 0; lane < kLanes && marks[batch] >> lane != 0; ++lane) {
+        if ((marks[batch] >> lane & 1) != 0 && batch * kLanes + lane < count) call(batch, lane);
+      }
+    }
+  }
+}
+
 struct TetElements {
   using Lame = std::function<LameParameters(const MaterialDescription&)>;
 
