@@ -26,12 +26,11 @@ enum class Dilatation {
   kPatch     ///< the five tetrahedra of a block's cell, or about five neighbours of a mesh: does not
 };
 
-/// Over what a linear or corotational volume that averages its change of volume averages a part of its change of shape, and a
-/// neo-Hookean one a part of all strain.
+/// Over what a linear, corotational or neo-Hookean volume that averages its change of volume averages a part of its change of shape.
 enum class Distortion {
-  kAuto,  ///< kPatch where dilatation is averaged (neo-Hookean: from nu 0.3 on, too) and no stress relaxes, else kElement
+  kAuto,  ///< kPatch where dilatation is averaged and no stress relaxes, else kElement
   kElement,  ///< each tetrahedron: stiff in bending
-  kPatch     ///< as Dilatation::kPatch: a third to a half less error of a press, neo-Hookean a tenth to a third
+  kPatch     ///< as Dilatation::kPatch: a third to a half less error of a press
 };
 
 /// One term of a Prony series: a Maxwell element beside the elastic body.
