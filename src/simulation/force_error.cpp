@@ -76,7 +76,9 @@ std::vector<double> shearModuli(const TissueDescription& description) {
 double ForceErrorEstimate::total_n() const { return std::hypot(mesh_n, step_n, solver_n); }
 
 MeshErrorFactors meshErrorFactors(const ElementMaterials& materials) {
-  return averagesDistortion(materials) ? MeshErrorFactors{0.85, 0.3} : MeshErrorFactors{1.7, 0.5};
+  if (!averagesDistortion(materials)) return {1.7, 0.5};
+  if (!averagesDilatation(materials)) return {1.3, 0.4};
+  return {0.85, 0.3};
 }
 
 double likelyMeshError(double recovered, const MeshErrorFactors& factors) {

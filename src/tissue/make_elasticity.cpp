@@ -36,8 +36,6 @@ bool averagesDilatation(const ElementMaterials& materials) {
 bool averagesDistortion(const ElementMaterials& materials) {
   const MaterialDescription& first = materials.materials.at(0);
   if (!isContinuum(first.model) || !first.prony_series.empty()) return false;
-  // A share of all strain without the mean dilatation is unstable on a mesh of others (doc/method.md).
-  if (first.model == ElasticModel::kNeoHookean && first.dilatation != Dilatation::kPatch) return false;
   if (first.distortion != Distortion::kAuto) return first.distortion == Distortion::kPatch;
   return first.dilatation == Dilatation::kPatch ||
          (first.dilatation == Dilatation::kAuto && averagesByItself(materials));

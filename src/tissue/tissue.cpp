@@ -49,12 +49,6 @@ void checkModel(const TissueDescription& description) {
                                                 ": distortion is 'patch', but stress that relaxes is that of "
                                                 "elements; remove the key, or prony_series");
   }
-  if (material.distortion == Distortion::kPatch && material.model == ElasticModel::kNeoHookean &&
-      material.dilatation != Dilatation::kPatch) {
-    throw EntryError("material.distortion", tissueLabel(description) +
-                                                ": distortion is 'patch', for which neo_hookean needs dilatation: "
-                                                "patch; give that, or remove the key");
-  }
   if (material.distortion == Distortion::kPatch && material.dilatation == Dilatation::kElement) {
     throw EntryError("material.distortion",
                      tissueLabel(description) +

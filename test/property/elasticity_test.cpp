@@ -151,6 +151,7 @@ std::vector<Model> models() {
           {"MeanStrainLayered", makeBlock, layered(E::kCorotational, Dilatation::kPatch)},
           {"AveragedNeoHookean", makeBlock, averaged(E::kNeoHookean)},
           {"VolumeAveragedNeoHookean", makeBlock, volumeAveraged(E::kNeoHookean)},
+          {"SharedLayeredNeoHookean", makeBlock, layered(E::kNeoHookean, Dilatation::kAuto)},
           {"AveragedLayeredNeoHookean", makeBlock, layered(E::kNeoHookean, Dilatation::kPatch)},
           {"ViscoelasticLinear", makeBlock, viscous(material(E::kLinear, 5e3, 0.4)), false},
           {"ViscoelasticCorotational", makeBlock, viscous(averaged(E::kCorotational))},

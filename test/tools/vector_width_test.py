@@ -93,7 +93,7 @@ class VectorWidthTest(unittest.TestCase):
             "averaged": [*press, "--set", PATCH],
             "regions": [*press, "--set", REGION, "--set", PATCH],
             "neo-Hookean": [*press, "--set", MATERIAL + "model=neo_hookean", "--set", PATCH],
-            "neo-Hookean patches": [*press, "--set", MATERIAL + "model=neo_hookean", "--set", PATCH, "--set", MATERIAL + "distortion=auto"],
+            "neo-Hookean patches": [*press, "--set", MATERIAL + "model=neo_hookean", "--set", MATERIAL + "distortion=auto"],
             "neo-Hookean regions": [*press, "--set", MATERIAL + "model=neo_hookean", "--set", REGION],
             "linear": [*press, "--set", MATERIAL + "model=linear"],
             "linear regions": [*press, "--set", MATERIAL + "model=linear", "--set", REGION],

@@ -20,8 +20,8 @@ struct ForceErrorEstimate {
   double total_n() const;  ///< root of the sum of squares: the parts have nothing to do with each other
 };
 
-/// What the estimates below are times, by what is averaged over patches: all change of volume and a part of that of shape (`distortion`), or
-/// not both.
+/// What the estimates below are times, by what is averaged over patches: all change of volume and a part of that of shape (`distortion`), a
+/// part of all strain (neo-Hookean tissue as it comes), or neither.
 struct MeshErrorFactors {
   double of_strain;
   double of_lengths;
@@ -32,14 +32,14 @@ MeshErrorFactors meshErrorFactors(const ElementMaterials& materials);
 /// shape's contacts, radius sqrt(A / pi) for the rest area A of the nodes that carry force. At most 1.
 ///
 /// of_strain times recovered^1.5: 1.7 by element, .85 where strain is averaged as said above, fitted to forces against the stored truths of the benchmark (press and drag of a ball, a recorded robot over a pad)
-/// on meshes of 288 to 3714 nodes, which err by 4 to 350 %. An energy's error would be `recovered` itself. Forces of contact at vertices
+/// on meshes of 288 to 3714 nodes, which err by 4 to 350 %; 1.3 where a part of all strain is, from presses of a ball at nu .45 and .49 (force_error_test). An energy's error would be `recovered` itself. Forces of contact at vertices
 /// err by less where cells are small, since what is held at vertices only is soft while cells are stiff; and by more where the contact is
 /// smaller than a cell. Where five nodes or fewer carry a shape, what its lengths say (expectedMeshError()) counts if that is more. How well
 /// it does: doc/accuracy.md.
 double likelyMeshError(double recovered, const MeshErrorFactors& factors);
 
 /// Likely error of the force on a shape pressed in by most of its half extent, relative, from the lengths alone: for a word of warning before
-/// anything moves. of_lengths (edge / half extent)^1.8: 0.5 by element, 0.3 averaged; within a factor of two of what press and drag and the recorded robot meet on meshes of
+/// anything moves. of_lengths (edge / half extent)^1.8: 0.5 by element, 0.3 averaged, 0.4 between; within a factor of two of what press and drag and the recorded robot meet on meshes of
 /// .3 to 3 half extents.
 double expectedMeshError(double surface_edge_m, double half_extent_m, const MeshErrorFactors& factors);
 

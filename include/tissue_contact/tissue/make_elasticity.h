@@ -23,7 +23,7 @@ bool isContinuum(ElasticModel model);
 /// Whether volume changes of these materials are averaged over patches: what they ask for, or what kAuto chooses.
 bool averagesDilatation(const ElementMaterials& materials);
 
-/// Whether a part of their changes of shape is, likewise; of neo-Hookean ones with the former alone.
+/// Whether a part of their changes of shape is, likewise; of neo-Hookean ones without the former, a part of all strain.
 bool averagesDistortion(const ElementMaterials& materials);
 
 /// Of the tissue and of its regions.

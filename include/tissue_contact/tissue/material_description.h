@@ -26,11 +26,12 @@ enum class Dilatation {
   kPatch     ///< the five tetrahedra of a block's cell, or about five neighbours of a mesh: does not
 };
 
-/// Over what a linear, corotational or neo-Hookean volume that averages its change of volume averages a part of its change of shape.
+/// Over what a linear or corotational volume that averages its change of volume averages a part of its change of shape, and a
+/// neo-Hookean one a part of all strain.
 enum class Distortion {
-  kAuto,  ///< kPatch where dilatation is averaged and no stress relaxes, else kElement
+  kAuto,  ///< kPatch where dilatation is averaged (neo-Hookean: from nu 0.3 on, too) and no stress relaxes, else kElement
   kElement,  ///< each tetrahedron: stiff in bending
-  kPatch     ///< as Dilatation::kPatch: a third to a half less error of a press
+  kPatch     ///< as Dilatation::kPatch: a third to a half less error of a press, neo-Hookean a tenth to a third
 };
 
 /// One term of a Prony series: a Maxwell element beside the elastic body.

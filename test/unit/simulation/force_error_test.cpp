@@ -65,7 +65,7 @@ TEST(ForceError, OfFormHIsNeverTooSmall) {
   }
 }
 
-// Neo-Hookean tissue as it comes is by element, and locks: cells of 5 mm under a ball of 5 mm.
+// Neo-Hookean tissue as it comes averages a part of the change of volume alone, and still locks: cells of 5 mm under a ball of 5 mm.
 // Truth: cells of 1.67 mm with all of it averaged (the last line of what is computed here), by which half and more of the force is too much.
 TEST(ForceError, OfNeoHookeanTissueKnowsThatItLocks) {
   for (const double nu : {0.45, 0.49}) {

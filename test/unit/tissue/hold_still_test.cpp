@@ -135,11 +135,13 @@ TEST_P(HoldStillSaves, ElementsOfStillNodesAreNotLookedAt) {
 constexpr Model kFiniteElements[] = {
     {ElasticModel::kLinear, Dilatation::kElement},       {ElasticModel::kLinear, Dilatation::kPatch},
     {ElasticModel::kCorotational, Dilatation::kElement}, {ElasticModel::kCorotational, Dilatation::kPatch},
-    {ElasticModel::kNeoHookean, Dilatation::kElement},   {ElasticModel::kNeoHookean, Dilatation::kPatch}};
+    {ElasticModel::kNeoHookean, Dilatation::kElement},   {ElasticModel::kNeoHookean, Dilatation::kPatch},
+    {ElasticModel::kNeoHookean, Dilatation::kAuto}};
 
 std::string nameOf(const testing::TestParamInfo<Model>& model) {
   const bool patches = model.param.second == Dilatation::kPatch;
-  return std::string(elasticModelName(model.param.first)) + (patches ? "_of_patches" : "");
+  const bool shares = model.param.first == ElasticModel::kNeoHookean && model.param.second == Dilatation::kAuto;
+  return std::string(elasticModelName(model.param.first)) + (patches ? "_of_patches" : shares ? "_shared" : "");
 }
 
 INSTANTIATE_TEST_SUITE_P(FiniteElements, HoldStill, testing::ValuesIn(kFiniteElements), nameOf);

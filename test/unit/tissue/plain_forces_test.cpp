@@ -185,6 +185,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"MeanStrainCorotational", ElasticModel::kCorotational, Dilatation::kPatch, Distortion::kPatch},
                     Case{"NeoHookean", ElasticModel::kNeoHookean, Dilatation::kElement},
                     Case{"AveragedNeoHookean", ElasticModel::kNeoHookean, Dilatation::kPatch},
+                    Case{"SharedNeoHookean", ElasticModel::kNeoHookean, Dilatation::kAuto, Distortion::kPatch},
                     Case{"AveragedSharedNeoHookean", ElasticModel::kNeoHookean, Dilatation::kPatch,
                          Distortion::kPatch}),
     [](const auto& one) { return std::string(one.param.name); });
