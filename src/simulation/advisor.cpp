@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <variant>
 
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/simulation/force_error.h"
@@ -177,6 +178,26 @@ double shortSurfaceEdge(const Tissue& tissue) {
   return *tenth;
 }
 
+std::optional<Advice> sizeDoubt(const TissueDescription& tissue, const NodalVectors& rest, const HalfExtents& shapes) {
+  const auto* const mesh = std::get_if<MeshDescription>(&tissue.geometry);
+  const auto* const shell = std::get_if<ShellDescription>(&tissue.geometry);
+  if (mesh == nullptr && shell == nullptr) return std::nullopt;
+  constexpr double kLongOrgan = 2.0;  // m
+  const Vector3 size = rest.rowwise().maxCoeff() - rest.rowwise().minCoeff();
+  const bool is_small = size.maxCoeff() < shapes.smallest_m;
+  if (!is_small && size.maxCoeff() < kLongOrgan) return std::nullopt;
+  std::string text = "tissue " + quoted(tissue.name) + " is " + twoDigits(1e3 * size.x()) + " x " +
+                     twoDigits(1e3 * size.y()) + " x " + twoDigits(1e3 * size.z()) + " mm";
+  if (is_small) {
+    text += ", smaller than every instrument's shape (" + twoDigits(1e3 * shapes.smallest_m) +
+            " mm half extent and more)";
+  }
+  return Advice{text + ": is the unit of its file that of the scene? It has scale_m_per_unit " +
+                    twoDigits(mesh != nullptr ? mesh->scale_m_per_unit : shell->scale_m_per_unit) +
+                    " (1 for metres, 0.001 for millimetres)",
+                true};
+}
+
 Advice meshLine(const TissueDescription& tissue, double edge_m, const HalfExtents& shapes) {
   return withExpectedError(tissue,
                            "mesh of tissue " + quoted(tissue.name) + ": as it is, cells of " + twoDigits(1e3 * edge_m) +
@@ -211,12 +232,12 @@ std::string coarseCellsText(const Simulator& simulator) {
   return text.str();
 }
 
-std::vector<Advice> adviceLines(const Scene& scene, const FoldWatch& folds, const std::vector<Advice>& meshes) {
+std::vector<Advice> adviceLines(const Scene& scene, const FoldWatch& folds, const std::vector<std::vector<Advice>>& meshes) {
   std::vector<Advice> lines = {{sleepLine(scene)}};
   for (std::size_t t = 0; t < scene.tissues.size(); ++t) {
     addPresetLines(scene.tissues[t], lines);
     lines.push_back({modelLine(scene, scene.tissues[t])});
-    if (!meshes[t].text.empty()) lines.push_back(meshes[t]);
+    lines.insert(lines.end(), meshes[t].begin(), meshes[t].end());
   }
   for (std::size_t p = 0; p < scene.tissue_pairs.size(); ++p) lines.push_back({pairLine(scene, p, folds)});
   for (const FrictionDescription& pair : scene.friction) lines.push_back({frictionLine(scene, pair)});

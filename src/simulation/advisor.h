@@ -3,6 +3,7 @@
 /// line about each with its reason, out.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,13 @@ bool advisedSleep(const Scene& scene);
 bool advisedSleepByParts(const Scene& scene);
 
 /// One line per choice: what it is about, what was chosen, why.
-/// @param meshes about each tissue, with an empty text: nothing.
-std::vector<Advice> adviceLines(const Scene& scene, const FoldWatch& folds, const std::vector<Advice>& meshes);
+/// @param meshes about each tissue.
+std::vector<Advice> adviceLines(const Scene& scene, const FoldWatch& folds,
+                                const std::vector<std::vector<Advice>>& meshes);
+
+/// A warning where a tissue from a file is so small or so large that its unit is likely another than the scene says; else none.
+/// @param rest 3 x n, m.
+std::optional<Advice> sizeDoubt(const TissueDescription& tissue, const NodalVectors& rest, const HalfExtents& shapes);
 
 /// What the mesh of a volume is, and what it is likely to do to the forces of the instruments' shapes: a warning where
 /// even the largest shape meets coarse cells.

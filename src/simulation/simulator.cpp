@@ -44,18 +44,20 @@ const std::vector<Instrument>& Simulator::instruments() const { return implement
 const std::vector<Tissue>& Simulator::tissues() const { return implementation_->tissues; }
 std::vector<Advice> Simulator::advice() const {
   const Implementation& all = *implementation_;
-  std::vector<Advice> meshes(all.tissues.size());
+  const HalfExtents shapes = all.touched_places.halfExtents();
+  std::vector<std::vector<Advice>> meshes(all.tissues.size());
   for (std::size_t t = 0; t < meshes.size(); ++t) {
-    if (!isContinuum(scene().tissues[t].material.model)) continue;
-    const HalfExtents shapes = all.touched_places.halfExtents();
+    const TissueDescription& tissue = scene().tissues[t];
+    if (const auto doubt = sizeDoubt(tissue, all.tissues[t].restPositions(), shapes)) meshes[t].push_back(*doubt);
+    if (!isContinuum(tissue.material.model)) continue;
     if (!all.refinements[t]) {
-      meshes[t] = meshLine(scene().tissues[t], shortSurfaceEdge(all.tissues[t]), shapes);
+      meshes[t].push_back(meshLine(tissue, shortSurfaceEdge(all.tissues[t]), shapes));
       continue;
     }
     const std::vector<double> cells_m = all.touched_places.cellsOn(static_cast<int>(t));
     const double cell_m = cells_m.empty() ? 0.0 : cells_m.front();
-    meshes[t] = refinementLine(scene().tissues[t], cells_m, all.refinements[t]->cells().reach(cell_m),
-                               all.refinements[t]->nodesAtMost(), shapes);
+    meshes[t].push_back(refinementLine(tissue, cells_m, all.refinements[t]->cells().reach(cell_m),
+                                       all.refinements[t]->nodesAtMost(), shapes));
   }
   return adviceLines(scene(), all.folds, meshes);
 }

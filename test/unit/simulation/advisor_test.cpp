@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "support/temporary_directory.h"
 #include "support/text_scene.h"
 #include "tissue_contact/tissue/material_preset.h"
 
@@ -101,6 +102,42 @@ TEST(Advisor, SaysWhatItHasChosen) {
   EXPECT_TRUE(has(other, "looked for in every step, as advisor.self_contact asks"));
   EXPECT_TRUE(has(other, "solved as if it depended on direction"));
   EXPECT_TRUE(has(makeSlab("sleep: auto", "static: 0"), "nothing tangential is computed"));
+}
+
+/// Doubts about the size of a tissue from a file that is one unit wide.
+std::vector<std::string> sizeDoubts(const std::string& geometry, const std::string& scale) {
+  const TemporaryDirectory directory;
+  const std::string vtk = directory.write("organ.vtk",
+                                          "# vtk DataFile Version 2.0\norgan\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+                                          "POINTS 4 double\n0 0 0\n1 0 0\n0 0.5 0\n0 0 0.25\n"
+                                          "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n");
+  const std::string obj = directory.write("organ.obj", "v 0 0 0\nv 1 0 0\nv 0 0.5 0.25\nf 1 2 3\n");
+  const std::string file = geometry == "mesh" ? "file: " + vtk : "thickness_m: 0.001, file: " + obj;
+  const std::string scene = "tissues:\n  - name: organ\n    " + geometry + ": {" + file + ", scale_m_per_unit: " + scale +
+                            "}\n    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}\n"
+                            "    fixed: [{sphere: {center_m: [0, 0, 0], radius_m: 100}}]\n" +
+                            onlyBall("[0, 0, 20]");
+  std::vector<std::string> doubts;
+  for (const Advice& advice : makeSimulator(scene, {{"probe", probeUrdf(0.005)}}).advice()) {
+    if (advice.text.find("is the unit of its file that of the scene?") == std::string::npos) continue;
+    EXPECT_TRUE(advice.is_warning);
+    doubts.push_back(advice.text);
+  }
+  return doubts;
+}
+
+TEST(Advisor, DoubtsTheUnitOfAMeshThatIsSmallerThanTheToolOrLongerThanTwoMetres) {
+  for (const char* const geometry : {"mesh", "shell"}) {
+    EXPECT_EQ(sizeDoubts(geometry, "0.1"), std::vector<std::string>()) << geometry;
+    EXPECT_EQ(sizeDoubts(geometry, "0.006"), std::vector<std::string>()) << geometry;
+    EXPECT_EQ(sizeDoubts(geometry, "0.0001"),
+              std::vector<std::string>({"tissue 'organ' is 0.1 x 0.05 x 0.025 mm, smaller than every instrument's "
+                                        "shape (5 mm half extent and more): is the unit of its file that of the scene? "
+                                        "It has scale_m_per_unit 0.0001 (1 for metres, 0.001 for millimetres)"}));
+    ASSERT_EQ(sizeDoubts(geometry, "3").size(), 1U);
+    EXPECT_EQ(sizeDoubts(geometry, "3")[0].find("tissue 'organ' is 3000 x 1500 x 750 mm: is the unit"), 0U)
+        << sizeDoubts(geometry, "3")[0];
+  }
 }
 
 /// Lines about materials by name of a block of such a material, one part of it another's.
