@@ -267,6 +267,34 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
   return false;
 }
 
+void ContactDetector::turnWithSlide(const std::vector<std::vector<Pose>>& start_X_WL,
+                                    const std::vector<std::vector<Pose>>& end_X_WL, const Vector3& way_W,
+                                    Contact& contact) const {
+  constexpr double kOwn = 0.99;                    // cosine
+  constexpr double kMostTurn = 0.25, kEdge = 0.5;  // rad
+  const ContactKey& key = contact.key;
+  if (key.corner >= 0) return;  // its normal is the tissue's
+  for (const TouchingShape& shape : implementation_->shapes) {
+    if (shape.instrument != key.instrument || shape.contact_link != key.link || shape.shape != key.shape) continue;
+    const Pose start = start_X_WL.at(shape.instrument).at(shape.link) * shape.X_LS;
+    const Pose end = end_X_WL.at(shape.instrument).at(shape.link) * shape.X_LS;
+    const Vector3 p_S = start.linear().transpose() * (contact.p_WC - start.translation());
+    const SignedDistance here = shape.distance->at(p_S);
+    const Vector3 from_W = start.linear() * here.normal;
+    if (!(from_W.dot(contact.R_WC.col(0)) > kOwn)) return;
+    Vector3 way = end.linear().transpose() * (contact.p_WC + way_W - end.translation()) - p_S;
+    way -= here.normal.dot(way) * here.normal;
+    const SignedDistance there = shape.distance->at(p_S + way);
+    const double angle = std::acos(std::clamp(here.normal.dot(there.normal), -1.0, 1.0));
+    const double share = std::clamp((kEdge - angle) / (kEdge - kMostTurn), 0.0, 1.0);
+    if (!(share > 0.0)) return;
+    const Quaternion turn = Quaternion::FromTwoVectors(from_W, end.linear() * there.normal);
+    contact.R_WC = Quaternion::Identity().slerp(share, turn).toRotationMatrix() * contact.R_WC;
+    contact.gap_m += share * (there.distance - here.distance - there.normal.dot(way));
+    return;
+  }
+}
+
 /// Least signed distance of the shape over the surface's triangles, or `bound` if that is less.
 /// @param place unless null: gets where that is, if some triangle is as near.
 double ContactDetector::Implementation::surfaceDistance(MovingSurface& surface, const TouchingShape& shape,
@@ -281,16 +309,23 @@ double ContactDetector::Implementation::surfaceDistance(MovingSurface& surface, 
   const auto inShape = [&](int one) -> Vector3 { return R_SW * (surface.x(one) - X_WS.translation()); };
   double nearest = std::min(bound, distance.at(inShape(node)).distance);
   surface.overlapping(boxAround(distance, X_WS, std::max(nearest, 0.0)), candidates);
+  const auto offer = [&](double there, const Triangle& nodes, const Vector3& weights) {
+    if (!(there <= nearest)) return;
+    nearest = there;
+    if (place == nullptr) return;
+    place->nodes = nodes;
+    place->weights = weights;
+  };
+  // One point of each first: most triangles are then known to be farther before their nearest point is looked for.
+  for (const int triangle : candidates) {
+    const auto& [a, b, c] = surface.triangles()[triangle];
+    offer(distance.at((inShape(a) + inShape(b) + inShape(c)) / 3.0).distance, {a, b, c}, Vector3::Constant(1.0 / 3.0));
+  }
   ClosestPoint closest;
   for (const int triangle : candidates) {
     const Triangle& nodes = surface.triangles()[triangle];
     const TrianglePoints points(inShape(nodes[0]), inShape(nodes[1]), inShape(nodes[2]));
-    if (!distance.closest(points, nearest, closest) || !(closest.distance <= nearest)) continue;
-    nearest = closest.distance;
-    if (place != nullptr) {
-      place->nodes = nodes;
-      place->weights = closest.weights;
-    }
+    if (distance.closest(points, nearest, closest)) offer(closest.distance, nodes, closest.weights);
   }
   return nearest;
 }

@@ -189,8 +189,8 @@ std::optional<Advice> sizeDoubt(const TissueDescription& tissue, const NodalVect
   std::string text = "tissue " + quoted(tissue.name) + " is " + twoDigits(1e3 * size.x()) + " x " +
                      twoDigits(1e3 * size.y()) + " x " + twoDigits(1e3 * size.z()) + " mm";
   if (is_small) {
-    text += ", smaller than every instrument's shape (" + twoDigits(1e3 * shapes.smallest_m) +
-            " mm half extent and more)";
+    text +=
+        ", smaller than every instrument's shape (" + twoDigits(1e3 * shapes.smallest_m) + " mm half extent and more)";
   }
   return Advice{text + ": is the unit of its file that of the scene? It has scale_m_per_unit " +
                     twoDigits(mesh != nullptr ? mesh->scale_m_per_unit : shell->scale_m_per_unit) +
@@ -232,7 +232,8 @@ std::string coarseCellsText(const Simulator& simulator) {
   return text.str();
 }
 
-std::vector<Advice> adviceLines(const Scene& scene, const FoldWatch& folds, const std::vector<std::vector<Advice>>& meshes) {
+std::vector<Advice> adviceLines(const Scene& scene, const FoldWatch& folds,
+                                const std::vector<std::vector<Advice>>& meshes) {
   std::vector<Advice> lines = {{sleepLine(scene)}};
   for (std::size_t t = 0; t < scene.tissues.size(); ++t) {
     addPresetLines(scene.tissues[t], lines);

@@ -33,6 +33,7 @@ class InstrumentMotion {
 
   const VectorX& positions(int instrument) const { return states_[instrument].positions; }
   const std::vector<std::vector<Pose>>& startPoses() const { return X_WL_; }  ///< [instrument][link of its model]
+  const std::vector<std::vector<Pose>>& endPoses() const { return X_WL_end_; }
 
   /// Mean velocity (m/s, world) over the step of the material point of a touching link that is at p_W at its start.
   Vector3 pointVelocity(int instrument, int contact_link, const Vector3& p_W, double dt_s) const;

@@ -313,6 +313,7 @@ void Simulator::Implementation::detectContacts(double dt) {
     std::sort(found.begin(), found.end(), [](const Contact& a, const Contact& b) { return a.key < b.key; });
   }
   contacts.begin(detector, x, margins, found);
+  contacts.slideOn(detector, solution.v, dt);
 }
 
 /// Nodes that contacts act on wake before anything is computed with them.

@@ -109,6 +109,15 @@ void StepContacts::begin(const ContactDetector& detector, const std::vector<Noda
   memory_.recall(found, reaches_m_, contacts_);
 }
 
+void StepContacts::slideOn(const ContactDetector& detector, const std::vector<NodalVectors>& v, double dt) {
+  for (SolvedContact& solved : contacts_) {
+    Contact& contact = solved.contact;
+    if (contact.key.instrument < 0 || solved.state == ContactState::kOpen) continue;
+    const Vector3 way_W = dt * pointOf(v[contact.key.tissue], contact.nodes, contact.weights);
+    detector.turnWithSlide(motion_.startPoses(), motion_.endPoses(), way_W, contact);
+  }
+}
+
 void StepContacts::touchedNodes(int tissue, std::vector<int>& nodes) const {
   nodes.clear();
   for (const SolvedContact& solved : contacts_) {

@@ -81,6 +81,14 @@ class ContactDetector {
   bool measure(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL, double margin_m,
                Contact& contact) const;
 
+  /// Turns the frame of a contact with a shape as the shape's surface turns under its point while that slides in a step, and lets the gap
+  /// follow to second order: frame and gap are then those of the step's end, as its forces are (doc/method.md, "Sliding").
+  /// Only where the surface is smooth: all of a turn up to 0.25 rad, nothing from 0.5 rad on; and where the frame's normal is the shape's own.
+  /// @param start_X_WL, end_X_WL at both ends of the step.
+  /// @param way_W of the tissue's point in the step, as expected, m.
+  void turnWithSlide(const std::vector<std::vector<Pose>>& start_X_WL, const std::vector<std::vector<Pose>>& end_X_WL,
+                     const Vector3& way_W, Contact& contact) const;
+
   /// Lowers `closest` to the nearest shape and tissue surface (less half the thickness of a sheet), if any is nearer
   /// than what `closest` holds. Exact, whatever the distance. Pairs whose bounding boxes are farther apart than that cost
   /// next to nothing, so keep `closest` from call to call. Sizes as for detect(). Not thread-safe.

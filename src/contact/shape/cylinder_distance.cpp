@@ -3,7 +3,7 @@
 ///
 /// Where on a triangle the cylinder is nearest: as for the box (box_distance.cpp), with psi the larger of the distance
 /// to the side (of the endless cylinder) and to the nearer cap plane. Every point that can minimise psi over a triangle
-/// has a closed form; all are tried.
+/// has a closed form; all are tried that the triangle's place leaves: most see the side alone, or a cap.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -39,7 +39,7 @@ class CylinderDistance : public ShapeDistance {
   void offerOnEdge(const TrianglePoints& triangle, int edge, double u, SoftMinimum& minimum) const {
     if (u > 0.0 && u < 1.0) offer(triangle, weightsOnEdge(edge, u), minimum);
   }
-  void offerEdge(const TrianglePoints& triangle, int edge, SoftMinimum& minimum) const;
+  void offerEdge(const TrianglePoints& triangle, int edge, bool sees_side, bool sees_cap, SoftMinimum& minimum) const;
   void offerInside(const TrianglePoints& triangle, SoftMinimum& minimum) const;
   void addNormals(const Vector3& p, ClosestPoint& result) const;
   bool nearestInside(const TrianglePoints& triangle, Vector3& weights) const;
@@ -73,12 +73,19 @@ SignedDistance CylinderDistance::at(const Vector3& p_S) const {
 }
 
 bool CylinderDistance::closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const {
+  const TriangleBall ball(triangle);
+  if (isFarther(ball, margin)) return false;
+  // No distance changes by more than the way, their difference by no more than twice that.
+  const double side_beyond_cap = beyondSide(ball.centre) - beyondCap(ball.centre);
+  const bool sees_side = side_beyond_cap > -2.0 * ball.radius;
+  const bool sees_cap = side_beyond_cap < 2.0 * ball.radius;
   SoftMinimum minimum(kTie * size_);
   for (int i = 0; i < 3; ++i) {
     offer(triangle, Vector3::Unit(i), minimum);
-    offerEdge(triangle, i, minimum);
+    offerEdge(triangle, i, sees_side, sees_cap, minimum);
   }
-  if (!triangle.normal.isZero(0.0)) offerInside(triangle, minimum);
+  const bool meets_axis = beyondSide(ball.centre) + radius_ <= ball.radius;
+  if ((sees_side && sees_cap) || meets_axis) offerInside(triangle, minimum);
   if (minimum.lowest() > margin) return false;  // psi <= phi
   result.weights = minimum.weights();
   result.gradients = GradientSet();
@@ -98,13 +105,15 @@ bool CylinderDistance::closest(const TrianglePoints& triangle, double margin, Cl
 
 /// Points of an edge a + u d where psi can be least: nearest to the axis; z = 0; and where side and cap are equally
 /// far, (a + u d)_xy^2 = (radius - half length +- z)^2.
-void CylinderDistance::offerEdge(const TrianglePoints& triangle, int edge, SoftMinimum& minimum) const {
+void CylinderDistance::offerEdge(const TrianglePoints& triangle, int edge, bool sees_side, bool sees_cap,
+                                 SoftMinimum& minimum) const {
   const Vector3& a = triangle.corners[edge];
   const Vector3 d = triangle.corners[(edge + 1) % 3] - a;
   const double across = d.x() * d.x() + d.y() * d.y();
   const double mixed = a.x() * d.x() + a.y() * d.y();
-  offerOnEdge(triangle, edge, -mixed / across, minimum);
-  offerOnEdge(triangle, edge, -a.z() / d.z(), minimum);
+  if (sees_side) offerOnEdge(triangle, edge, -mixed / across, minimum);
+  if (sees_cap) offerOnEdge(triangle, edge, -a.z() / d.z(), minimum);
+  if (!sees_side || !sees_cap) return;
   for (const double sign : {-1.0, 1.0}) {
     const double offset = radius_ - half_length_ + sign * a.z();
     const double square = across - d.z() * d.z();
@@ -122,6 +131,7 @@ void CylinderDistance::offerEdge(const TrianglePoints& triangle, int edge, SoftM
 /// far and a combination of their normals is the triangle's normal N, which puts the point in direction +-N_xy from the
 /// axis. Each is projected on the triangle, so that one outside does no harm.
 void CylinderDistance::offerInside(const TrianglePoints& triangle, SoftMinimum& minimum) const {
+  if (triangle.normal.isZero(0.0)) return;
   const auto offerPoint = [&](const Vector3& p) {
     if (p.allFinite()) offer(triangle, projectOnTriangle(triangle.corners, p), minimum);
   };
@@ -172,16 +182,35 @@ bool CylinderDistance::nearestInside(const TrianglePoints& triangle, Vector3& we
   return weights.minCoeff() > 0.0;
 }
 
-/// Parameter in [0, 1] of the point of a + u d nearest to the cylinder: the distance is convex along it.
+/// Parameter in [0, 1] of the point of a + u d nearest to the cylinder: the distance is convex along it, so its slope has one root;
+/// by the Illinois rule (Dowell & Jarratt, BIT 11 (1971) 168-174).
 double CylinderDistance::nearestOnEdge(const Vector3& a, const Vector3& d) const {
-  constexpr int kMaxSteps = 54;  // to round-off
-  double low = 0.0;
-  double high = 1.0;
+  constexpr int kMaxSteps = 54;
+  constexpr double kRoundOff = 1e-15;
+  const auto slopeAt = [&](double u) { return at(a + u * d).normal.dot(d); };
+  double low = 0.0, high = 1.0;
+  double at_low = slopeAt(low), at_high = slopeAt(high);
+  if (!(at_low < 0.0)) return low;
+  if (!(at_high > 0.0)) return high;
+  double u = low;
+  int side = 0;  // of the root that the last u was on
   for (int step = 0; step < kMaxSteps; ++step) {
-    const double middle = 0.5 * (low + high);
-    (at(a + middle * d).normal.dot(d) > 0.0 ? high : low) = middle;
+    const double before = u;
+    u = (low * at_high - high * at_low) / (at_high - at_low);
+    const double slope = slopeAt(u);
+    if (slope == 0.0 || std::abs(u - before) < kRoundOff) break;
+    if (slope < 0.0) {
+      low = u;
+      at_low = slope;
+      if (side < 0) at_high *= 0.5;  // else the other end would stay where it is
+    } else {
+      high = u;
+      at_high = slope;
+      if (side > 0) at_low *= 0.5;
+    }
+    side = slope < 0.0 ? -1 : 1;
   }
-  return 0.5 * (low + high);
+  return u;
 }
 
 /// By location, not by value: distances that differ by round-off are 1e-8 of the size apart.

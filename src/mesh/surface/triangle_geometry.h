@@ -28,6 +28,14 @@ struct TrianglePoints {
   }
 };
 
+/// A ball that holds a triangle.
+struct TriangleBall {
+  Vector3 centre;
+  double radius;
+
+  explicit TriangleBall(const TrianglePoints& triangle);
+};
+
 /// Unit normal of a triangle, zero when it is degenerate (kFlatTriangle).
 Vector3 triangleNormal(const Vector3& a, const Vector3& b, const Vector3& c);
 

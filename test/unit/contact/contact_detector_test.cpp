@@ -158,6 +158,76 @@ TEST(ContactDetector, LinkAndShapePosesPlaceTheShape) {
   }
 }
 
+// A ball at the origin of its link: all has a closed form.
+TEST(ContactDetector, FramesTurnWithASlideOverABall) {
+  const TwoByTwo scene = makeScene();
+  std::vector<Instrument> instruments;
+  instruments.push_back(makeInstrument("ball", {sphere(0.005, Vector3::Zero())}));
+  const ContactDetector detector(instruments, shareSurfaces(scene.surfaces, scene.positions));
+  Contact contact;
+  contact.key = {0, 0, 0, 0, {0, -1, -1}};
+  const Vector3 p(0.003, 0.0, -0.0039);
+  const double gap = p.norm() - 0.005;
+  const auto turned = [&](const Vector3& to, const Pose& end) {
+    contact.p_WC = p;
+    contact.R_WC = contactFrame(p.normalized());
+    contact.gap_m = gap;
+    detector.turnWithSlide({{Pose::Identity(), Pose::Identity()}}, {{Pose::Identity(), end}}, to - p, contact);
+    EXPECT_LT((contact.R_WC.transpose() * contact.R_WC - Matrix3::Identity()).norm(), 1e-14);
+    return contact.R_WC.col(0);
+  };
+  const Vector3 along = Vector3(0.39, 0.1, 0.3).normalized();  // across p
+  ASSERT_NEAR(along.dot(p), 0.0, 1e-17);
+  const Vector3 q = p + 4e-4 * along;
+  EXPECT_LT((turned(q, Pose::Identity()) - q.normalized()).norm(), 1e-14);
+  EXPECT_NEAR(contact.gap_m + contact.R_WC.col(0).dot(q - p), q.norm() - 0.005, 1e-17) << "the gap there, of the frame";
+  EXPECT_LT((contact.R_WC.col(1) - contactFrame(p.normalized()).col(1)).norm(), 0.1) << "turns with it";
+  // What moves towards the ball does not slide; the tool may move as well, or in its place.
+  EXPECT_LT((turned(q - 1e-3 * p.normalized(), Pose::Identity()) - q.normalized()).norm(), 1e-14);
+  EXPECT_LT((turned(p, at(p - q)) - q.normalized()).norm(), 1e-14);
+  EXPECT_LT((turned(q, at(q - p)) - p.normalized()).norm(), 1e-14) << "both move: it sticks";
+  // A ball that turns under a point is the same ball.
+  const Pose spin(Eigen::AngleAxisd(0.02, Vector3(0.0, 0.6, 0.8)));
+  EXPECT_LT((turned(p, spin) - p.normalized()).norm(), 1e-3 * 0.02);
+  // Half of the turn at 0.375 rad, none from 0.5 rad on.
+  const auto at_angle = [&](double angle) { return Vector3(p + std::tan(angle) * p.norm() * along); };
+  EXPECT_NEAR(std::acos(turned(at_angle(0.375), Pose::Identity()).dot(p.normalized())), 0.5 * 0.375, 1e-9);
+  EXPECT_EQ(turned(at_angle(0.51), Pose::Identity()), contactFrame(p.normalized()).col(0));
+  EXPECT_EQ(contact.gap_m, gap);
+}
+
+TEST(ContactDetector, FramesDoNotTurnAtEdgesNorOfCorners) {
+  const TwoByTwo scene = makeScene();
+  std::vector<Instrument> instruments;
+  instruments.push_back(makeInstrument("box", {box({0.01, 0.01, 0.01}, Vector3::Zero())}));
+  const ContactDetector detector(instruments, shareSurfaces(scene.surfaces, scene.positions));
+  const std::vector<std::vector<Pose>> still = {{Pose::Identity(), Pose::Identity()}};
+  Contact contact;
+  contact.key = {0, 0, 0, 0, {0, -1, -1}};
+  contact.p_WC = {0.0, 0.0049, -0.0051};
+  contact.R_WC = contactFrame(-Vector3::UnitZ());
+  contact.gap_m = 1e-4;
+  const Contact before = contact;
+  const auto unchanged = [&] { return contact.R_WC == before.R_WC && contact.gap_m == before.gap_m; };
+  for (const double y : {0.0, 0.0049, 0.006}) {  // over the face, and past its edge
+    detector.turnWithSlide(still, still, {0.0, y - 0.0049, 0.0}, contact);
+    EXPECT_LT((contact.R_WC - before.R_WC).norm(), 1e-15) << y;
+    EXPECT_NEAR(contact.gap_m, before.gap_m, 1e-17) << y;
+  }
+  contact = before;
+  const Pose roll(Eigen::AngleAxisd(0.02, Vector3::UnitX()));
+  contact.key.corner = 3;
+  detector.turnWithSlide(still, {{Pose::Identity(), roll}}, Vector3::Zero(), contact);
+  EXPECT_TRUE(unchanged()) << "the normal of a corner is the tissue's";
+  contact.key.corner = -1;
+  detector.turnWithSlide(still, {{Pose::Identity(), roll}}, Vector3::Zero(), contact);
+  EXPECT_LT((contact.R_WC.col(0) + roll.linear() * Vector3::UnitZ()).norm(), 1e-14) << "a face turns with its tool";
+  contact = before;
+  contact.R_WC = contactFrame(-Vector3::UnitX());
+  detector.turnWithSlide(still, {{Pose::Identity(), roll}}, Vector3::Zero(), contact);
+  EXPECT_EQ(contact.R_WC, contactFrame(-Vector3::UnitX())) << "not the shape's own normal";
+}
+
 TEST(ContactDetector, RepeatsToTheLastBitWhateverItSawBefore) {
   TwoByTwo scene = makeScene();
   ContactDetector detector(scene.instruments, shareSurfaces(scene.surfaces, scene.positions));
