@@ -10,7 +10,8 @@
 namespace tissue_contact {
 
 struct SolvedContact {
-  Contact contact;  ///< as detected at the start of the step, but p_WC moved along to its end
+  /// As detected at the start of the step, but for p_WC, which is that of its end, and the frame, turned to it where the point slid.
+  Contact contact;
   ContactState state = ContactState::kOpen;
   Vector3 force_on_tissue_n =
       Vector3::Zero();  ///< lambda / dt in the world frame, N; the instrument feels the opposite
