@@ -270,8 +270,12 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
 void ContactDetector::turnWithSlide(const std::vector<std::vector<Pose>>& start_X_WL,
                                     const std::vector<std::vector<Pose>>& end_X_WL, const Vector3& way_W,
                                     Contact& contact) const {
-  constexpr double kOwn = 0.99;                    // cosine
-  constexpr double kMostTurn = 0.25, kEdge = 0.5;  // rad
+  constexpr double kOwn = 0.99;                               // cosine
+  constexpr double kMostTurn = 0.25, kSharpTurn = 0.5;        // rad
+  constexpr double kMostCurved = 4.0, kSharpCurvature = 8.0;  // over the shape's size
+  const auto faded = [](double value, double all, double none) {
+    return std::clamp((none - value) / (none - all), 0.0, 1.0);
+  };
   const ContactKey& key = contact.key;
   if (key.corner >= 0) return;  // its normal is the tissue's
   for (const TouchingShape& shape : implementation_->shapes) {
@@ -285,8 +289,10 @@ void ContactDetector::turnWithSlide(const std::vector<std::vector<Pose>>& start_
     Vector3 way = end.linear().transpose() * (contact.p_WC + way_W - end.translation()) - p_S;
     way -= here.normal.dot(way) * here.normal;
     const SignedDistance there = shape.distance->at(p_S + way);
-    const double angle = std::acos(std::clamp(here.normal.dot(there.normal), -1.0, 1.0));
-    const double share = std::clamp((kEdge - angle) / (kEdge - kMostTurn), 0.0, 1.0);
+    const double turned = (there.normal - here.normal).norm();
+    const double length = way.norm();
+    const double curvature = length > 0.0 ? turned * shape.distance->size() / length : 0.0;
+    const double share = std::min(faded(turned, kMostTurn, kSharpTurn), faded(curvature, kMostCurved, kSharpCurvature));
     if (!(share > 0.0)) return;
     const Quaternion turn = Quaternion::FromTwoVectors(from_W, end.linear() * there.normal);
     contact.R_WC = Quaternion::Identity().slerp(share, turn).toRotationMatrix() * contact.R_WC;

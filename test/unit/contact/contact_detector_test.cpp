@@ -189,9 +189,10 @@ TEST(ContactDetector, FramesTurnWithASlideOverABall) {
   // A ball that turns under a point is the same ball.
   const Pose spin(Eigen::AngleAxisd(0.02, Vector3(0.0, 0.6, 0.8)));
   EXPECT_LT((turned(p, spin) - p.normalized()).norm(), 1e-3 * 0.02);
-  // Half of the turn at 0.375 rad, none from 0.5 rad on.
+  // Half of the turn where normals differ by 0.375, none from 0.5 on.
+  const double half = 2.0 * std::asin(0.5 * 0.375);
   const auto at_angle = [&](double angle) { return Vector3(p + std::tan(angle) * p.norm() * along); };
-  EXPECT_NEAR(std::acos(turned(at_angle(0.375), Pose::Identity()).dot(p.normalized())), 0.5 * 0.375, 1e-9);
+  EXPECT_NEAR(std::acos(turned(at_angle(half), Pose::Identity()).dot(p.normalized())), 0.5 * half, 1e-9);
   EXPECT_EQ(turned(at_angle(0.51), Pose::Identity()), contactFrame(p.normalized()).col(0));
   EXPECT_EQ(contact.gap_m, gap);
 }
@@ -214,6 +215,12 @@ TEST(ContactDetector, FramesDoNotTurnAtEdgesNorOfCorners) {
     EXPECT_LT((contact.R_WC - before.R_WC).norm(), 1e-15) << y;
     EXPECT_NEAR(contact.gap_m, before.gap_m, 1e-17) << y;
   }
+  // Beyond the edge the distance is rounded, by the gap.
+  contact.p_WC = {0.0, 0.005 + 1e-6, -0.005 - 1e-6};
+  contact.R_WC = contactFrame(Vector3(0.0, 1.0, -1.0).normalized());
+  const Matrix3 frame = contact.R_WC;
+  detector.turnWithSlide(still, still, {0.0, 1e-7, 1e-7}, contact);
+  EXPECT_EQ(contact.R_WC, frame);
   contact = before;
   const Pose roll(Eigen::AngleAxisd(0.02, Vector3::UnitX()));
   contact.key.corner = 3;
