@@ -113,7 +113,8 @@ std::vector<std::string> sizeDoubts(const std::string& geometry, const std::stri
                                           "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n");
   const std::string obj = directory.write("organ.obj", "v 0 0 0\nv 1 0 0\nv 0 0.5 0.25\nf 1 2 3\n");
   const std::string file = geometry == "mesh" ? "file: " + vtk : "thickness_m: 0.001, file: " + obj;
-  const std::string scene = "tissues:\n  - name: organ\n    " + geometry + ": {" + file + ", scale_m_per_unit: " + scale +
+  const std::string scene = "tissues:\n  - name: organ\n    " + geometry + ": {" + file +
+                            ", scale_m_per_unit: " + scale +
                             "}\n    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.4, density_kg_per_m3: 1000}\n"
                             "    fixed: [{sphere: {center_m: [0, 0, 0], radius_m: 100}}]\n" +
                             onlyBall("[0, 0, 20]");
