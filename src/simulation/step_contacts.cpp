@@ -113,8 +113,11 @@ void StepContacts::slideOn(const ContactDetector& detector, const std::vector<No
   for (SolvedContact& solved : contacts_) {
     Contact& contact = solved.contact;
     if (contact.key.instrument < 0 || solved.state == ContactState::kOpen) continue;
-    const Vector3 way_W = dt * pointOf(v[contact.key.tissue], contact.nodes, contact.weights);
-    detector.turnWithSlide(motion_.startPoses(), motion_.endPoses(), way_W, contact);
+    const ContactKey& key = contact.key;
+    const Vector3 v_W = solved.state == ContactState::kStatic
+                            ? motion_.pointVelocity(key.instrument, key.link, contact.p_WC, dt)  // held by the tool
+                            : pointOf(v[key.tissue], contact.nodes, contact.weights);
+    detector.turnWithSlide(motion_.startPoses(), motion_.endPoses(), dt * v_W, contact);
   }
 }
 

@@ -44,5 +44,24 @@ TEST(Sliding, NormalsDoNotLagByTheStep) {
   }
 }
 
+// A held point moves with the tool, whatever it did before: frames of its own velocity would turn by 0.02 rad as the tool sets off.
+TEST(Sliding, WhatIsHeldKeepsItsNormal) {
+  Simulator simulator =
+      makeSimulator(blockScene("[0.05, 0.04, 0.0125]", "[20, 16, 5]", "poissons_ratio: 0.45") +
+                        onlyBall("[0, 0, 0.0226]") + "friction: [{instrument: probe, tissue: block, static: 5}]\n",
+                    {{"probe", probeUrdf(0.01)}});
+  simulator.advance(0.1, {Vector3(0.0, 0.0, -0.0021)});
+  simulator.advance(0.1, {Vector3(0.0, 0.0, -0.0021)});
+  simulator.advance(0.001, {Vector3(2e-4, 0.0, -0.0021)});
+  const Vector3 center(2e-4, 0.0, 0.0226 - 0.0021);
+  int held = 0;
+  for (const SolvedContact& solved : simulator.contacts()) {
+    if (solved.state != ContactState::kStatic) continue;
+    ++held;
+    EXPECT_LT((solved.contact.R_WC.col(0) - (solved.contact.p_WC - center).normalized()).norm(), 1e-4);
+  }
+  EXPECT_GT(held, 5);
+}
+
 }  // namespace
 }  // namespace tissue_contact
