@@ -272,7 +272,7 @@ void ContactDetector::turnWithSlide(const std::vector<std::vector<Pose>>& start_
                                     Contact& contact) const {
   constexpr double kOwn = 0.99;                               // cosine
   constexpr double kMostTurn = 0.25, kSharpTurn = 0.5;        // rad
-  constexpr double kMostCurved = 4.0, kSharpCurvature = 8.0;  // over the shape's size
+  constexpr double kMostCurved = 4.0, kSharpCurvature = 8.0;  // over the smallest half extent
   constexpr double kRoundOff = 1e-12;
   const auto faded = [](double value, double all, double none) {
     return std::clamp((none - value) / (none - all), 0.0, 1.0);
@@ -291,7 +291,7 @@ void ContactDetector::turnWithSlide(const std::vector<std::vector<Pose>>& start_
     way -= here.normal.dot(way) * here.normal;
     const SignedDistance there = shape.distance->at(p_S + way);
     const double turned = std::max((there.normal - here.normal).norm() - kRoundOff, 0.0);
-    const double curvature = turned > 0.0 ? turned * shape.distance->size() / way.norm() : 0.0;
+    const double curvature = turned > 0.0 ? turned * shape.half_extent / way.norm() : 0.0;
     const double share = std::min(faded(turned, kMostTurn, kSharpTurn), faded(curvature, kMostCurved, kSharpCurvature));
     if (!(share > 0.0)) return;
     const Quaternion turn = Quaternion::FromTwoVectors(from_W, end.linear() * there.normal);

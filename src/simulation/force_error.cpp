@@ -16,9 +16,9 @@ namespace {
 constexpr double kRadiiLookedAt = 4.0;
 /// Under a shape that so few nodes carry, strain is as smooth as the few elements around make it, however wrong: lengths tell more.
 constexpr int kFewNodes = 5;
-/// What a step leaves of the turn of normals in a slide, which frames follow (doc/method.md, "Sliding"): between the 7 to 25 times its square that
+/// What a step leaves of the turn of normals in a slide, which frames follow (doc/method.md, "Sliding"): between the 0.13 to 0.26 of it that
 /// drags of a ball and the recorded robot meet (doc/accuracy.md).
-constexpr double kOfTurnSquared = 13.0;
+constexpr double kOfTurn = 0.18;
 
 /// What one shape does to one tissue.
 struct Touch {
@@ -117,8 +117,7 @@ std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const st
       const Touch touch = touchOf(tissues[t], contacts.data() + shape, contacts.data() + end);
       if (!(touch.radius_m > 0.0)) continue;
       sum_n += touch.sum_n;
-      const double turn = touch.slip_m / touch.radius_m;
-      step += touch.sum_n * std::min(turn, kOfTurnSquared * turn * turn);
+      step += touch.sum_n * kOfTurn * touch.slip_m / touch.radius_m;
       if (!judges_mesh) continue;
       double share = likelyMeshError(recoveredStrainError(tissues[t], shearModuli(scene.tissues[t]), x[t],
                                                           touch.center_W, kRadiiLookedAt * touch.radius_m),

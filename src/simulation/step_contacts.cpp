@@ -112,7 +112,7 @@ void StepContacts::begin(const ContactDetector& detector, const std::vector<Noda
 void StepContacts::slideOn(const ContactDetector& detector, const std::vector<NodalVectors>& v, double dt) {
   for (SolvedContact& solved : contacts_) {
     Contact& contact = solved.contact;
-    if (contact.key.instrument < 0 || solved.state == ContactState::kOpen) continue;
+    if (contact.key.instrument < 0) continue;
     const ContactKey& key = contact.key;
     const Vector3 v_W = solved.state == ContactState::kStatic
                             ? motion_.pointVelocity(key.instrument, key.link, contact.p_WC, dt)  // held by the tool

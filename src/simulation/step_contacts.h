@@ -49,7 +49,7 @@ class StepContacts {
   void begin(const ContactDetector& detector, const std::vector<NodalVectors>& x, const DetectionMargins& margins,
              std::vector<Contact>& found);
 
-  /// Turns the frames of those that touched before as they are expected to slide in this step.
+  /// Turns the frames of contacts with instruments as these are expected to slide in this step.
   /// @param v per tissue, of the step before, m/s.
   void slideOn(const ContactDetector& detector, const std::vector<NodalVectors>& v, double dt);
 

@@ -13,8 +13,8 @@ struct ForceErrorEstimate {
   /// Whether `mesh_n` is an estimate. It is not, and 0, where the instrument touches a sheet, a shell or a mass-spring volume.
   bool knows_mesh = true;
   double mesh_n = 0.0;
-  /// The force times 13 (s/r)^2, and no more than s/r, by which normals turn around a ball: s the slip, r the contact radius. Frames are turned to
-  /// the step's end by the slip of the step before. What only presses has none: forces are those at the step's end.
+  /// The force times 0.18 of the slip over the contact radius, by which normals turn around a ball in the step: frames follow, but for what
+  /// changes from step to step. Too small where they do not, at tools' sharp edges. What only presses has none: forces are those at the step's end.
   double step_n = 0.0;
   double solver_n = 0.0;   ///< momentum residual, of all tissues and contacts, times force
   double total_n() const;  ///< root of the sum of squares: the parts have nothing to do with each other

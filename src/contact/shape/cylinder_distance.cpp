@@ -169,14 +169,14 @@ void CylinderDistance::addNormals(const Vector3& p, ClosestPoint& result) const 
 }
 
 /// The point below the cylinder's foremost point towards the triangle's plane, if the triangle holds it. Where that is a
-/// line or a cap, an edge is as near.
+/// line or a cap, its end or middle is taken: if the triangle holds another point of it only, an edge is as near.
 bool CylinderDistance::nearestInside(const TrianglePoints& triangle, Vector3& weights) const {
   if (triangle.normal.isZero(0.0)) return false;
   const double height = triangle.normal.dot(triangle.corners[0]);
   const Vector3 n = std::copysign(1.0, height) * triangle.normal;
   const double tilt = std::sqrt(n.x() * n.x() + n.y() * n.y());
-  if (!(tilt > 0.0)) return false;
-  const Vector3 foremost(radius_ * n.x() / tilt, radius_ * n.y() / tilt, std::copysign(half_length_, n.z()));
+  const double towards = tilt > 0.0 ? radius_ / tilt : 0.0;
+  const Vector3 foremost(towards * n.x(), towards * n.y(), std::copysign(half_length_, n.z()));
   if (!(n.dot(foremost) < std::abs(height))) return false;  // the plane cuts the cylinder
   weights = projectOnTriangle(triangle.corners, foremost);
   return weights.minCoeff() > 0.0;

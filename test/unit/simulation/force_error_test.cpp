@@ -65,7 +65,7 @@ TEST(ForceError, OfFormHIsNeverTooSmall) {
   }
 }
 
-// Neo-Hookean tissue as it comes averages a part of the change of volume alone, and still locks: cells of 5 mm under a ball of 5 mm.
+// Neo-Hookean tissue as it comes averages a part of all strain alone, and still locks: cells of 5 mm under a ball of 5 mm.
 // Truth: cells of 1.67 mm with all of it averaged (the last line of what is computed here), by which half and more of the force is too much.
 TEST(ForceError, OfNeoHookeanTissueKnowsThatItLocks) {
   for (const double nu : {0.45, 0.49}) {
@@ -103,7 +103,7 @@ std::vector<Vector3> dragged(double step_s, std::vector<double>* expected_n = nu
 }
 
 // Against steps of 0.5 ms, the mesh following the ball. In the press nodes come into contact and meshes move at other times; no slip, so next to
-// nothing is expected.
+// nothing is expected; found are 0.8 % in the drag, 2.5 % in the press.
 TEST(ForceError, TellsWhatTheStepDoesInADragWithinAFactorOfTwo) {
   std::vector<double> expected_n;
   const std::vector<Vector3> coarse = dragged(0.008, &expected_n);
