@@ -270,9 +270,10 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
 void ContactDetector::turnWithSlide(const std::vector<std::vector<Pose>>& start_X_WL,
                                     const std::vector<std::vector<Pose>>& end_X_WL, const Vector3& way_W,
                                     Contact& contact) const {
-  constexpr double kOwn = 0.99;                               // cosine
-  constexpr double kMostTurn = 0.25, kSharpTurn = 0.5;        // rad
+  constexpr double kOwn = 0.99;                        // cosine
+  constexpr double kMostTurn = 0.1, kSharpTurn = 0.2;  // rad: what slides farther is not foretold by the step before
   constexpr double kMostCurved = 4.0, kSharpCurvature = 8.0;  // over the smallest half extent
+  constexpr double kMostDepth = 0.1;  // of the smallest half extent: deeper ones are being freed, and do not slide
   constexpr double kRoundOff = 1e-12;
   const auto faded = [](double value, double all, double none) {
     return std::clamp((none - value) / (none - all), 0.0, 1.0);
@@ -281,6 +282,7 @@ void ContactDetector::turnWithSlide(const std::vector<std::vector<Pose>>& start_
   if (key.corner >= 0) return;  // its normal is the tissue's
   for (const TouchingShape& shape : implementation_->shapes) {
     if (shape.instrument != key.instrument || shape.contact_link != key.link || shape.shape != key.shape) continue;
+    if (contact.gap_m < -kMostDepth * shape.half_extent) return;
     const Pose start = start_X_WL.at(shape.instrument).at(shape.link) * shape.X_LS;
     const Pose end = end_X_WL.at(shape.instrument).at(shape.link) * shape.X_LS;
     const Vector3 p_S = start.linear().transpose() * (contact.p_WC - start.translation());
