@@ -11,7 +11,8 @@
 /// small strains follow Young's modulus and Poisson's ratio exactly, mu = 4/3 mu_Lame and
 /// lambda = lambda_Lame + 5/6 mu_Lame.
 ///
-/// Stiffness: the exact second derivative with its negative eigenvalues set to zero, element by element, in closed form
+/// Stiffness: the exact second derivative without negative eigenvalues, element by element: down to -mu they are zero, beyond that what they
+/// are more negative by counts as stiffness (doc/method.md: with zero alone tissue that is torn goes astray); in closed form
 /// from the singular values of F (one 3 x 3 eigenproblem is left).
 /// With a patch_of, a share s of psi is that of patches of neighbours as elements of several nodes, with the mean F of their
 /// tetrahedra (patch_elements.h), as in mean_strain.h and for its reasons:

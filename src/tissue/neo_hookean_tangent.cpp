@@ -15,11 +15,15 @@
 namespace tissue_contact {
 namespace {
 
-Matrix3 withoutNegativeEigenvalues(const Matrix3& symmetric) {
+/// What stands for an eigenvalue: nothing for a negative one down to -mu, and what it is more negative by than that beyond.
+double madePositive(double value, double mu) { return value > 0.0 ? value : std::max(0.0, -value - mu); }
+
+Matrix3 withoutNegativeEigenvalues(const Matrix3& symmetric, double mu) {
   const double minor = symmetric(0, 0) * symmetric(1, 1) - symmetric(1, 0) * symmetric(1, 0);
   if (symmetric(0, 0) > 0.0 && minor > 0.0 && symmetric.determinant() > 0.0) return symmetric;
   const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(symmetric);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
+  const Vector3 values = eigen.eigenvalues().unaryExpr([mu](double value) { return madePositive(value, mu); });
+  return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
 /// Symmetric 3 x 3 matrices.
@@ -31,7 +35,11 @@ TISSUE_CONTACT_INLINE Lanes root(const Lanes& a) {
   return Lanes{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
 }
 
-TISSUE_CONTACT_INLINE Lanes positive(const Lanes& a) { return a > 0.0 ? a : Lanes{}; }
+/// As madePositive().
+TISSUE_CONTACT_INLINE Lanes madePositive(const Lanes& a, const Lanes& mu) {
+  const Lanes beyond = -a - mu;
+  return a > 0.0 ? a : (beyond > 0.0 ? beyond : Lanes{});
+}
 
 /// Jacobi's rotation that makes A_pq zero, also of the columns p and q of V; r is the third place. Where A_pq is round-off beside the
 /// diagonal the lane stays as it is, so that other lanes may go on.
@@ -127,7 +135,7 @@ TISSUE_CONTACT_INLINE Mask decompose(const LaneMatrix& F, LaneMatrix& U, Lanes* 
   return ~((second_squared > kLineSquared * squared) & (squared > kLeastSquared) & (squared < kMostSquared));
 }
 
-TISSUE_CONTACT_INLINE void dropNegativeEigenvalues(LaneSymmetric& A) {
+TISSUE_CONTACT_INLINE void dropNegativeEigenvalues(LaneSymmetric& A, const Lanes& mu) {
   const Lanes minor = A.xx * A.yy - A.xy * A.xy;
   const Lanes determinant = A.zz * minor - A.yz * (A.xx * A.yz - A.xy * A.zx) + A.zx * (A.xy * A.yz - A.yy * A.zx);
   const Mask is_positive = (A.xx > 0.0) & (minor > 0.0) & (determinant > 0.0);
@@ -135,7 +143,7 @@ TISSUE_CONTACT_INLINE void dropNegativeEigenvalues(LaneSymmetric& A) {
   LaneSymmetric D = A;
   LaneMatrix V;
   diagonalise(D, V);
-  const Lanes values[3] = {positive(D.xx), positive(D.yy), positive(D.zz)};
+  const Lanes values[3] = {madePositive(D.xx, mu), madePositive(D.yy, mu), madePositive(D.zz, mu)};
   const auto entry = [&](std::size_t r, std::size_t c) {
     return values[0] * V.m[r] * V.m[c] + values[1] * V.m[r + 3] * V.m[c + 3] + values[2] * V.m[r + 6] * V.m[c + 6];
   };
@@ -175,13 +183,13 @@ TISSUE_CONTACT_INLINE void spectralTangents(const TangentLanes& all, const Lanes
   stretch.xy = by_sigma * sigma[0] * sigma[1] + by_cofactor * c[0] * c[1] + along_C * sigma[2];
   stretch.yz = by_sigma * sigma[1] * sigma[2] + by_cofactor * c[1] * c[2] + along_C * sigma[0];
   stretch.zx = by_sigma * sigma[2] * sigma[0] + by_cofactor * c[2] * c[0] + along_C * sigma[1];
-  dropNegativeEigenvalues(stretch);
+  dropNegativeEigenvalues(stretch, mu);
   for (Lanes* const entry : {&stretch.xx, &stretch.yy, &stretch.zz, &stretch.xy, &stretch.yz, &stretch.zx}) {
     *entry *= volume;
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    const Lanes twist = positive(along_F + along_C * sigma[k]);
-    const Lanes flip = positive(along_F - along_C * sigma[k]);
+    const Lanes twist = madePositive(along_F + along_C * sigma[k], mu);
+    const Lanes flip = madePositive(along_F - along_C * sigma[k], mu);
     tangent.direct[k] = 0.5 * volume * (flip + twist);
     tangent.crossed[k] = 0.5 * volume * (flip - twist);
   }
@@ -250,12 +258,12 @@ Tangent::Tangent(const TangentPoint& point) {
     const int j = (k + 2) % 3;
     stretch_(i, j) += along_C * sigma[k];
     stretch_(j, i) += along_C * sigma[k];
-    const double twist = std::max(0.0, along_F + along_C * sigma[k]);
-    const double flip = std::max(0.0, along_F - along_C * sigma[k]);
+    const double twist = madePositive(along_F + along_C * sigma[k], material.mu);
+    const double flip = madePositive(along_F - along_C * sigma[k], material.mu);
     direct_(i, j) = direct_(j, i) = 0.5 * (flip + twist);
     crossed_(i, j) = crossed_(j, i) = 0.5 * (flip - twist);
   }
-  stretch_ = withoutNegativeEigenvalues(stretch_);
+  stretch_ = withoutNegativeEigenvalues(stretch_, material.mu);
 }
 
 Matrix3 Tangent::block(const Vector3& gradient_n, const Vector3& gradient_m) const {

@@ -1,6 +1,6 @@
 /// @file
 /// Room `tissue`, private: an element's share of the neo-Hookean stiffness, whatever the number of its nodes: the second derivative of the
-/// energy of neo_hookean.h with its negative eigenvalues set to zero. Deformation gradients in; 3 x 3 blocks per pair of nodes out.
+/// energy of neo_hookean.h with its negative eigenvalues made positive. Deformation gradients in; 3 x 3 blocks per pair of nodes out.
 ///
 /// In the frames U, V of F = U diag(sigma) V' the derivative falls apart: with X = U' dF V, dP = U Y V',
 ///   Y_ii = sum_l stretch_il X_ll   and, for i != j,   Y_ij = direct_ij X_ij + crossed_ij X_ji,

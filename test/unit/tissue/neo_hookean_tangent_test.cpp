@@ -193,5 +193,22 @@ TEST(NeoHookeanTangent, TellsWhereItMeansNothing) {
   EXPECT_EQ(lanes.compute(), 0b1101);
 }
 
+// Blown up to twice its size, all shears of it would release energy, by -16 mu. With no stiffness against the stress of such a state, tissue
+// that is torn went to 1e23 m.
+TEST(NeoHookeanTangent, WhatIsFarFromStableIsStiff) {
+  const LameParameters material = {2000.0, 1500.0};
+  const Tangent tangent({2.0 * Matrix3::Identity(), material, {}});
+  const double along_F = material.mu - material.mu / 13.0;
+  const double value = along_F - 2.0 * (7.0 * material.lambda - 0.75 * material.mu);
+  ASSERT_LT(value, -10.0 * material.mu);
+  const Vector3 x = Vector3::UnitX(), y = Vector3::UnitY();  // dF = y x' + x y'
+  const double sheared =
+      y.dot(tangent.block(x, x) * y) + x.dot(tangent.block(y, y) * x) + 2.0 * y.dot(tangent.block(x, y) * x);
+  EXPECT_NEAR(sheared, 2.0 * (-value - material.mu), 1e-9 * material.mu);
+  const Tangent nearly({1.3 * Matrix3::Identity(), {2226.0, 1500.0}, {}});  // negative, but by less than mu: nothing
+  EXPECT_NEAR(y.dot(nearly.block(x, x) * y) + x.dot(nearly.block(y, y) * x) + 2.0 * y.dot(nearly.block(x, y) * x), 0.0,
+              1e-9);
+}
+
 }  // namespace
 }  // namespace tissue_contact
