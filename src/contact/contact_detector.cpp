@@ -82,6 +82,7 @@ struct ContactDetector::Implementation {
   std::vector<std::size_t> link_counts;  ///< per instrument
   NarrowPhase narrow_phase;
   std::vector<int> candidates;
+  std::vector<double> least;  ///< scratch: bounds of their distances, m
   std::vector<ShapeContact> found;
   int pinched = 0;  ///< contacts left out by the last detect(), because there is no room for them
 
@@ -324,14 +325,19 @@ double ContactDetector::Implementation::surfaceDistance(MovingSurface& surface, 
     place->nodes = nodes;
     place->weights = weights;
   };
-  // One point of each first: most triangles are then known to be farther before their nearest point is looked for.
-  for (const int triangle : candidates) {
-    const auto& [a, b, c] = surface.triangles()[triangle];
-    offer(distance.at((inShape(a) + inShape(b) + inShape(c)) / 3.0).distance, {a, b, c}, Vector3::Constant(1.0 / 3.0));
-  }
-  ClosestPoint closest;
+  // One point of each first: distances change by no more than the way, so most triangles are then known to be farther.
+  least.clear();
   for (const int triangle : candidates) {
     const Triangle& nodes = surface.triangles()[triangle];
+    const TriangleBall ball({inShape(nodes[0]), inShape(nodes[1]), inShape(nodes[2])});
+    const double there = distance.at(ball.centre).distance;
+    offer(there, nodes, Vector3::Constant(1.0 / 3.0));
+    least.push_back(there - ball.radius);
+  }
+  ClosestPoint closest;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (least[i] > nearest) continue;
+    const Triangle& nodes = surface.triangles()[candidates[i]];
     const TrianglePoints points(inShape(nodes[0]), inShape(nodes[1]), inShape(nodes[2]));
     if (distance.closest(points, nearest, closest)) offer(closest.distance, nodes, closest.weights);
   }

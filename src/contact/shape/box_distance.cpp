@@ -79,7 +79,6 @@ PlaneSet BoxDistance::facePlanes(const TrianglePoints& triangle) const {
 }
 
 bool BoxDistance::closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const {
-  if (isFarther(TriangleBall(triangle), margin)) return false;
   const PlaneMinimum minimum = minimiseMaximum(facePlanes(triangle), kTie * size_);
   if (minimum.value > margin) return false;  // psi <= phi
   result.weights = minimum.weights;

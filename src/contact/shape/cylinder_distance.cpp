@@ -73,8 +73,7 @@ SignedDistance CylinderDistance::at(const Vector3& p_S) const {
 }
 
 bool CylinderDistance::closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const {
-  const TriangleBall ball(triangle);
-  if (isFarther(ball, margin)) return false;
+  const TriangleBall ball(triangle.corners);
   // No distance changes by more than the way, their difference by no more than twice that.
   const double side_beyond_cap = beyondSide(ball.centre) - beyondCap(ball.centre);
   const bool sees_side = side_beyond_cap > -2.0 * ball.radius;

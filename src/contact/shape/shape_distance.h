@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "contact/shape/gradient_set.h"
-#include "contact/tolerances.h"
 #include "mesh/surface/triangle_geometry.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/instrument/collision_shape.h"
@@ -75,13 +74,6 @@ class ShapeDistance {
 
   /// Corners deeper than this below a triangle have come from its other side, m.
   virtual double cornerReach() const { return size(); }
-
- protected:
-  /// Whether all of the triangle is farther than `margin`, as one distance tells: it changes by no more than the way from there.
-  /// For exact distances; cheap beside closest().
-  bool isFarther(const TriangleBall& triangle, double margin) const {
-    return at(triangle.centre).distance - triangle.radius > margin + kTouch * size();
-  }
 };
 
 /// The signed distances of many shapes: those of one mesh share its field.

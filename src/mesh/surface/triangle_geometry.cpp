@@ -21,8 +21,8 @@ bool isFlat(double normal_squared, double edge_squared) {
 TrianglePoints::TrianglePoints(const Vector3& a, const Vector3& b, const Vector3& c)
     : corners{a, b, c}, normal(triangleNormal(a, b, c)) {}
 
-TriangleBall::TriangleBall(const TrianglePoints& triangle) {
-  const auto& [a, b, c] = triangle.corners;
+TriangleBall::TriangleBall(const std::array<Vector3, 3>& corners) {
+  const auto& [a, b, c] = corners;
   centre = (a + b + c) / 3.0;
   radius = std::sqrt(std::max({(a - centre).squaredNorm(), (b - centre).squaredNorm(), (c - centre).squaredNorm()}));
 }

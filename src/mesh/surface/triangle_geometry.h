@@ -33,7 +33,7 @@ struct TriangleBall {
   Vector3 centre;
   double radius;
 
-  explicit TriangleBall(const TrianglePoints& triangle);
+  explicit TriangleBall(const std::array<Vector3, 3>& corners);
 };
 
 /// Unit normal of a triangle, zero when it is degenerate (kFlatTriangle).
