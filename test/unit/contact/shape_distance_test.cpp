@@ -128,15 +128,15 @@ TEST(ShapeDistance, SphereBoxAndCylinderInClosedForm) {
   EXPECT_TRUE(cylinder->at({0.45, 0.6, 0.0}).normal.isApprox(Vector3(0.6, 0.8, 0.0), 1e-15));
 }
 
-// All of the cap is as near, and no edge of the triangle.
+// All of the cap is as near, no edge of the triangle, and the middle of what is equally far along the axis lies beyond the cap.
 TEST(ShapeDistance, ACapFindsALargeTriangleParallelToIt) {
   const auto cylinder = makeCylinderDistance(1.0, 2.0);
-  for (const double z : {2.5, -2.5}) {
-    const TrianglePoints t({-9.0, -8.0, z}, {9.0, -8.0, z}, {0.0, 11.0, z});
+  for (const double z : {7.0, -7.0}) {
+    const TrianglePoints t({-40.0, -2.0, z}, {5.0, -2.0, z}, {5.0, 4.0, z});
     ClosestPoint closest;
-    ASSERT_TRUE(cylinder->closest(t, 0.6, closest));
-    EXPECT_NEAR(closest.distance, 0.5, 1e-15);
-    EXPECT_FALSE(cylinder->closest(t, 0.4, closest));
+    ASSERT_TRUE(cylinder->closest(t, 5.01, closest));
+    EXPECT_NEAR(closest.distance, 5.0, 1e-14);
+    EXPECT_FALSE(cylinder->closest(t, 4.99, closest));
   }
 }
 
