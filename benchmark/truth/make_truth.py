@@ -33,10 +33,10 @@ PACKAGE = os.path.dirname(os.path.dirname(HERE))
 
 
 class Run:
-    """Edge lengths in mm: h within `reach` of the path, g more per mm beyond, at most c. `seconds` of the motion, 0: all."""
+    """Edge lengths in mm: h within `reach` of the path, g more per mm beyond, at most c."""
 
-    def __init__(self, h, g, c, step_s, seconds=0.0, path_end=None):
-        self.h, self.g, self.c, self.step_s, self.seconds, self.path_end = h, g, c, step_s, seconds, path_end
+    def __init__(self, h, g, c, step_s):
+        self.h, self.g, self.c, self.step_s = h, g, c, step_s
 
 
 class Plan:
@@ -90,15 +90,14 @@ def box_geometry(size_m, path, run, reach_m):
 
 def forces(scene, plan, run, folder, truth_run, version, bag):
     """Times and forces (samples x 3) of a run. version: of the programs and files that make it; bag: [] or its recording."""
-    path = (plan.path_m[0], plan.path_m[1] if run.path_end is None else run.path_end)
-    geometry = box_geometry(plan.size_m, path, run, 1e-3 * plan.reach_mm)
+    geometry = box_geometry(plan.size_m, plan.path_m, run, 1e-3 * plan.reach_mm)
     mesh = os.path.join(folder, "h%g_g%g_%s" % (run.h, run.g, key(geometry, version)))
     if not os.path.exists(mesh + ".msh"):
         with open(mesh + ".geo", "w", encoding="utf-8") as stream:
             stream.write(geometry)
         program("gmsh", "-3", "-format", "msh22", "-nopopup", mesh + ".geo", "-o", mesh + ".part.msh")
         os.rename(mesh + ".part.msh", mesh + ".msh")
-    arguments = ["%g" % run.step_s, "%g" % plan.tolerance, "%g" % run.seconds]
+    arguments = ["%g" % run.step_s, "%g" % plan.tolerance, "0"]  # all of the motion
     result = "%s_%s.csv" % (mesh, "_".join(arguments))
     if not os.path.exists(result):
         print(os.path.basename(result), program(truth_run, scene, mesh + ".msh", *arguments, *bag, output=result).strip(), flush=True)
@@ -148,16 +147,6 @@ def step_slope(data):
     solution = np.linalg.lstsq(matrix, values.reshape(len(data), -1), rcond=None)[0]
     left = (matrix @ solution).reshape(values.shape) - values
     return solution[1].reshape(values.shape[1:]), max(rms(one, values[0]) for one in left)
-
-
-def continued(truth, longer):
-    """The truth, then the longer run times what the truth was of it over the last ten samples they share."""
-    if len(longer) <= len(truth):
-        return truth
-    shared = longer[len(truth) - 10:len(truth)].mean(0)
-    mean = truth[-10:].mean(0)
-    ratio = np.where(abs(mean) > 0.01 * np.linalg.norm(mean), mean / shared, 0.0)
-    return np.concatenate([truth, longer[len(truth):] * ratio])
 
 
 PLANS = {
@@ -245,11 +234,10 @@ def main():
     moved = -slope[:samples] * plan.runs[0].step_s
     facts["the step of %g ms" % (1e3 * plan.runs[0].step_s)] = rms(moved, truth[:samples])
     facts["what is not linear in the step"] = bent
-    longest = max(data, key=lambda entry: (len(entry[1]), -entry[0].h, -entry[0].g))
-    truth = continued(truth[:samples] + moved, longest[2])
+    truth = truth[:samples] + moved
     truth[:, list(plan.none)] = 0.0
     uncertainty = facts["change by leaving out a run, at most"] + bent
-    write_table(arguments.out or os.path.join(HERE, plan.table + ".csv"), arguments.scene, plan, longest[1], truth, uncertainty,
+    write_table(arguments.out or os.path.join(HERE, plan.table + ".csv"), arguments.scene, plan, data[0][1], truth, uncertainty,
                 facts)
     for name, share in facts.items():
         print("%s: %.2f %%" % (name, 100 * share))
