@@ -32,7 +32,7 @@ class CholeskyRelaxation : public Relaxation {
   double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                ContactSolution& solution) override;
   void beginPasses(const ContactSolution& solution) override;
-  double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
+  void contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
   void finish(const ContactProblem& problem, ContactSolution& solution) override;
   void reset() override { bodies_.clear(); }
 
@@ -187,19 +187,15 @@ void CholeskyRelaxation::press(const ContactRow& row, const Local& local, const 
   }
 }
 
-double CholeskyRelaxation::contactPass(const ContactProblem& problem, ContactCorrector& corrector,
+void CholeskyRelaxation::contactPass(const ContactProblem& problem, ContactCorrector& corrector,
                                        ContactSolution& solution) {
-  double change = 0.0;
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     const Local& local = contacts_[c];
     if (!(local.W(0, 0) > 0.0)) continue;
     const ContactRow& row = problem.contacts[c];
     const Vector3 delta = corrector.correct(problem, c, local.W, trackedVelocity(row, local), solution);
-    if (delta.isZero(0.0)) continue;
-    press(row, local, row.R_WC * delta);
-    change += delta.squaredNorm();
+    if (!delta.isZero(0.0)) press(row, local, row.R_WC * delta);
   }
-  return std::sqrt(change);
 }
 
 void CholeskyRelaxation::beginPasses(const ContactSolution& solution) {

@@ -37,7 +37,7 @@ class GaussSeidelRelaxation : public Relaxation {
   void prepare(const ContactProblem& problem, ContactSolution& solution) override;
   double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                ContactSolution& solution) override;
-  double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
+  void contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
 
  private:
   void prepareBodies(const ContactProblem& problem);
@@ -47,7 +47,7 @@ class GaussSeidelRelaxation : public Relaxation {
   void followTouched(const ContactProblem& problem, const std::vector<NodalVectors>& v);
   void findHeld(const ContactProblem& problem, int body);
   bool project(const ContactProblem& problem, int contact, ContactCorrector& corrector, ContactSolution& solution);
-  double correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution);
+  void correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution);
   void apply(const ContactRow& row, const Vector3& impulse_W, std::vector<NodalVectors>& v);
   void groupBodies(const ContactProblem& problem);
   int& groupOf(int body);
@@ -257,8 +257,7 @@ void GaussSeidelRelaxation::apply(const ContactRow& row, const Vector3& impulse_
 }
 
 /// Solves a frictionless contact: nothing tangential is computed.
-/// @return the change of its impulse, N s.
-double GaussSeidelRelaxation::correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution) {
+void GaussSeidelRelaxation::correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution) {
   const Vector3 n = row.R_WC.col(0);
   const double u_n = n.dot(tissueVelocity(row, solution.v)) - row.u_tool[0];
   Vector3& impulse = solution.impulses[contact];
@@ -268,25 +267,20 @@ double GaussSeidelRelaxation::correctNormal(const ContactRow& row, std::size_t c
   impulse = Vector3(normal, 0.0, 0.0);
   solution.states[contact] = normal > 0.0 ? ContactState::kKinetic : ContactState::kOpen;
   if (change != 0.0) apply(row, n * change, solution.v);
-  return change;
 }
 
-double GaussSeidelRelaxation::contactPass(const ContactProblem& problem, ContactCorrector& corrector,
-                                          ContactSolution& solution) {
-  double change = 0.0;
+void GaussSeidelRelaxation::contactPass(const ContactProblem& problem, ContactCorrector& corrector,
+                                        ContactSolution& solution) {
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     if (!(W_[c](0, 0) > 0.0)) continue;
     const ContactRow& row = problem.contacts[c];
     if (isFrictionless(row.law)) {
-      const double normal = correctNormal(row, c, solution);
-      change += normal * normal;
+      correctNormal(row, c, solution);
       continue;
     }
     const Vector3 delta = corrector.correct(problem, c, W_[c], relativeVelocity(row, solution.v), solution);
     apply(row, row.R_WC * delta, solution.v);
-    change += delta.squaredNorm();
   }
-  return std::sqrt(change);
 }
 
 }  // namespace

@@ -14,12 +14,8 @@ namespace {
 /// the force errs by 0.05 % (RMS against the converged one), and nine steps of ten are done by then.
 constexpr int kLeastBeforePrompt = 10;
 
-/// Of all contacts together, N s.
-double impulseNorm(const std::vector<Vector3>& impulses) {
-  double sum = 0.0;
-  for (const Vector3& impulse : impulses) sum += impulse.squaredNorm();
-  return std::sqrt(sum);
-}
+/// Of the tolerance: passes go on until one changes less. Where contacts are nearly dependent several times as much is still to come.
+constexpr double kPassShare = 0.3;
 
 }  // namespace
 
@@ -42,22 +38,28 @@ void IterativePredictorCorrector::setDeadline(double clock_s, double prompt_s) {
   prompt_s_ = prompt_s;
 }
 
-/// At most contact_passes passes over the contacts, fewer once one changes the impulses by no more than the tolerance.
-/// @return |change of the impulses| of the first pass, N s.
+/// At most contact_passes passes over the contacts, fewer once one changes the momentum they bring by little.
+/// @return |change of that momentum| of the first pass, N s.
 double IterativePredictorCorrector::correctContacts(const ContactProblem& problem, ContactSolution& solution) {
   relaxation_->beginPasses(solution);
-  const double first = relaxation_->contactPass(problem, corrector_, solution);
-  double last = first;
-  for (int pass = 1; pass < options_.contact_passes && last > options_.tolerance * impulseNorm(solution.impulses);
-       ++pass) {
-    last = relaxation_->contactPass(problem, corrector_, solution);
+  double first = 0.0;
+  double little = 0.0;
+  for (int pass = 0; pass < options_.contact_passes; ++pass) {
+    before_ = solution.impulses;
+    relaxation_->contactPass(problem, corrector_, solution);
+    const double change = momentum_.change(problem, solution.impulses, before_);
+    if (pass == 0) {
+      first = change;
+      little = kPassShare * options_.tolerance * momentum_.norm(problem, solution.impulses);
+    }
+    if (change <= little) break;
   }
   return first;
 }
 
-bool IterativePredictorCorrector::converged(double momentum_change, double impulse_change,
-                                            const ContactSolution& solution) const {
-  const double impulses = impulseNorm(solution.impulses);
+bool IterativePredictorCorrector::converged(const ContactProblem& problem, double momentum_change,
+                                            double impulse_change, const ContactSolution& solution) {
+  const double impulses = momentum_.norm(problem, solution.impulses);
   return momentum_change <= options_.tolerance * (load_scale_ + impulses) &&
          impulse_change <= options_.tolerance * impulses;
 }
@@ -68,6 +70,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
       options_.time_budget_s > 0.0 ? std::min(deadline_s_, clock_() + options_.time_budget_s) : deadline_s_;
   load_scale_ = loadScale(problem);
   relaxation_->prepare(problem, solution);
+  momentum_.prepare(problem);
   corrector_.prepare(problem.contacts.size(), [&](std::size_t c) -> Vector2 {
     return relativeVelocity(problem.contacts[c], solution.v).tail<2>();
   });
@@ -78,7 +81,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
     ++report.iterations;
     const double until = report.iterations >= kLeastBeforePrompt ? std::min(hard_s, prompt_s_) : hard_s;
     stop = true;
-    if (converged(momentum_change, impulse_change, solution)) {
+    if (converged(problem, momentum_change, impulse_change, solution)) {
       report.stop = StopReason::kTolerance;
     } else if (report.iterations >= options_.iterations) {
       report.stop = StopReason::kIterations;

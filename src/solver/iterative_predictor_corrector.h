@@ -26,6 +26,7 @@
 #include <memory>
 #include <vector>
 
+#include "solver/contact_momentum.h"
 #include "solver/relaxation.h"
 #include "tissue_contact/solver/contact_solver.h"
 #include "tissue_contact/solver/solver_options.h"
@@ -47,12 +48,15 @@ class IterativePredictorCorrector : public ContactSolver {
 
  private:
   double correctContacts(const ContactProblem& problem, ContactSolution& solution);
-  bool converged(double momentum_change, double impulse_change, const ContactSolution& solution) const;
+  bool converged(const ContactProblem& problem, double momentum_change, double impulse_change,
+                 const ContactSolution& solution);
 
   SolverOptions options_;
   SecondsClock clock_;
   std::unique_ptr<Relaxation> relaxation_;
   ContactCorrector corrector_;
+  ContactMomentum momentum_;
+  std::vector<Vector3> before_;  ///< scratch: impulses before a pass, per contact, contact frame, N s
   double deadline_s_ = std::numeric_limits<double>::infinity();  ///< on clock_
   double prompt_s_ = std::numeric_limits<double>::infinity();    ///< on clock_
   double load_scale_ = 0.0;                                      ///< loadScale(), N s

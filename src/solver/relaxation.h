@@ -26,8 +26,7 @@ class Relaxation {
   virtual void beginPasses(const ContactSolution& /*solution*/) {}
 
   /// Corrects every contact once.
-  /// @return |change of the impulses|, N s.
-  virtual double contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) = 0;
+  virtual void contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) = 0;
 
   /// Ends a step: brings v in line with the impulses.
   virtual void finish(const ContactProblem& /*problem*/, ContactSolution& /*solution*/) {}

@@ -1,0 +1,53 @@
+#include "solver/contact_momentum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace tissue_contact {
+
+void ContactMomentum::prepare(const ContactProblem& problem) {
+  seen_.clear();
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+    const ContactRow& row = problem.contacts[c];
+    for (int a = 0; a < row.node_count; ++a) {
+      const RowNode& at = row.nodes[a];
+      const double sign = at.weight < 0.0 ? -1.0 : 1.0;
+      seen_.push_back({at.body, at.node, static_cast<int>(c), a, sign * row.R_WC.col(0)});
+    }
+  }
+  const auto order = [](const Seen& one) { return std::make_tuple(one.body, one.node, one.contact); };
+  std::sort(seen_.begin(), seen_.end(), [&](const Seen& one, const Seen& two) { return order(one) < order(two); });
+
+  sides_.resize(problem.contacts.size());
+  int sides = 0;
+  const Seen* first = nullptr;  // of a node
+  std::array<int, 2> of_node{};
+  for (const Seen& one : seen_) {
+    if (first == nullptr || one.body != first->body || one.node != first->node) {
+      first = &one;
+      of_node.fill(-1);
+    }
+    int& side = of_node[one.normal_W.dot(first->normal_W) < 0.0 ? 1 : 0];
+    if (side < 0) side = sides++;
+    sides_[one.contact][one.place] = side;
+  }
+  sums_.resize(sides);
+}
+
+double ContactMomentum::norm(const ContactProblem& problem, const std::vector<Vector3>& impulses,
+                             const std::vector<Vector3>* minus) {
+  std::fill(sums_.begin(), sums_.end(), Vector3::Zero());
+  for (std::size_t c = 0; c < impulses.size(); ++c) {
+    const ContactRow& row = problem.contacts[c];
+    const Vector3 impulse = minus == nullptr ? impulses[c] : Vector3(impulses[c] - (*minus)[c]);
+    if (impulse.isZero(0.0)) continue;
+    const Vector3 impulse_W = row.R_WC * impulse;
+    for (int a = 0; a < row.node_count; ++a) sums_[sides_[c][a]] += row.nodes[a].weight * impulse_W;
+  }
+  double squared = 0.0;
+  for (const Vector3& sum : sums_) squared += sum.squaredNorm();
+  return std::sqrt(squared);
+}
+
+}  // namespace tissue_contact
