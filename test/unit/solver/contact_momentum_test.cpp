@@ -1,0 +1,84 @@
+/// How much momentum contacts bring to nodes: what contacts of one node bear together, and what opposed ones do not take from each other.
+#include "solver/contact_momentum.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace tissue_contact {
+namespace {
+
+/// A contact along `normal`, with equal weights of that sum on some nodes.
+ContactRow contactOn(const std::vector<int>& nodes, const Vector3& normal, double sum = 1.0) {
+  ContactRow row;
+  for (const int node : nodes) row.nodes[row.node_count++] = {0, node, sum / static_cast<double>(nodes.size())};
+  const Vector3 t = normal.unitOrthogonal();
+  row.R_WC << normal, t, normal.cross(t);
+  return row;
+}
+
+struct Measured {
+  ContactProblem problem;
+  ContactMomentum momentum;
+
+  explicit Measured(const std::vector<ContactRow>& rows) {
+    problem.contacts = rows;
+    momentum.prepare(problem);
+  }
+  double change(const std::vector<Vector3>& before, const std::vector<Vector3>& after) {
+    return momentum.change(problem, after, before);
+  }
+};
+
+const Vector3 kUp = Vector3::UnitZ();
+const Vector3 kOne(1.0, 0.0, 0.0);  // normal, contact frame
+const Vector3 kNone = Vector3::Zero();
+
+TEST(ContactMomentum, IsTheImpulsesWhereEachHasANodeOfItsOwn) {
+  Measured two({contactOn({0}, kUp), contactOn({1}, kUp)});
+  EXPECT_DOUBLE_EQ(two.momentum.norm(two.problem, {Vector3(3.0, 0.0, 0.0), Vector3(0.0, 4.0, 0.0)}), 5.0);
+}
+
+TEST(ContactMomentum, OfAFaceIsSharedByItsCorners) {
+  Measured face({contactOn({0, 1, 2}, kUp)});
+  EXPECT_NEAR(face.momentum.norm(face.problem, {kOne}), 1.0 / std::sqrt(3.0), 1e-15);
+}
+
+// The face takes over what its corners have borne: nothing changes for the nodes.
+TEST(ContactMomentum, DoesNotChangeWithWhoBearsIt) {
+  Measured all({contactOn({0, 1, 2}, kUp), contactOn({0}, kUp), contactOn({1}, kUp), contactOn({2}, kUp)});
+  const std::vector<Vector3> corners = {kNone, kOne, kOne, kOne};
+  const std::vector<Vector3> face = {3.0 * kOne, kNone, kNone, kNone};
+  EXPECT_NEAR(all.change(corners, face), 0.0, 1e-15);
+  EXPECT_NEAR(all.momentum.norm(all.problem, corners), std::sqrt(3.0), 1e-15);
+  EXPECT_NEAR(all.momentum.norm(all.problem, face), std::sqrt(3.0), 1e-15);
+}
+
+TEST(ContactMomentum, OfJawsThatPressANodeFromOpposedSidesIsThatOfBoth) {
+  Measured jaws({contactOn({0}, kUp), contactOn({0}, -kUp)});
+  EXPECT_DOUBLE_EQ(jaws.change({kOne, kOne}, {4.0 * kOne, 5.0 * kOne}), 5.0);
+}
+
+// Of two tissues the lower one sees a normal that points away from it with a negative weight.
+TEST(ContactMomentum, OfTwoBodiesIsThatOfBoth) {
+  ContactRow pair = contactOn({0}, kUp);
+  pair.nodes[pair.node_count++] = {1, 0, -1.0};
+  Measured both({pair, pair});
+  EXPECT_NEAR(both.change({kOne, kNone}, {kNone, kOne}), 0.0, 1e-15);
+  EXPECT_DOUBLE_EQ(both.momentum.norm(both.problem, {kOne, kNone}), std::sqrt(2.0));
+}
+
+TEST(ContactMomentum, KnowsThisStepAlone) {
+  Measured first({contactOn({0, 1, 2}, kUp), contactOn({0}, kUp)});
+  first.problem.contacts = {contactOn({2}, kUp)};
+  first.momentum.prepare(first.problem);
+  EXPECT_DOUBLE_EQ(first.momentum.norm(first.problem, {2.0 * kOne}), 2.0);
+  first.problem.contacts.clear();
+  first.momentum.prepare(first.problem);
+  EXPECT_EQ(first.momentum.norm(first.problem, {}), 0.0);
+}
+
+}  // namespace
+}  // namespace tissue_contact
