@@ -188,7 +188,7 @@ void CholeskyRelaxation::press(const ContactRow& row, const Local& local, const 
 }
 
 void CholeskyRelaxation::contactPass(const ContactProblem& problem, ContactCorrector& corrector,
-                                       ContactSolution& solution) {
+                                     ContactSolution& solution) {
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     const Local& local = contacts_[c];
     if (!(local.W(0, 0) > 0.0)) continue;

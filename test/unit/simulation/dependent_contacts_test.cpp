@@ -18,10 +18,11 @@ struct Press {
 
 /// The press of the benchmark, 4.1 mm at 20 mm/s in steps of 1 ms.
 Press pressed(const std::string& solver) {
-  Simulator simulator = makeSimulator(
-      blockScene("[0.10, 0.10, 0.04]", "[10, 10, 4]", "model: corotational, poissons_ratio: 0.45") +
-          onlyBall("[-0.01, 0, 0.0452]") + "friction: [{instrument: probe, tissue: block, static: 0.5}]\nsolver: " + solver + "\n",
-      {{"probe", probeUrdf(0.005)}});
+  Simulator simulator =
+      makeSimulator(blockScene("[0.10, 0.10, 0.04]", "[10, 10, 4]", "model: corotational, poissons_ratio: 0.45") +
+                        onlyBall("[-0.01, 0, 0.0452]") +
+                        "friction: [{instrument: probe, tissue: block, static: 0.5}]\nsolver: " + solver + "\n",
+                    {{"probe", probeUrdf(0.005)}});
   Press press;
   for (int k = 1; k <= 215; ++k) {
     simulator.advance(0.001, {Vector3(0.0, 0.0, -2e-5 * k)});
