@@ -5,6 +5,13 @@
 #include <tuple>
 
 namespace tissue_contact {
+namespace {
+
+/// Cosine from which on a normal counts as opposed to a node's first one: three that lock a node are at 120 degrees, and sides of
+/// boxes, at 90, are to be told alike however the scene is turned.
+constexpr double kOpposed = -0.2;
+
+}  // namespace
 
 void ContactMomentum::prepare(const ContactProblem& problem) {
   seen_.clear();
@@ -28,7 +35,7 @@ void ContactMomentum::prepare(const ContactProblem& problem) {
       first = &one;
       of_node.fill(-1);
     }
-    int& side = of_node[one.normal_W.dot(first->normal_W) < 0.0 ? 1 : 0];
+    int& side = of_node[one.normal_W.dot(first->normal_W) < kOpposed ? 1 : 0];
     if (side < 0) side = sides++;
     sides_[one.contact][one.place] = side;
   }

@@ -52,7 +52,7 @@ double IterativePredictorCorrector::correctContacts(const ContactProblem& proble
       first = change;
       little = kPassShare * options_.tolerance * momentum_.norm(problem, solution.impulses);
     }
-    if (change <= little) break;
+    if (!(change > little)) break;
   }
   return first;
 }

@@ -61,6 +61,14 @@ TEST(ContactMomentum, OfJawsThatPressANodeFromOpposedSidesIsThatOfBoth) {
   EXPECT_DOUBLE_EQ(jaws.change({kOne, kOne}, {4.0 * kOne, 5.0 * kOne}), 5.0);
 }
 
+TEST(ContactMomentum, OfThreeThatLockANodeIsNotNothing) {
+  const double c = std::cos(M_PI / 3.0);
+  const double d = std::sin(M_PI / 3.0);
+  Measured three({contactOn({0}, Vector3(1.0, 0.0, 0.0)), contactOn({0}, Vector3(-c, d, 0.0)),
+                  contactOn({0}, Vector3(-c, -d, 0.0))});
+  EXPECT_NEAR(three.change({kOne, kOne, kOne}, {2.0 * kOne, 2.0 * kOne, 2.0 * kOne}), std::sqrt(2.0), 1e-15);
+}
+
 // Of two tissues the lower one sees a normal that points away from it with a negative weight.
 TEST(ContactMomentum, OfTwoBodiesIsThatOfBoth) {
   ContactRow pair = contactOn({0}, kUp);
