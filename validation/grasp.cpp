@@ -55,7 +55,7 @@ struct Stability {
   double highest_energy = 0.0;  ///< J
   double unexplained = 0.0;     ///< most energy beyond `work`, J
   double defect = 0.0;          ///< worst |A v - b - J'lambda| in contact, over |b| + |lambda|
-  double free_defect = 0.0;     ///< without contact, over |b|
+  double free_defect = 0.0;     ///< without contact, over |b| and the weight of a step: |b| alone passes through nothing
   double penetration_m = 0.0;   ///< worst residual
 };
 
@@ -159,7 +159,8 @@ class Grasp {
     for (const Vector3& impulse : solution.impulses) squared += impulse.squaredNorm();
     double& defect = squared > 0.0 ? stability_.defect : stability_.free_defect;
     const double left = simulator_.residuals().momentum_defect_n_s;
-    const double share = left == 0.0 ? 0.0 : left / (loadScale(problem) + std::sqrt(squared));
+    const double touched = left == 0.0 ? 0.0 : left / (loadScale(problem) + std::sqrt(squared));
+    const double share = squared > 0.0 ? touched : simulator_.residuals().momentum;
     if (!(share <= defect)) defect = share;  // NaN stays visible
     stability_.penetration_m = std::max(stability_.penetration_m, simulator_.residuals().penetration_m);
   }

@@ -87,6 +87,7 @@ bool TissueSleep::wakeHeld(const NodalVectors& loads, const NodalVectors& v, dou
   }
   held_force_ = std::accumulate(held_.begin(), held_.end(), 0.0);
   if (held_force_ <= allowed_n) return false;
+  woken.reserve(still_.size());  // once for all
   woken = sleepers_;
   if (repeats >= kMostRepeats) {
     wakeAll();

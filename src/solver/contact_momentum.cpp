@@ -20,37 +20,38 @@ void ContactMomentum::prepare(const ContactProblem& problem) {
     for (int a = 0; a < row.node_count; ++a) {
       const RowNode& at = row.nodes[a];
       const double sign = at.weight < 0.0 ? -1.0 : 1.0;
-      seen_.push_back({at.body, at.node, static_cast<int>(c), a, sign * row.R_WC.col(0)});
+      seen_.push_back({at.body, at.node, row.presser, static_cast<int>(c), a, sign * row.R_WC.col(0)});
     }
   }
-  const auto order = [](const Seen& one) { return std::make_tuple(one.body, one.node, one.contact); };
+  const auto order = [](const Seen& one) { return std::make_tuple(one.body, one.node, one.presser, one.contact); };
   std::sort(seen_.begin(), seen_.end(), [&](const Seen& one, const Seen& two) { return order(one) < order(two); });
 
   sides_.resize(problem.contacts.size());
   int sides = 0;
-  const Seen* first = nullptr;  // of a node
-  std::array<int, 2> of_node{};
+  const Seen* first = nullptr;  // of those that one presses a node with
+  std::array<int, 2> of_both{};
   for (const Seen& one : seen_) {
-    if (first == nullptr || one.body != first->body || one.node != first->node) {
+    if (first == nullptr || one.body != first->body || one.node != first->node || one.presser != first->presser) {
       first = &one;
-      of_node.fill(-1);
+      of_both.fill(-1);
     }
-    int& side = of_node[one.normal_W.dot(first->normal_W) < kOpposed ? 1 : 0];
+    int& side = of_both[one.normal_W.dot(first->normal_W) < kOpposed ? 1 : 0];
     if (side < 0) side = sides++;
     sides_[one.contact][one.place] = side;
   }
+  sums_.reserve(seen_.capacity());  // no more sides than those; a step that has had as many allocates nothing
   sums_.resize(sides);
 }
 
-double ContactMomentum::norm(const ContactProblem& problem, const std::vector<Vector3>& impulses,
-                             const std::vector<Vector3>* minus) {
+double ContactMomentum::change(const ContactProblem& problem, const std::vector<Vector3>& before,
+                               const std::vector<Vector3>& after) {
   std::fill(sums_.begin(), sums_.end(), Vector3::Zero());
-  for (std::size_t c = 0; c < impulses.size(); ++c) {
+  for (std::size_t c = 0; c < after.size(); ++c) {
+    const Vector3 change = after[c] - before[c];
+    if (change.isZero(0.0)) continue;
     const ContactRow& row = problem.contacts[c];
-    const Vector3 impulse = minus == nullptr ? impulses[c] : Vector3(impulses[c] - (*minus)[c]);
-    if (impulse.isZero(0.0)) continue;
-    const Vector3 impulse_W = row.R_WC * impulse;
-    for (int a = 0; a < row.node_count; ++a) sums_[sides_[c][a]] += row.nodes[a].weight * impulse_W;
+    const Vector3 change_W = row.R_WC * change;
+    for (int a = 0; a < row.node_count; ++a) sums_[sides_[c][a]] += row.nodes[a].weight * change_W;
   }
   double squared = 0.0;
   for (const Vector3& sum : sums_) squared += sum.squaredNorm();

@@ -1,5 +1,6 @@
 /// @file
-/// Room `solver`, private: the momentum that contacts bring to the nodes they act on, J' lambda. Impulses of contacts in, its norm out.
+/// Room `solver`, private: how much the momentum that contacts bring to the nodes they act on, J' lambda, changes. Impulses of contacts
+/// before and after in; a norm out.
 #pragma once
 
 #include <array>
@@ -11,32 +12,23 @@ namespace tissue_contact {
 
 /// Where faces, edges and vertices around a place all have contacts, their rows of J are nearly dependent: which of them bears
 /// how much changes for long after what they bear together, and so v and the wrench, is known. So changes are measured where
-/// they act. A node that is pressed from opposed sides, as a sheet is between jaws, counts once for each: what two jaws squeeze
-/// it with is a force on both, though none on the node.
+/// they act. A node that several instruments press, or one from opposed sides, as a sheet is between jaws, counts once for each: what
+/// they take from each other, or squeeze it with, is a force on them, though none on the node.
 class ContactMomentum {
  public:
   /// Begins a step.
   void prepare(const ContactProblem& problem);
 
-  /// |J' impulses|, N s.
-  /// @param impulses per contact, contact frame, N s.
-  double norm(const ContactProblem& problem, const std::vector<Vector3>& impulses) {
-    return norm(problem, impulses, nullptr);
-  }
-
-  /// |J' (impulses - before)|, N s.
-  double change(const ContactProblem& problem, const std::vector<Vector3>& impulses,
-                const std::vector<Vector3>& before) {
-    return norm(problem, impulses, &before);
-  }
+  /// |J' (after - before)|, N s.
+  /// @param before, after impulses per contact, contact frame, N s.
+  double change(const ContactProblem& problem, const std::vector<Vector3>& before, const std::vector<Vector3>& after);
 
  private:
-  double norm(const ContactProblem& problem, const std::vector<Vector3>& impulses, const std::vector<Vector3>* minus);
-
   /// A node as one contact sees it.
   struct Seen {
     int body;
     int node;
+    int presser;
     int contact;
     int place;         ///< in the contact's row
     Vector3 normal_W;  ///< into the body

@@ -14,8 +14,18 @@ namespace {
 /// the force errs by 0.05 % (RMS against the converged one), and nine steps of ten are done by then.
 constexpr int kLeastBeforePrompt = 10;
 
-/// Of the tolerance: passes go on until one changes less. Where contacts are nearly dependent several times as much is still to come.
+/// Of the tolerance: passes go on until one brings less. Where contacts are nearly dependent several times as much is still to come.
 constexpr double kPassShare = 0.3;
+
+/// Impulses that fall less than to this share of their change before only pass from one of dependent contacts to the next.
+constexpr double kFalls = 0.9;
+
+/// Of all contacts together, N s.
+double impulseNorm(const std::vector<Vector3>& impulses) {
+  double sum = 0.0;
+  for (const Vector3& impulse : impulses) sum += impulse.squaredNorm();
+  return std::sqrt(sum);
+}
 
 }  // namespace
 
@@ -38,30 +48,40 @@ void IterativePredictorCorrector::setDeadline(double clock_s, double prompt_s) {
   prompt_s_ = prompt_s;
 }
 
-/// At most contact_passes passes over the contacts, fewer once one changes the momentum they bring by little.
-/// @return |change of that momentum| of the first pass, N s.
-double IterativePredictorCorrector::correctContacts(const ContactProblem& problem, ContactSolution& solution) {
-  relaxation_->beginPasses(solution);
-  double first = 0.0;
-  double little = 0.0;
-  for (int pass = 0; pass < options_.contact_passes; ++pass) {
-    before_ = solution.impulses;
-    relaxation_->contactPass(problem, corrector_, solution);
-    const double change = momentum_.change(problem, solution.impulses, before_);
-    if (pass == 0) {
-      first = change;
-      little = kPassShare * options_.tolerance * momentum_.norm(problem, solution.impulses);
-    }
-    if (!(change > little)) break;
-  }
-  return first;
+IterativePredictorCorrector::ContactChange IterativePredictorCorrector::pass(const ContactProblem& problem,
+                                                                             ContactSolution& solution) {
+  before_.resize(solution.impulses.size());  // unlike an assignment, grows by more than it must
+  std::copy(solution.impulses.begin(), solution.impulses.end(), before_.begin());
+  relaxation_->contactPass(problem, corrector_, solution);
+  double squared = 0.0;
+  for (std::size_t c = 0; c < before_.size(); ++c) squared += (solution.impulses[c] - before_[c]).squaredNorm();
+  return {momentum_.change(problem, before_, solution.impulses), std::sqrt(squared)};
 }
 
-bool IterativePredictorCorrector::converged(const ContactProblem& problem, double momentum_change,
-                                            double impulse_change, const ContactSolution& solution) {
-  const double impulses = momentum_.norm(problem, solution.impulses);
-  return momentum_change <= options_.tolerance * (load_scale_ + impulses) &&
-         impulse_change <= options_.tolerance * impulses;
+/// Whether what contacts bring to nodes changes by no more than `little` of their impulses, and they themselves by no more than
+/// the tolerance or without falling any more. While they fall they still tell what sticks and what slides.
+bool IterativePredictorCorrector::settled(const ContactChange& change, const ContactChange& before, double little,
+                                          const ContactSolution& solution) const {
+  const double impulses = impulseNorm(solution.impulses);
+  return change.momentum <= little * impulses &&
+         (change.impulses <= options_.tolerance * impulses || change.impulses > kFalls * before.impulses);
+}
+
+/// At most contact_passes passes over the contacts, fewer once they settle.
+/// @return what the first one changed.
+IterativePredictorCorrector::ContactChange IterativePredictorCorrector::correctContacts(const ContactProblem& problem,
+                                                                                        ContactSolution& solution) {
+  relaxation_->beginPasses(solution);
+  const ContactChange first = pass(problem, solution);
+  ContactChange before = kUnknown;
+  ContactChange last = first;
+  for (int passes = 1;
+       passes < options_.contact_passes && !settled(last, before, kPassShare * options_.tolerance, solution);
+       ++passes) {
+    before = last;
+    last = pass(problem, solution);
+  }
+  return first;
 }
 
 SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, ContactSolution& solution) {
@@ -75,13 +95,17 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
     return relativeVelocity(problem.contacts[c], solution.v).tail<2>();
   });
   SolverReport report;
+  ContactChange before = kUnknown;
   for (bool stop = false; !stop;) {
     const double momentum_change = relaxation_->relax(problem, report.iterations, corrector_, solution);
-    const double impulse_change = correctContacts(problem, solution);
+    const ContactChange change = correctContacts(problem, solution);
+    const bool is_solved = momentum_change <= options_.tolerance * (load_scale_ + impulseNorm(solution.impulses)) &&
+                           settled(change, before, options_.tolerance, solution);
+    before = change;
     ++report.iterations;
     const double until = report.iterations >= kLeastBeforePrompt ? std::min(hard_s, prompt_s_) : hard_s;
     stop = true;
-    if (converged(problem, momentum_change, impulse_change, solution)) {
+    if (is_solved) {
       report.stop = StopReason::kTolerance;
     } else if (report.iterations >= options_.iterations) {
       report.stop = StopReason::kIterations;

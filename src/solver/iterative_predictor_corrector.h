@@ -47,9 +47,17 @@ class IterativePredictorCorrector : public ContactSolver {
   void reset() override { relaxation_->reset(); }
 
  private:
-  double correctContacts(const ContactProblem& problem, ContactSolution& solution);
-  bool converged(const ContactProblem& problem, double momentum_change, double impulse_change,
-                 const ContactSolution& solution);
+  /// What a pass over the contacts has changed, N s.
+  struct ContactChange {
+    double momentum;  ///< J' lambda
+    double impulses;  ///< lambda
+  };
+  static constexpr ContactChange kUnknown{std::numeric_limits<double>::infinity(),
+                                          std::numeric_limits<double>::infinity()};
+  ContactChange correctContacts(const ContactProblem& problem, ContactSolution& solution);
+  ContactChange pass(const ContactProblem& problem, ContactSolution& solution);
+  bool settled(const ContactChange& change, const ContactChange& before, double little,
+               const ContactSolution& solution) const;
 
   SolverOptions options_;
   SecondsClock clock_;

@@ -50,6 +50,7 @@ struct ContactRow {
   Vector3 u_tool = Vector3::Zero();
   CoulombLaw law;
   bool was_sliding = false;  ///< it was kinetic at the end of the previous step
+  int presser = 0;           ///< an instrument, or negative: a tissue. Whose force it is, for the solver's judgement only
 };
 
 struct ContactProblem {
