@@ -20,10 +20,14 @@ ContactRow contactOn(const std::vector<int>& nodes, const Vector3& normal, doubl
 }
 
 struct Measured {
+  std::vector<bool> fixed = {false, false, false, true};
   ContactProblem problem;
   ContactMomentum momentum;
 
   explicit Measured(const std::vector<ContactRow>& rows) {
+    problem.bodies.resize(3);
+    for (BodySystem& body : problem.bodies) body.fixed = &fixed;
+    problem.bodies[2].asleep = true;
     problem.contacts = rows;
     momentum.prepare(problem);
   }
@@ -83,6 +87,13 @@ TEST(ContactMomentum, IsThatOfWorldAxes) {
 TEST(ContactMomentum, KnowsTheSideOfANegativeWeight) {
   Measured all({contactOn({0}, kUp, -1.0), contactOn({0}, -kUp)});
   EXPECT_NEAR(all.change({kOne, kNone}, {kNone, kOne}), 0.0, 1e-15);
+}
+
+TEST(ContactMomentum, IsNoneOfNodesThatCannotMove) {
+  ContactRow pair = contactOn({0, 3}, kUp, 2.0);
+  pair.nodes[pair.node_count++] = {2, 0, -1.0};
+  Measured one({pair});
+  EXPECT_DOUBLE_EQ(one.fromNone({kOne}), 1.0);
 }
 
 TEST(ContactMomentum, TellsBodiesApart) {
