@@ -55,8 +55,8 @@ struct Stability {
   double highest_energy = 0.0;  ///< J
   double unexplained = 0.0;     ///< most energy beyond `work`, J
   double defect = 0.0;          ///< worst |A v - b - J'lambda| in contact, over |b| + |lambda|
-  double free_defect = 0.0;     ///< without contact, over |b| and the weight of a step: |b| alone passes through nothing
-  double penetration_m = 0.0;   ///< worst residual
+  double free_defect = 0.0;    ///< without contact, over |b| and the weight of a step: |b| alone passes through nothing
+  double penetration_m = 0.0;  ///< worst residual
 };
 
 class Grasp {
@@ -257,7 +257,7 @@ void openAndComeToRest(Grasp& grasp, const std::string& name, Report& report) {
 
 // Implicit Euler only loses energy, so what is more than the work is round-off, but for what the linearised step gets
 // wrong. 30 sweeps end before the tolerance where a jaw first touches the flap at rest (1.3e-3 measured), where it snaps
-// back at mu 1 / .1 (2.2e-3), and while it swings freely as a whole (2.6e-2 where its load passes through nothing).
+// back at mu 1 / .1 (2.4e-3), and while it swings freely as a whole (7e-3 of its load and weight).
 // A micrometre is a thousandth of the flap's cells.
 void wasStable(const Grasp& grasp, const std::string& name, Report& report) {
   const Stability& stability = grasp.stability();
@@ -267,7 +267,8 @@ void wasStable(const Grasp& grasp, const std::string& name, Report& report) {
   report.atMost(name + "energy beyond the work of the jaws, of peak", "", 1e-6,
                 stability.unexplained / stability.highest_energy, "no energy growth without input");
   report.atMost(name + "momentum defect in contact, of load and contact", "", 5e-3, stability.defect, "30 iterations");
-  report.atMost(name + "momentum defect swinging freely, of load", "", 0.05, stability.free_defect, "30 iterations");
+  report.atMost(name + "momentum defect swinging freely, of load and weight", "", 0.02, stability.free_defect,
+                "30 iterations");
   report.atMost(name + "worst penetration residual", "m", 1e-6, stability.penetration_m, "solver tolerance");
 }
 
