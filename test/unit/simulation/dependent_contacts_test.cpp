@@ -71,13 +71,13 @@ std::vector<double> raisedBesideAnother(const std::string& solver) {
 }
 
 // The node that both press passes from one to the other: what it gets is known at once, whose force that is takes longer. Without
-// telling them apart the force is up to 8.5 % off for some steps (measured once). What both bear while they are held is not unique.
+// telling them apart the force is up to 12 % off for some steps (measured once). What both bear while they are held is not unique.
 TEST(DependentContacts, OfTwoInstrumentsGiveEachItsForce) {
   const std::vector<double> forces = raisedBesideAnother("{tolerance: 1.0e-4}");
   const std::vector<double> exact = raisedBesideAnother("{tolerance: 1.0e-8, iterations: 1000, contact_passes: 100}");
   const double largest = *std::max_element(exact.begin(), exact.end());
   EXPECT_GT(largest, 0.1);
-  for (std::size_t k = 160; k < exact.size(); ++k) EXPECT_NEAR(forces[k], exact[k], 0.01 * largest) << "step " << k;
+  for (std::size_t k = 150; k < exact.size(); ++k) EXPECT_NEAR(forces[k], exact[k], 0.01 * largest) << "step " << k;
 }
 
 }  // namespace
