@@ -201,7 +201,7 @@ double& StepContacts::firstTouch(const ContactKey& key) {
 void StepContacts::placeRow(const Contact& contact, double dt, ContactRow& row) const {
   const ContactKey& key = contact.key;
   row.node_count = 0;
-  row.presser = key.instrument >= 0 ? key.instrument : -1 - key.other_tissue;
+  row.pair = key.instrument >= 0 ? key.instrument : -1 - key.other_tissue;
   for (int i = 0; i < 3; ++i) {
     if (contact.weights[i] != 0.0) row.nodes[row.node_count++] = {key.tissue, contact.nodes[i], contact.weights[i]};
   }

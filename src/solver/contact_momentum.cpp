@@ -25,17 +25,17 @@ void ContactMomentum::prepare(const ContactProblem& problem) {
       const RowNode& at = row.nodes[a];
       if (problem.bodies[at.body].asleep || (*problem.bodies[at.body].fixed)[at.node]) continue;
       const double sign = at.weight < 0.0 ? -1.0 : 1.0;
-      seen_.push_back({at.body, at.node, row.presser, static_cast<int>(c), a, sign * row.R_WC.col(0)});
+      seen_.push_back({at.body, at.node, row.pair, static_cast<int>(c), a, sign * row.R_WC.col(0)});
     }
   }
-  const auto order = [](const Seen& one) { return std::make_tuple(one.body, one.node, one.presser, one.contact); };
+  const auto order = [](const Seen& one) { return std::make_tuple(one.body, one.node, one.pair, one.contact); };
   std::sort(seen_.begin(), seen_.end(), [&](const Seen& one, const Seen& two) { return order(one) < order(two); });
 
   int sides = 0;
-  const Seen* first = nullptr;  // of those that one presses a node with
+  const Seen* first = nullptr;  // of a node and pair
   std::array<int, 2> of_both{};
   for (const Seen& one : seen_) {
-    if (first == nullptr || one.body != first->body || one.node != first->node || one.presser != first->presser) {
+    if (first == nullptr || one.body != first->body || one.node != first->node || one.pair != first->pair) {
       first = &one;
       of_both.fill(kNone);
     }

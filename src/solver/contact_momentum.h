@@ -28,7 +28,7 @@ class ContactMomentum {
   struct Seen {
     int body;
     int node;
-    int presser;
+    int pair;
     int contact;
     int place;         ///< in the contact's row
     Vector3 normal_W;  ///< into the body

@@ -50,7 +50,9 @@ struct ContactRow {
   Vector3 u_tool = Vector3::Zero();
   CoulombLaw law;
   bool was_sliding = false;  ///< it was kinetic at the end of the previous step
-  int presser = 0;           ///< an instrument, or negative: a tissue. Whose force it is, for the solver's judgement only
+  /// The contact pair, by what touches the nodes: an instrument, or -1 - a tissue. Answers do not depend on it, but steps go on
+  /// until the forces of each are known.
+  int pair = 0;
 };
 
 struct ContactProblem {

@@ -70,7 +70,7 @@ TEST(ContactMomentum, OfJawsThatPressANodeFromOpposedSidesIsThatOfBoth) {
 
 TEST(ContactMomentum, OfTwoInstrumentsOnANodeIsThatOfBoth) {
   ContactRow other = contactOn({0}, kUp);
-  other.presser = 1;
+  other.pair = 1;
   Measured tools({contactOn({0}, kUp), other});
   EXPECT_DOUBLE_EQ(tools.change({3.0 * kOne, kNone}, {kNone, 3.0 * kOne}), std::sqrt(18.0));
 }
