@@ -24,8 +24,7 @@ struct SolverOptions {
   RelaxationKind relaxation = RelaxationKind::kGaussSeidel;
   int iterations = 30;      ///< upper bound on iterations (relaxation + contact passes) per step
   int contact_passes = 20;  ///< upper bound on passes over the contacts per iteration
-  double tolerance =
-      1e-4;  ///< stop when an iteration changes momentum, and what contacts bring of it, by less (relative)
+  double tolerance = 1e-4;  ///< stop when an iteration changes momentum, and contacts' part of it, by less (relative)
   double time_budget_s = 0.0;  ///< stop after this wall time per step; 0: none. Gives up bit-identical replay
 };
 
