@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -48,40 +49,40 @@ void IterativePredictorCorrector::setDeadline(double clock_s, double prompt_s) {
   prompt_s_ = prompt_s;
 }
 
-IterativePredictorCorrector::ContactChange IterativePredictorCorrector::pass(const ContactProblem& problem,
-                                                                             ContactSolution& solution) {
+/// @return |change of the impulses|, N s.
+double IterativePredictorCorrector::pass(const ContactProblem& problem, ContactSolution& solution) {
   before_.resize(solution.impulses.size());  // unlike an assignment, grows by more than it must
   std::copy(solution.impulses.begin(), solution.impulses.end(), before_.begin());
   relaxation_->contactPass(problem, corrector_, solution);
   double squared = 0.0;
   for (std::size_t c = 0; c < before_.size(); ++c) squared += (solution.impulses[c] - before_[c]).squaredNorm();
-  return {momentum_.change(problem, before_, solution.impulses), std::sqrt(squared)};
+  return std::sqrt(squared);
 }
 
-/// Whether what contacts bring to nodes changes by no more than `little` of their impulses, and they themselves by no more than
-/// the tolerance or without falling any more. While they fall they still tell what sticks and what slides.
-bool IterativePredictorCorrector::settled(const ContactChange& change, const ContactChange& before, double little,
-                                          const ContactSolution& solution) const {
-  const double impulses = impulseNorm(solution.impulses);
-  return change.momentum <= little * impulses &&
-         (change.impulses <= options_.tolerance * impulses || change.impulses > kFalls * before.impulses);
+/// Whether impulses change by no more than the tolerance or without falling any more, and what they bring to nodes by no more
+/// than `share` of it. While they fall they still tell what sticks and what slides.
+/// @param change of the impulses by the last pass. @param before the same of the one to compare it with, N s.
+bool IterativePredictorCorrector::settled(const ContactProblem& problem, const ContactSolution& solution, double change,
+                                          double before, double share) {
+  const double little = options_.tolerance * impulseNorm(solution.impulses);
+  return (change <= little || change > kFalls * before) &&
+         momentum_.change(problem, before_, solution.impulses) <= share * little;
 }
 
 /// At most contact_passes passes over the contacts, fewer once they settle.
-/// @return what the first one changed.
-IterativePredictorCorrector::ContactChange IterativePredictorCorrector::correctContacts(const ContactProblem& problem,
-                                                                                        ContactSolution& solution) {
+/// @return they had settled before: the first one changed little.
+bool IterativePredictorCorrector::correctContacts(const ContactProblem& problem, ContactSolution& solution) {
   relaxation_->beginPasses(solution);
-  const ContactChange first = pass(problem, solution);
-  ContactChange before = kUnknown;
-  ContactChange last = first;
-  for (int passes = 1;
-       passes < options_.contact_passes && !settled(last, before, kPassShare * options_.tolerance, solution);
+  double change = pass(problem, solution);
+  const bool had_settled = settled(problem, solution, change, first_change_, 1.0);
+  first_change_ = change;
+  double before = std::numeric_limits<double>::infinity();
+  for (int passes = 1; passes < options_.contact_passes && !settled(problem, solution, change, before, kPassShare);
        ++passes) {
-    before = last;
-    last = pass(problem, solution);
+    before = change;
+    change = pass(problem, solution);
   }
-  return first;
+  return had_settled;
 }
 
 SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, ContactSolution& solution) {
@@ -95,17 +96,14 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
     return relativeVelocity(problem.contacts[c], solution.v).tail<2>();
   });
   SolverReport report;
-  ContactChange before = kUnknown;
+  first_change_ = std::numeric_limits<double>::infinity();
   for (bool stop = false; !stop;) {
     const double momentum_change = relaxation_->relax(problem, report.iterations, corrector_, solution);
-    const ContactChange change = correctContacts(problem, solution);
-    const bool is_solved = momentum_change <= options_.tolerance * (load_scale_ + impulseNorm(solution.impulses)) &&
-                           settled(change, before, options_.tolerance, solution);
-    before = change;
+    const bool had_settled = correctContacts(problem, solution);
     ++report.iterations;
     const double until = report.iterations >= kLeastBeforePrompt ? std::min(hard_s, prompt_s_) : hard_s;
     stop = true;
-    if (is_solved) {
+    if (had_settled && momentum_change <= options_.tolerance * (load_scale_ + impulseNorm(solution.impulses))) {
       report.stop = StopReason::kTolerance;
     } else if (report.iterations >= options_.iterations) {
       report.stop = StopReason::kIterations;

@@ -47,24 +47,18 @@ class IterativePredictorCorrector : public ContactSolver {
   void reset() override { relaxation_->reset(); }
 
  private:
-  /// What a pass over the contacts has changed, N s.
-  struct ContactChange {
-    double momentum;  ///< J' lambda
-    double impulses;  ///< lambda
-  };
-  static constexpr ContactChange kUnknown{std::numeric_limits<double>::infinity(),
-                                          std::numeric_limits<double>::infinity()};
-  ContactChange correctContacts(const ContactProblem& problem, ContactSolution& solution);
-  ContactChange pass(const ContactProblem& problem, ContactSolution& solution);
-  bool settled(const ContactChange& change, const ContactChange& before, double little,
-               const ContactSolution& solution) const;
+  bool correctContacts(const ContactProblem& problem, ContactSolution& solution);
+  double pass(const ContactProblem& problem, ContactSolution& solution);
+  bool settled(const ContactProblem& problem, const ContactSolution& solution, double change, double before,
+               double share);
 
   SolverOptions options_;
   SecondsClock clock_;
   std::unique_ptr<Relaxation> relaxation_;
   ContactCorrector corrector_;
   ContactMomentum momentum_;
-  std::vector<Vector3> before_;  ///< scratch: impulses before a pass, per contact, contact frame, N s
+  std::vector<Vector3> before_;  ///< impulses before the last pass, per contact, contact frame, N s
+  double first_change_ = 0.0;    ///< of impulses by the first pass of the last iteration, N s; infinity: none yet
   double deadline_s_ = std::numeric_limits<double>::infinity();  ///< on clock_
   double prompt_s_ = std::numeric_limits<double>::infinity();    ///< on clock_
   double load_scale_ = 0.0;                                      ///< loadScale(), N s
