@@ -52,7 +52,7 @@ DilatationPatches::DilatationPatches(const std::vector<Tetrahedron>& tetrahedra,
       const auto at = std::lower_bound(of_patch.begin(), of_patch.end(), tetrahedra[e][i]);
       member.local[i] = static_cast<int>(at - of_patch.begin());
     }
-    const double volume = tets.elements[e].volume;
+    const double volume = tets.volume(e);
     patch.volume += volume;
     patch.bulk += volume * bulkModulus(materials.of(e));
     patch.damping_s += volume * materials.dampingOf(e);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/padded_vectors.h"
+#include "tissue/shape_table.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/tissue/element_materials.h"
 
@@ -15,8 +16,8 @@ namespace tissue_contact {
 
 /// Four elements side by side; the last batch of a mesh repeats its last element in the lanes beyond `used`.
 struct ElementBatch {
-  std::array<std::array<double, kLanes>, 9> rest_inverse;  ///< D_rest^-1, column-major, 1/m
-  std::array<double, kLanes> volume;                       ///< m^3; 0 in unused lanes
+  const ShapeBatch<9>* rest_inverse = nullptr;  ///< D_rest^-1, column-major, 1/m; that of all batches of this shape
+  std::array<double, kLanes> volume;            ///< m^3; 0 in unused lanes
   std::array<Tetrahedron, kLanes> nodes;
 };
 
@@ -82,11 +83,12 @@ TISSUE_CONTACT_INLINE void deformationGradients(const ElementBatch& batch, const
     gather(x, cornerOf(batch, c + 1).data(), &D[3 * c]);
     for (std::size_t r = 0; r < 3; ++r) D[r + 3 * c] -= origin[r];
   }
+  const ShapeBatch<9>& rest_inverse = *batch.rest_inverse;
   for (std::size_t c = 0; c < 3; ++c) {
     Lanes a, b, d;
-    load(batch.rest_inverse[3 * c], a);
-    load(batch.rest_inverse[3 * c + 1], b);
-    load(batch.rest_inverse[3 * c + 2], d);
+    load(rest_inverse[3 * c], a);
+    load(rest_inverse[3 * c + 1], b);
+    load(rest_inverse[3 * c + 2], d);
     for (std::size_t r = 0; r < 3; ++r) F.m[r + 3 * c] = D[r] * a + D[r + 3] * b + D[r + 6] * d;
   }
 }
@@ -113,12 +115,13 @@ struct VaryingMaterial {
 TISSUE_CONTACT_INLINE void addStressForces(const ElementBatch& batch, const LaneMatrix& P, PaddedVector* forces) {
   Lanes volume;
   load(batch.volume, volume);
+  const ShapeBatch<9>& rest_inverse = *batch.rest_inverse;
   Lanes H[9];
   for (std::size_t node = 0; node < 3; ++node) {
     Lanes g0, g1, g2;  // grad N of node + 1: row of D_rest^-1
-    load(batch.rest_inverse[node], g0);
-    load(batch.rest_inverse[node + 3], g1);
-    load(batch.rest_inverse[node + 6], g2);
+    load(rest_inverse[node], g0);
+    load(rest_inverse[node + 3], g1);
+    load(rest_inverse[node + 6], g2);
     for (std::size_t r = 0; r < 3; ++r) {
       H[r + 3 * node] = -volume * (P.m[r] * g0 + P.m[r + 3] * g1 + P.m[r + 6] * g2);
     }

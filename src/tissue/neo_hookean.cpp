@@ -146,7 +146,7 @@ std::unique_ptr<Elasticity::State> NeoHookean::makeStateAt(const NodalVectors& x
 /// Adds an element's share. @param F of all elements. @param sign -1: takes it out.
 void NeoHookean::addShare(std::size_t e, const std::vector<MatrixBatch>& F, double pressure, double sign,
                           NeoHookeanStiffness& sum) const {
-  const TetElement& element = tets_->elements[e];
+  const TetElement element = tets_->element(e);
   const InPatch patch = {pressure, flat_modulus_ * element.lame.mu};
   const Eigen::Matrix<double, 3, 4> gradients = tets_->shapeGradients(e);
   sum.add({F[e / kLanes], e % kLanes, element.lame, patch, sign * element.volume, element.damping_s, 4,
@@ -158,7 +158,7 @@ void NeoHookean::rebuildStiffness(DeformationState& state) const {
   state.stiffness.setZero();
   state.damping.setZero();
   NeoHookeanStiffness sum(state.scratch, state);
-  for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
+  for (std::size_t e = 0; e < tets_->size(); ++e) {
     const double pressure = patches_ ? state.tangent_pressures[patches_->of_batch[e / kLanes][e % kLanes]] : 0.0;
     addShare(e, state.tangent_deformations, pressure, 1.0, sum);
   }
@@ -175,7 +175,7 @@ void NeoHookean::addPatchStiffness(std::size_t p, double sign, DeformationState&
     for (const DilatationPatches::Member& member : patch.members) {
       const std::size_t e = member.element;
       const Matrix3 C = cofactors(matrixInLane(state.tangent_deformations[e / kLanes], e % kLanes));
-      const Eigen::Matrix<double, 3, 4> c = tets_->elements[e].volume * C * tets_->shapeGradients(e);
+      const Eigen::Matrix<double, 3, 4> c = tets_->volume(e) * C * tets_->shapeGradients(e);
       for (int i = 0; i < 4; ++i) b[member.local[i]] += c.col(i);
     }
   }
@@ -197,7 +197,7 @@ void NeoHookean::refreshStiffness(bool still, DeformationState& state) const {
 
 void NeoHookean::refreshElements(const std::vector<BatchRange>& ranges, bool rebuilds, DeformationState& state,
                                  NeoHookeanStiffness& sum) const {
-  forEachMarked(ranges, state.changed, tets_->elements.size(), [&](std::size_t batch, std::size_t lane) {
+  forEachMarked(ranges, state.changed, tets_->size(), [&](std::size_t batch, std::size_t lane) {
     const std::size_t e = batch * kLanes + lane;
     if (!rebuilds) addShare(e, state.tangent_deformations, 0.0, -1.0, sum);
     for (std::size_t i = 0; i < 9; ++i) state.tangent_deformations[batch][i][lane] = state.deformations[batch][i][lane];
@@ -212,7 +212,7 @@ void NeoHookean::markStalePatches(const std::vector<BatchRange>& ranges, bool st
     const bool wanted = state.held_patches.isStill(p) == still;
     state.stale[p] = wanted && change > kTangentChange * patches_->patches[p].bulk ? 1 : 0;
   }
-  forEachMarked(ranges, state.changed, tets_->elements.size(), [&](std::size_t batch, std::size_t lane) {
+  forEachMarked(ranges, state.changed, tets_->size(), [&](std::size_t batch, std::size_t lane) {
     const int p = patches_->of_batch[batch][lane];
     if (state.held_patches.isStill(p) == still) state.stale[p] = 1;
   });
@@ -227,14 +227,14 @@ bool NeoHookean::rebuildsFor(const std::vector<BatchRange>& elements, const std:
     ++changes;
     cancels = cancels || isLargeDeformation(state.tangent_deformations[batch], lane);
   };
-  if (!patches_) forEachMarked(elements, state.changed, tets_->elements.size(), count);
+  if (!patches_) forEachMarked(elements, state.changed, tets_->size(), count);
   for (std::size_t p = 0; patches_ && p < patches_->patches.size(); ++p) {
     if (state.stale[p] == 0) continue;
     for (const DilatationPatches::Member& member : patches_->patches[p].members) {
       count(member.element / kLanes, member.element % kLanes);
     }
   }
-  return cancels || 2 * changes > tets_->elements.size() + (shares_ ? shares_->size() : 0);
+  return cancels || 2 * changes > tets_->size() + (shares_ ? shares_->size() : 0);
 }
 
 void NeoHookean::refreshPatches(bool rebuilds, DeformationState& state, NeoHookeanStiffness& sum) const {
@@ -310,8 +310,8 @@ void NeoHookean::addPatches(const std::vector<BatchRange>& ranges, bool still, D
 double NeoHookean::energy(const NodalVectors& x) const {
   double energy = shares_ ? shares_->energy(x) : 0.0;
   std::vector<double> changes(patches_ ? patches_->patches.size() : 0, 0.0);  // of volume, m^3
-  for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
-    const TetElement& element = tets_->elements[e];
+  for (std::size_t e = 0; e < tets_->size(); ++e) {
+    const TetElement element = tets_->element(e);
     const Matrix3 F = tets_->deformationGradient(e, x);
     const double J = F.determinant();
     const double flat = std::min(0.0, J - kFlat);

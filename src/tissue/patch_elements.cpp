@@ -18,6 +18,9 @@ PatchElements::PatchElements(const DilatationPatches& averaged, const TetElement
     slots_of_.push_back(slots_.size());
   }
   slots_.shrink_to_fit();
+  ShapeTable<3> table;
+  std::vector<std::size_t> places;
+  std::vector<ShapeBatch<3>> of_batch;
   for (std::size_t lane = 0; lane < batches.size() * kLanes; ++lane) {
     const std::size_t p = std::min(lane, patches.size() - 1);
     PatchBatch& batch = batches[lane / kLanes];
@@ -26,12 +29,13 @@ PatchElements::PatchElements(const DilatationPatches& averaged, const TetElement
       batch.count = *std::max_element(counts_.begin() + static_cast<std::ptrdiff_t>(p),
                                       counts_.begin() + static_cast<std::ptrdiff_t>(std::min(p + kLanes, size())));
       nodes.resize(nodes.size() + batch.count);
+      of_batch.resize(batch.count);
     }
     const DilatationPatches::Patch& patch = patches[p];
     std::vector<Vector3> gradients(batch.count, Vector3::Zero());
     LameParameters mean = {0.0, 0.0};
     for (const DilatationPatches::Member& member : patch.members) {
-      const double part = tets.elements[member.element].volume / patch.volume;
+      const double part = tets.volume(member.element) / patch.volume;
       const Eigen::Matrix<double, 3, 4> c = tets.shapeGradients(member.element);
       for (int i = 0; i < 4; ++i) gradients[member.local[i]] += part * c.col(i);
       const LameParameters lame = lameOf(element_materials.of(member.element));
@@ -41,13 +45,18 @@ PatchElements::PatchElements(const DilatationPatches& averaged, const TetElement
     for (std::size_t i = 0; i < batch.count; ++i) {
       PatchNode& node = nodes[batch.first + i];
       node.nodes[lane % kLanes] = patch.nodes[i < patch.nodes.size() ? i : 0];
-      for (int r = 0; r < 3; ++r) node.gradient[r][lane % kLanes] = gradients[i][r];
+      for (int r = 0; r < 3; ++r) of_batch[i][r][lane % kLanes] = gradients[i][r];
+    }
+    if (lane % kLanes == kLanes - 1) {
+      for (const ShapeBatch<3>& gradient : of_batch) places.push_back(table.add(gradient));
     }
     batch.volume[lane % kLanes] = lane < patches.size() ? patch.volume : 0.0;
     materials[lane / kLanes].lambda[lane % kLanes] = mean.lambda;
     materials[lane / kLanes].mu[lane % kLanes] = mean.mu;
   }
   nodes.shrink_to_fit();
+  gradients_ = table.shapes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].gradient = &gradients_[places[i]];
 }
 
 void PatchElements::split(const std::vector<bool>& still, std::vector<BatchRange>& moving,
@@ -66,7 +75,7 @@ void PatchElements::split(const std::vector<bool>& still, std::vector<BatchRange
 Vector3 PatchElements::gradient(std::size_t patch, std::size_t node) const {
   const PatchNode& four = nodes[batches[patch / kLanes].first + node];
   const std::size_t lane = patch % kLanes;
-  return {four.gradient[0][lane], four.gradient[1][lane], four.gradient[2][lane]};
+  return {(*four.gradient)[0][lane], (*four.gradient)[1][lane], (*four.gradient)[2][lane]};
 }
 
 Matrix3 PatchElements::deformationGradient(std::size_t patch, const NodalVectors& x) const {

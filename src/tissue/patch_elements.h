@@ -22,8 +22,8 @@ struct PatchBatch {
 
 /// A node of each of four patches. A patch with fewer than the batch has its first one again, with a gradient of zero.
 struct PatchNode {
+  const ShapeBatch<3>* gradient = nullptr;  ///< sum_e V grad N / sum_e V, 1/m; that of all nodes with the same
   std::array<int, kLanes> nodes;
-  std::array<std::array<double, kLanes>, 3> gradient;  ///< sum_e V grad N / sum_e V, 1/m
 };
 
 struct PatchElements {
@@ -31,6 +31,10 @@ struct PatchElements {
   /// @param lame what of a material is the patches', as the model's parameters.
   PatchElements(const DilatationPatches& averaged, const TetElements& tets, const ElementMaterials& materials,
                 const TetElements::Lame& lame);
+  PatchElements(const PatchElements&) = delete;
+  PatchElements& operator=(const PatchElements&) = delete;
+  PatchElements(PatchElements&&) = default;
+  PatchElements& operator=(PatchElements&&) = default;
 
   /// Sorts the batches by whether all nodes of their patches are in `still`.
   void split(const std::vector<bool>& still, std::vector<BatchRange>& moving, std::vector<BatchRange>& resting) const;
@@ -70,6 +74,7 @@ struct PatchElements {
   std::vector<std::size_t> slots_of_;  ///< where those of each patch begin, and the end
   std::vector<int> slots_;             ///< of node pairs i <= j, row by row, as BlockSlots
   std::vector<double> damping_s_;
+  std::vector<ShapeBatch<3>> gradients_;  ///< of the nodes, which point here
 };
 
 }  // namespace tissue_contact

@@ -20,7 +20,7 @@ TISSUE_CONTACT_INLINE void meanGradients(const PatchNode* nodes, std::size_t cou
     for (std::size_t r = 0; r < 3; ++r) d[r] -= origin[r];
     for (std::size_t c = 0; c < 3; ++c) {
       Lanes g;
-      load(nodes[i].gradient[c], g);
+      load((*nodes[i].gradient)[c], g);
       for (std::size_t r = 0; r < 3; ++r) F.m[r + 3 * c] += d[r] * g;
     }
   }
@@ -34,9 +34,9 @@ TISSUE_CONTACT_INLINE void addPatchStressForces(const PatchBatch& batch, const P
   for (Lanes& entry : P.m) entry *= -volume;
   for (std::size_t i = 0; i < batch.count; ++i) {
     Lanes g0, g1, g2;
-    load(nodes[i].gradient[0], g0);
-    load(nodes[i].gradient[1], g1);
-    load(nodes[i].gradient[2], g2);
+    load((*nodes[i].gradient)[0], g0);
+    load((*nodes[i].gradient)[1], g1);
+    load((*nodes[i].gradient)[2], g2);
     Lanes force[3];
     for (std::size_t r = 0; r < 3; ++r) force[r] = P.m[r] * g0 + P.m[r + 3] * g1 + P.m[r + 6] * g2;
     scatterAdd(force, nodes[i].nodes.data(), forces);

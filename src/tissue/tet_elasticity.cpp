@@ -97,7 +97,7 @@ void TetElasticity::prepare(const NodalVectors* x, RotationState& state) const {
   state.nodes.x.resize(static_cast<std::size_t>(state.stiffness.rows()));
   state.nodes.forces.resize(state.nodes.x.size());
   if (x != nullptr && corotational_) findRotations(*x, state);
-  for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
+  for (std::size_t e = 0; e < tets_->size(); ++e) {
     addStiffness(e, rotationInLane(state.tangent_rotations[e / kLanes], e % kLanes), state);
   }
 }
@@ -115,7 +115,7 @@ void TetElasticity::findRotations(const NodalVectors& x, RotationState& state) c
 }
 
 void TetElasticity::addStiffness(std::size_t e, const Quaternion& rotation, State& state) const {
-  const TetElement& element = tets_->elements[e];
+  const TetElement element = tets_->element(e);
   const Eigen::Matrix<double, 3, 4> c = rotation.toRotationMatrix() * tets_->shapeGradients(e);
   const double lambda = element.volume * element.lame.lambda;
   const double mu = element.volume * element.lame.mu;
@@ -132,7 +132,7 @@ void TetElasticity::addStiffness(std::size_t e, const Quaternion& rotation, Stat
 /// Puts that of `rotation` in the place of that of `old`.
 void TetElasticity::turnStiffness(std::size_t e, const Quaternion& old, const Quaternion& rotation,
                                   State& state) const {
-  const TetElement& element = tets_->elements[e];
+  const TetElement element = tets_->element(e);
   const Eigen::Matrix<double, 3, 4> gradients = tets_->shapeGradients(e);
   const Matrix3 R = rotation.toRotationMatrix();
   const Matrix3 R_old = old.toRotationMatrix();
@@ -155,7 +155,7 @@ void TetElasticity::turnStiffness(std::size_t e, const Quaternion& old, const Qu
 void TetElasticity::refreshStiffness(std::size_t batch, RotationState& state) const {
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     const std::size_t e = batch * kLanes + lane;
-    if ((state.turned[batch] >> lane & 1) == 0 || e >= tets_->elements.size()) continue;
+    if ((state.turned[batch] >> lane & 1) == 0 || e >= tets_->size()) continue;
     turnStiffness(e, rotationInLane(state.tangent_rotations[batch], lane), rotationInLane(state.rotations[batch], lane),
                   state);
     for (std::size_t i = 0; i < 4; ++i) state.tangent_rotations[batch][i][lane] = state.rotations[batch][i][lane];
@@ -230,8 +230,8 @@ void TetElasticity::evaluate(const std::vector<BatchRange>& ranges, RotationStat
 
 double TetElasticity::energy(const NodalVectors& x) const {
   double energy = 0.0;
-  for (std::size_t e = 0; e < tets_->elements.size(); ++e) {
-    const TetElement& element = tets_->elements[e];
+  for (std::size_t e = 0; e < tets_->size(); ++e) {
+    const TetElement element = tets_->element(e);
     const Matrix3 F = tets_->deformationGradient(e, x);
     const Matrix3 R =
         corotational_ ? nearestRotation(F, Quaternion::Identity()).toRotationMatrix() : Matrix3(Matrix3::Identity());

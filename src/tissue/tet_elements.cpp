@@ -1,6 +1,7 @@
 #include "tissue/tet_elements.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <utility>
 
 #include "tissue_contact/mesh/tet_mesh.h"
@@ -9,27 +10,37 @@ namespace tissue_contact {
 namespace {
 
 std::vector<ElementBatch> makeBatches(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
-                                      const std::vector<TetElement>& elements) {
-  std::vector<ElementBatch> batches((elements.size() + kLanes - 1) / kLanes);
-  for (std::size_t slot = 0; slot < batches.size() * kLanes; ++slot) {
-    const bool used = slot < elements.size();
-    const Tetrahedron& nodes = used ? tetrahedra[slot] : tetrahedra.back();
-    ElementBatch& batch = batches[slot / kLanes];
-    const std::size_t lane = slot % kLanes;
-    const Matrix3 rest_inverse = edgeMatrix(rest, nodes).inverse();
-    for (std::size_t i = 0; i < 9; ++i) batch.rest_inverse[i][lane] = rest_inverse.data()[i];
-    batch.volume[lane] = used ? elements[slot].volume : 0.0;
-    batch.nodes[lane] = nodes;
+                                      std::vector<ShapeBatch<9>>& shapes) {
+  std::vector<ElementBatch> batches((tetrahedra.size() + kLanes - 1) / kLanes);
+  ShapeTable<9> table;
+  std::vector<std::size_t> places;
+  places.reserve(batches.size());
+  for (std::size_t b = 0; b < batches.size(); ++b) {
+    ShapeBatch<9> shape;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t e = kLanes * b + lane;
+      const bool used = e < tetrahedra.size();
+      const Tetrahedron& nodes = used ? tetrahedra[e] : tetrahedra.back();
+      const Matrix3 edges = edgeMatrix(rest, nodes);
+      const Matrix3 rest_inverse = edges.inverse();
+      for (std::size_t i = 0; i < 9; ++i) shape[i][lane] = rest_inverse.data()[i];
+      batches[b].volume[lane] = used ? edges.determinant() / 6.0 : 0.0;
+      batches[b].nodes[lane] = nodes;
+    }
+    places.push_back(table.add(shape));
   }
+  shapes = table.shapes();
+  for (std::size_t b = 0; b < batches.size(); ++b) batches[b].rest_inverse = &shapes[places[b]];
   return batches;
 }
 
-std::vector<BatchMaterial> makeBatchMaterials(const std::vector<TetElement>& elements) {
-  std::vector<BatchMaterial> materials((elements.size() + kLanes - 1) / kLanes);
+/// @param lame per element.
+std::vector<BatchMaterial> makeBatchMaterials(const std::vector<LameParameters>& lame) {
+  std::vector<BatchMaterial> materials((lame.size() + kLanes - 1) / kLanes);
   for (std::size_t slot = 0; slot < materials.size() * kLanes; ++slot) {
-    const LameParameters& lame = slot < elements.size() ? elements[slot].lame : elements.back().lame;
-    materials[slot / kLanes].lambda[slot % kLanes] = lame.lambda;
-    materials[slot / kLanes].mu[slot % kLanes] = lame.mu;
+    const LameParameters& here = lame[std::min(slot, lame.size() - 1)];
+    materials[slot / kLanes].lambda[slot % kLanes] = here.lambda;
+    materials[slot / kLanes].mu[slot % kLanes] = here.mu;
   }
   return materials;
 }
@@ -37,22 +48,35 @@ std::vector<BatchMaterial> makeBatchMaterials(const std::vector<TetElement>& ele
 }  // namespace
 
 TetElements::TetElements(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
-                         const std::vector<bool>& fixed, const ElementMaterials& materials, const Lame& lame,
+                         const std::vector<bool>& fixed, const ElementMaterials& materials, const Lame& lameOf,
                          std::shared_ptr<const BlockPattern> couplings)
-    : damps(!materials.damping_s.empty()), pattern(std::move(couplings)) {
+    : pattern(std::move(couplings)) {
   for (const MaterialDescription& description : materials.materials) checkMaterial(description, "");
-  elements.reserve(tetrahedra.size());
-  bool same = true;
+  batches = makeBatches(rest, tetrahedra, shapes_);
+  std::vector<LameParameters> lame;
+  lame.reserve(tetrahedra.size());
+  slots_.reserve(tetrahedra.size());
   for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
-    elements.push_back({edgeMatrix(rest, tetrahedra[e]).determinant() / 6.0, lame(materials.of(e)),
-                        materials.dampingOf(e), findSlots(*pattern, tetrahedra[e], fixed)});
-    const LameParameters& first = elements.front().lame;
-    same = same && elements.back().lame.lambda == first.lambda && elements.back().lame.mu == first.mu;
+    lame.push_back(lameOf(materials.of(e)));
+    slots_.push_back(findSlots(*pattern, tetrahedra[e], fixed));
+    if (!materials.damping_s.empty()) damping_s_.push_back(materials.dampingOf(e));
   }
-  batches = makeBatches(rest, tetrahedra, elements);
-  material =
-      elements.empty() ? LameParameters{} : LameParameters{elements.front().lame.lambda, elements.front().lame.mu};
-  if (!same) batch_materials = makeBatchMaterials(elements);
+  damping_s_.shrink_to_fit();
+  if (lame.empty()) return;
+  material = lame.front();
+  const auto is_first = [&](const LameParameters& one) {
+    return one.lambda == material.lambda && one.mu == material.mu;
+  };
+  if (!std::all_of(lame.begin(), lame.end(), is_first)) batch_materials = makeBatchMaterials(lame);
+}
+
+TetElement TetElements::element(std::size_t e) const {
+  LameParameters lame = material;
+  if (!batch_materials.empty()) {
+    const BatchMaterial& four = batch_materials[e / kLanes];
+    lame = {four.lambda[e % kLanes], four.mu[e % kLanes]};
+  }
+  return {volume(e), lame, damping_s_.empty() ? 0.0 : damping_s_[e], slots_[e]};
 }
 
 void TetElements::split(const std::vector<bool>& still, Held& held) const {
@@ -87,13 +111,13 @@ void TetElements::Held::carry(StateArchive& archive, std::size_t batches, int no
 
 void TetElements::prepare(Elasticity::State& state) const {
   state.stiffness = BlockMatrix(pattern);
-  if (damps) state.damping = BlockMatrix(pattern);
+  if (!damping_s_.empty()) state.damping = BlockMatrix(pattern);
 }
 
 Matrix3 TetElements::restInverse(std::size_t element) const {
   const ElementBatch& batch = batches[element / kLanes];
   Matrix3 rest_inverse;
-  for (std::size_t i = 0; i < 9; ++i) rest_inverse.data()[i] = batch.rest_inverse[i][element % kLanes];
+  for (std::size_t i = 0; i < 9; ++i) rest_inverse.data()[i] = (*batch.rest_inverse)[i][element % kLanes];
   return rest_inverse;
 }
 

@@ -16,12 +16,12 @@
 
 namespace tissue_contact {
 
-/// What of a tetrahedron the force kernels do not need, or not one by one.
+/// One tetrahedron, as its stiffness is made of.
 struct TetElement {
   double volume;        ///< m^3
   LameParameters lame;  ///< Pa; for some models their own parameters in the place of Lame's
   double damping_s;     ///< what of its stiffness goes into State::damping
-  BlockSlots<4> slots;
+  const BlockSlots<4>& slots;
 };
 
 /// Refuses what lies beyond the batches.
@@ -70,6 +70,11 @@ struct TetElements {
               const ElementMaterials& materials, const Lame& lame)
       : TetElements(rest, tetrahedra, fixed, materials, lame, BlockPattern::forElements(tetrahedra, fixed)) {}
 
+  TetElements(const TetElements&) = delete;
+  TetElements& operator=(const TetElements&) = delete;
+  TetElements(TetElements&&) = default;
+  TetElements& operator=(TetElements&&) = default;
+
   /// Zero matrices of the right pattern.
   void prepare(Elasticity::State& state) const;
 
@@ -91,15 +96,21 @@ struct TetElements {
 
   Matrix3 deformationGradient(std::size_t element, const NodalVectors& x) const;
 
-  std::vector<TetElement> elements;
-  std::vector<ElementBatch> batches;            ///< the same elements, laid out for the force kernels
+  std::size_t size() const { return slots_.size(); }
+  TetElement element(std::size_t e) const;
+  double volume(std::size_t e) const { return batches[e / kLanes].volume[e % kLanes]; }  ///< m^3
+
+  std::vector<ElementBatch> batches;            ///< the elements, laid out for the force kernels
   LameParameters material;                      ///< of all elements, if batch_materials is empty
   std::vector<BatchMaterial> batch_materials;   ///< where materials differ
-  bool damps = false;                           ///< there is a State::damping
   std::shared_ptr<const BlockPattern> pattern;  ///< of the stiffness
 
  private:
   Matrix3 restInverse(std::size_t element) const;  ///< D_rest^-1, 1/m; its rows are grad N_1..N_3
+
+  std::vector<ShapeBatch<9>> shapes_;  ///< of the batches, which point here
+  std::vector<BlockSlots<4>> slots_;   ///< per element
+  std::vector<double> damping_s_;      ///< per element; empty: there is no State::damping
 };
 
 }  // namespace tissue_contact
