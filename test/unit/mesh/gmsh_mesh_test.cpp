@@ -79,10 +79,13 @@ TEST(GmshMesh, EveryPrefixOfAFileIsRefused) {
   for (const std::string& whole :
        {std::string(kText22), std::string(kText40), std::string(kText41), msh22Binary(mesh, false),
         msh4Binary(mesh, false, false), msh4Binary(mesh, true, true)}) {
-    ASSERT_NO_THROW(loadBytes(whole));
+    const FileOfBytes file(whole);  // one for all: thousands of folders of their own make some file systems wait
+    const auto load = [&] { loadTetMesh(meshFile(file.path())); };
+    ASSERT_NO_THROW(load());
     // All but the newline at the very end is needed.
     for (std::size_t size = 0; size + 1 < whole.size(); ++size) {
-      ASSERT_THROW(loadBytes(whole.substr(0, size)), std::invalid_argument) << size << " of " << whole.size();
+      file.write(whole.substr(0, size));
+      ASSERT_THROW(load(), std::invalid_argument) << size << " of " << whole.size();
     }
   }
 }

@@ -68,12 +68,15 @@ TEST(VtkMesh, EveryPrefixUpToTheCellTypesIsRefused) {
   for (VtkStyle style : allStyles()) {
     style.extras = false;
     const std::string whole = VtkWriter(style).write(twoTetrahedra());
-    ASSERT_NO_THROW(loadBytes(whole));
+    const FileOfBytes file(whole);  // one for all: twenty thousand folders of their own make some file systems wait
+    const auto load = [&] { loadTetMesh(meshFile(file.path())); };
+    ASSERT_NO_THROW(load());
     // In text the last type, "10 ", is complete without its last byte; without the last two it is another number.
     for (std::size_t size = 0; size + 1 < whole.size(); ++size) {
       const std::string part = whole.substr(0, size);
       if (!style.binary && size + 2 == whole.size()) continue;
-      ASSERT_THROW(loadBytes(part), std::invalid_argument) << style.version << ": " << size << " of " << whole.size();
+      file.write(part);
+      ASSERT_THROW(load(), std::invalid_argument) << style.version << ": " << size << " of " << whole.size();
     }
   }
 }
