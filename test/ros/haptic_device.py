@@ -139,8 +139,9 @@ class Haptics(harness.TestCase):
             self.commands = harness.Listener(COMMAND, WrenchStamped)
             wrenches = harness.wrenches()
             harness.wait_until(self.haptics_is_connected, "its connection")
-            harness.JointSource().send_all(harness.press(50))
-            wrenches.wait(lambda all: len(all) >= 50, "all wrenches")
+            # Down alone: on a busy machine the output may meet none but the last wrench, which is zero after the way up.
+            harness.JointSource().send_all(harness.press(50)[:25])
+            wrenches.wait(lambda all: len(all) >= 25, "all wrenches")
             self.assertGreater(max(math.hypot(*force_of(m)) for m in wrenches.messages), 0.1)
             felt = self.commands.wait(lambda all: any(not is_zero(m) for m in all) and is_zero(all[-1]), "a force, then zero")
             self.assertLessEqual(max(math.hypot(*force_of(m)) for m in felt), 0.1 + 1e-12)
