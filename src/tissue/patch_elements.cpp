@@ -4,11 +4,65 @@
 
 namespace tissue_contact {
 
+namespace {
+
+/// Means over a patch's volume: of its elements' materials; into `gradients`, of their shape functions, per node.
+LameParameters meanOf(const DilatationPatches::Patch& patch, const TetElements& tets, const ElementMaterials& materials,
+                      const TetElements::Lame& lameOf, std::vector<Vector3>& gradients) {
+  LameParameters mean = {0.0, 0.0};
+  for (const DilatationPatches::Member& member : patch.members) {
+    const double part = tets.volume(member.element) / patch.volume;
+    const Eigen::Matrix<double, 3, 4> c = tets.shapeGradients(member.element);
+    for (int i = 0; i < 4; ++i) gradients[member.local[i]] += part * c.col(i);
+    const LameParameters lame = lameOf(materials.of(member.element));
+    mean.lambda += part * lame.lambda;
+    mean.mu += part * lame.mu;
+  }
+  return mean;
+}
+
+}  // namespace
+
 PatchElements::PatchElements(const DilatationPatches& averaged, const TetElements& tets,
                              const ElementMaterials& element_materials, const TetElements::Lame& lameOf) {
   const std::vector<DilatationPatches::Patch>& patches = averaged.patches;
+  keepSlots(patches);
   batches.resize((patches.size() + kLanes - 1) / kLanes);
   materials.resize(batches.size());
+  ShapeTable<3> table;
+  std::vector<std::size_t> places;  // per node: that of its gradients
+  std::vector<ShapeBatch<3>> of_batch;
+  for (std::size_t slot = 0; slot < batches.size() * kLanes; ++slot) {
+    const std::size_t p = std::min(slot, patches.size() - 1);
+    const std::size_t lane = slot % kLanes;
+    PatchBatch& batch = batches[slot / kLanes];
+    if (lane == 0) {
+      batch.first = nodes.size();
+      batch.count = *std::max_element(counts_.begin() + static_cast<std::ptrdiff_t>(p),
+                                      counts_.begin() + static_cast<std::ptrdiff_t>(std::min(p + kLanes, size())));
+      nodes.resize(nodes.size() + batch.count);
+      of_batch.resize(batch.count);
+    }
+    const DilatationPatches::Patch& patch = patches[p];
+    std::vector<Vector3> gradients(batch.count, Vector3::Zero());
+    const LameParameters mean = meanOf(patch, tets, element_materials, lameOf, gradients);
+    for (std::size_t i = 0; i < batch.count; ++i) {
+      nodes[batch.first + i].nodes[lane] = patch.nodes[i < patch.nodes.size() ? i : 0];
+      for (int r = 0; r < 3; ++r) of_batch[i][r][lane] = gradients[i][r];
+    }
+    if (lane == kLanes - 1) {
+      for (const ShapeBatch<3>& gradient : of_batch) places.push_back(table.add(gradient));
+    }
+    batch.volume[lane] = slot < patches.size() ? patch.volume : 0.0;
+    materials[slot / kLanes].lambda[lane] = mean.lambda;
+    materials[slot / kLanes].mu[lane] = mean.mu;
+  }
+  nodes.shrink_to_fit();
+  gradients_ = table.shapes();
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].gradient = &gradients_[places[i]];
+}
+
+void PatchElements::keepSlots(const std::vector<DilatationPatches::Patch>& patches) {
   slots_of_.push_back(0);
   for (const DilatationPatches::Patch& patch : patches) {
     counts_.push_back(patch.nodes.size());
@@ -18,45 +72,6 @@ PatchElements::PatchElements(const DilatationPatches& averaged, const TetElement
     slots_of_.push_back(slots_.size());
   }
   slots_.shrink_to_fit();
-  ShapeTable<3> table;
-  std::vector<std::size_t> places;
-  std::vector<ShapeBatch<3>> of_batch;
-  for (std::size_t lane = 0; lane < batches.size() * kLanes; ++lane) {
-    const std::size_t p = std::min(lane, patches.size() - 1);
-    PatchBatch& batch = batches[lane / kLanes];
-    if (lane % kLanes == 0) {
-      batch.first = nodes.size();
-      batch.count = *std::max_element(counts_.begin() + static_cast<std::ptrdiff_t>(p),
-                                      counts_.begin() + static_cast<std::ptrdiff_t>(std::min(p + kLanes, size())));
-      nodes.resize(nodes.size() + batch.count);
-      of_batch.resize(batch.count);
-    }
-    const DilatationPatches::Patch& patch = patches[p];
-    std::vector<Vector3> gradients(batch.count, Vector3::Zero());
-    LameParameters mean = {0.0, 0.0};
-    for (const DilatationPatches::Member& member : patch.members) {
-      const double part = tets.volume(member.element) / patch.volume;
-      const Eigen::Matrix<double, 3, 4> c = tets.shapeGradients(member.element);
-      for (int i = 0; i < 4; ++i) gradients[member.local[i]] += part * c.col(i);
-      const LameParameters lame = lameOf(element_materials.of(member.element));
-      mean.lambda += part * lame.lambda;
-      mean.mu += part * lame.mu;
-    }
-    for (std::size_t i = 0; i < batch.count; ++i) {
-      PatchNode& node = nodes[batch.first + i];
-      node.nodes[lane % kLanes] = patch.nodes[i < patch.nodes.size() ? i : 0];
-      for (int r = 0; r < 3; ++r) of_batch[i][r][lane % kLanes] = gradients[i][r];
-    }
-    if (lane % kLanes == kLanes - 1) {
-      for (const ShapeBatch<3>& gradient : of_batch) places.push_back(table.add(gradient));
-    }
-    batch.volume[lane % kLanes] = lane < patches.size() ? patch.volume : 0.0;
-    materials[lane / kLanes].lambda[lane % kLanes] = mean.lambda;
-    materials[lane / kLanes].mu[lane % kLanes] = mean.mu;
-  }
-  nodes.shrink_to_fit();
-  gradients_ = table.shapes();
-  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].gradient = &gradients_[places[i]];
 }
 
 void PatchElements::split(const std::vector<bool>& still, std::vector<BatchRange>& moving,

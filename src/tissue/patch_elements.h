@@ -68,6 +68,7 @@ struct PatchElements {
   std::size_t most_nodes = 0;            ///< of a patch
 
  private:
+  void keepSlots(const std::vector<DilatationPatches::Patch>& patches);
   template <typename BlockOf>
   void addBlocks(std::size_t patch, const BlockOf& blockOf, Elasticity::State& state) const;
   std::vector<std::size_t> counts_;    ///< nodes of each patch

@@ -1,5 +1,5 @@
 /// @file
-/// Room `tissue`, private: shapes of elements, of which a block of even cells has few. Shapes of batches in; each once out.
+/// Room `tissue`, private: distinct shapes of elements, each kept once: a block of even cells has few. Shapes of batches in, their places in a list out.
 #pragma once
 
 #include <algorithm>
@@ -9,16 +9,16 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/padded_vectors.h"
+#include "core/lanes.h"
 #include "tissue_contact/core/content_hash.h"
 
 namespace tissue_contact {
 
-/// N numbers of each of four elements side by side, whose shapes they tell, all of one unit.
+/// N numbers of each of four elements side by side, which tell their shapes, all of one unit.
 template <std::size_t N>
 using ShapeBatch = std::array<std::array<double, kLanes>, N>;
 
-/// Shapes that differ by round-off alone count as the same: by less than 1e-10 of their largest number. Cells of an even block are as much as
+/// Shapes that differ by round-off alone count as the same: in each element by less than 1e-10 of its largest number. Cells of an even block are as much as
 /// 1e-13 apart, since so are differences of coordinates.
 template <std::size_t N>
 class ShapeTable {
@@ -36,19 +36,19 @@ class ShapeTable {
  private:
   static constexpr double kRoundOff = 1e-10;
 
-  static double largest(const ShapeBatch<N>& shape) {
+  static double largest(const ShapeBatch<N>& shape, std::size_t lane) {
     double most = 0.0;
-    for (const auto& four : shape) {
-      for (const double number : four) most = std::max(most, std::abs(number));
-    }
+    for (const auto& four : shape) most = std::max(most, std::abs(four[lane]));
     return most;
   }
 
-  /// Of numbers rounded to several times the round-off: the same of most shapes that are alike, and of those only that are nearly so.
+  /// Like shapes mostly share it; isLike() tells those apart that share it by chance.
   static std::uint64_t hash(const ShapeBatch<N>& shape) {
     constexpr int kBits = 30;
+    double most = 0.0;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) most = std::max(most, largest(shape, lane));
     int exponent = 0;
-    std::frexp(1.1 * largest(shape), &exponent);  // powers of two, which are common, lie far from where it changes
+    std::frexp(1.1 * most, &exponent);  // powers of two, which are common, lie far from where it changes
     ContentHash hash(static_cast<std::uint64_t>(exponent));
     for (const auto& four : shape) {
       for (const double number : four) {
@@ -60,9 +60,9 @@ class ShapeTable {
   }
 
   static bool isLike(const ShapeBatch<N>& a, const ShapeBatch<N>& b) {
-    const double little = kRoundOff * largest(a);
-    for (std::size_t i = 0; i < N; ++i) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const double little = kRoundOff * largest(a, lane);
+      for (std::size_t i = 0; i < N; ++i) {
         if (!(std::abs(a[i][lane] - b[i][lane]) <= little)) return false;
       }
     }

@@ -7,7 +7,7 @@
 #include <map>
 #include <system_error>
 
-#include "ros/replay/commit.h"
+#include "ros/replay/commit.h"  // made by CMakeLists.txt
 #include "ros/replay/file_hash.h"
 #include "tissue_contact/scene/load_scene.h"
 #include "tissue_contact/version.h"
