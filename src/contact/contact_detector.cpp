@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "contact/conforming_gap.h"
-#include "contact/leaving_face.h"
 #include "contact/narrow_phase.h"
 #include "contact/shape/shape_union.h"
 #include "contact/tolerances.h"
+#include "contact/vertex_contact.h"
 #include "mesh/mesh_checks.h"
 #include "mesh/surface/moving_surface.h"
 #include "mesh/surface/triangle_geometry.h"
@@ -59,19 +59,6 @@ Eigen::AlignedBox3d boxAround(const ShapeDistance& shape, const Pose& X_WS, doub
   const Vector3 centre = X_WS * shape.boxCentre();
   const Vector3 half = shape.halfExtents(X_WS.linear()) + Vector3::Constant(margin);
   return {Vector3(centre - half), Vector3(centre + half)};
-}
-
-VertexSurroundings surroundings(const MovingSurface& surface, const NodalVectors& x, const Pose& X_WS, int node,
-                                const Vector3& side_S) {
-  const auto inShape = [&](int n) -> Vector3 { return X_WS.linear().transpose() * (x.col(n) - X_WS.translation()); };
-  VertexSurroundings around;
-  surface.anyTriangleOf({node, -1, -1}, [&](int triangle) {
-    const Triangle& nodes = surface.triangles()[triangle];
-    const std::array<Vector3, 3> corners = {inShape(nodes[0]), inShape(nodes[1]), inShape(nodes[2])};
-    around.add(inShape(node), corners, triangleNormal(corners[0], corners[1], corners[2]), side_S);
-    return false;
-  });
-  return around;
 }
 
 }  // namespace
@@ -249,8 +236,11 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
     SignedDistance here = shape.distance->at(p_S);
     here.distance = conformingGap(corners_S, distances, contact.weights, here.distance).gap;
     const double groove = implementation_->deepestGroove(shape, X_WL[shape.instrument]);
-    if (groove == 0.0 && shape.distance->hasFlatParts() && surface.isVolume() && key.feature[1] < 0 && key.corner < 0) {
-      here = leavingFace(*shape.distance, p_S, surroundings(surface, x, X_WS, key.feature[0], here.normal), here);
+    if (key.feature[1] < 0 && key.corner < 0) {
+      const auto inShape = [&](int node) -> Vector3 {
+        return X_WS.linear().transpose() * (x.col(node) - X_WS.translation());
+      };
+      here = vertexContact(*shape.distance, surface, key.feature[0], inShape, groove == 0.0, here);
     }
     const Vector3 normal_W = (X_WS.linear() * here.normal).normalized();
     const double gap = here.distance - surface.halfThickness();
@@ -290,16 +280,20 @@ void ContactDetector::turnWithSlide(const std::vector<std::vector<Pose>>& start_
     const SignedDistance here = shape.distance->at(p_S);
     const Vector3 from_W = start.linear() * here.normal;
     if (!(from_W.dot(contact.R_WC.col(0)) > kOwn)) return;
-    Vector3 way = end.linear().transpose() * (contact.p_WC + way_W - end.translation()) - p_S;
-    way -= here.normal.dot(way) * here.normal;
+    const Vector3 all_of_way = end.linear().transpose() * (contact.p_WC + way_W - end.translation()) - p_S;
+    const Vector3 way = all_of_way - here.normal.dot(all_of_way) * here.normal;
     const SignedDistance there = shape.distance->at(p_S + way);
     const double turned = std::max((there.normal - here.normal).norm() - kRoundOff, 0.0);
     const double curvature = turned > 0.0 ? turned * shape.half_extent / way.norm() : 0.0;
     const double share = std::min(faded(turned, kMostTurn, kSharpTurn), faded(curvature, kMostCurved, kSharpCurvature));
-    if (!(share > 0.0)) return;
     const Quaternion turn = Quaternion::FromTwoVectors(from_W, end.linear() * there.normal);
-    contact.R_WC = Quaternion::Identity().slerp(share, turn).toRotationMatrix() * contact.R_WC;
-    contact.gap_m += share * (there.distance - here.distance - there.normal.dot(way));
+    const Matrix3 turn_W = Quaternion::Identity().slerp(share, turn).toRotationMatrix();
+    // By what the direction of a vertex's contact leans away from the shape's normal there, no way leads to the shape.
+    Vector3 lean_W = turn_W * (contact.R_WC.col(0) - from_W);
+    if (key.feature[1] >= 0) lean_W.setZero();  // where on a face the nearest point lies may hang on round-off
+    contact.R_WC = turn_W * contact.R_WC;
+    contact.gap_m +=
+        share * (there.distance - here.distance - there.normal.dot(way)) - lean_W.dot(end.linear() * all_of_way);
     return;
   }
 }

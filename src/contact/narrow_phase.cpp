@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "contact/conforming_gap.h"
-#include "contact/leaving_face.h"
 #include "contact/tolerances.h"
+#include "contact/vertex_contact.h"
 
 namespace tissue_contact {
 namespace {
@@ -56,13 +56,8 @@ void NarrowPhase::makeRoom(const MovingSurface& surface) {
 void NarrowPhase::findContacts(const ShapeDistance& shape, const Pose& X_WS, const MovingSurface& surface,
                                const std::vector<int>& candidates, double margin, std::vector<ShapeContact>& contacts,
                                bool lets_under) {
-  call_ = {&shape,
-           &surface,
-           X_WS.linear().transpose(),
-           X_WS.translation(),
-           margin + surface.halfThickness(),
-           lets_under && shape.hasFlatParts(),
-           &contacts};
+  call_ = {&shape,     &surface, X_WS.linear().transpose(), X_WS.translation(), margin + surface.halfThickness(),
+           lets_under, &contacts};
   ++call_index_;
   makeRoom(surface);
   contacts.clear();
@@ -115,24 +110,15 @@ const NarrowPhase::NodeCache& NarrowPhase::measureVertex(int triangle, int corne
   cache.measured = call_index_;
   const SignedDistance here = call_.shape->at(cache.p_S);
   cache.distance = here.distance;
-  const SignedDistance left = leftThrough(triangle, corner, here);
+  SignedDistance left = here;
+  if (here.distance <= call_.margin) {
+    const auto position = [this](int node) -> const Vector3& { return nodePosition(node); };
+    left = vertexContact(*call_.shape, *call_.surface, call_.surface->triangles()[triangle][corner], position,
+                         call_.lets_under, here);
+  }
   const bool touches = add(triangle, Vector3::Unit(corner), -1, left.normal, left.distance);
   cache.contact_gap = touches ? left.distance : std::numeric_limits<double>::infinity();
   return cache;
-}
-
-/// Which face of the shape holds a vertex (leaving_face.h).
-SignedDistance NarrowPhase::leftThrough(int triangle, int corner, const SignedDistance& here) {
-  if (!call_.lets_under || !call_.surface->isVolume() || !(here.distance <= call_.margin)) return here;
-  const int node = call_.surface->triangles()[triangle][corner];
-  const Vector3 vertex = nodePosition(node);
-  VertexSurroundings around;
-  call_.surface->anyTriangleOf({node, -1, -1}, [&](int other) {
-    const TrianglePoints points = trianglePoints(other);
-    around.add(vertex, points.corners, points.normal, here.normal);
-    return false;
-  });
-  return leavingFace(*call_.shape, vertex, around, here);
 }
 
 /// Distances change by no more than the way between the points, so far vertices may rule out the whole triangle.

@@ -82,7 +82,6 @@ class NarrowPhase {
   TrianglePoints trianglePoints(int triangle);
   std::array<double, 3> vertexDistances(int triangle) const;
   const NodeCache& measureVertex(int triangle, int corner);
-  SignedDistance leftThrough(int triangle, int corner, const SignedDistance& here);
   bool certainlyFar(int triangle, const TrianglePoints& points);
   double addCorners(int triangle, const TrianglePoints& points);
   double addCornerInFold(int triangle, const ShapeCorner& corner);

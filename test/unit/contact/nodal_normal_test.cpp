@@ -1,0 +1,92 @@
+// The direction of a vertex's contact: a smooth shape's mean normal over the surface that the vertex stands for.
+#include "contact/nodal_normal.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "contact_test_utilities.h"
+
+namespace tissue_contact::contact_test {
+namespace {
+
+constexpr double kRadius = 0.005;
+constexpr int kSectors = 6;
+const Vector3 kDown = -Vector3::UnitZ();
+
+/// Corners around the lowest point of a ball that lies on the plane z = -kRadius; those with x < 0 are `stretch` times as far away.
+std::array<Vector3, 3> sector(int k, double edge, double stretch) {
+  const auto at = [&](int corner) {
+    const double angle = 2.0 * M_PI * (corner + 0.5) / kSectors;
+    Vector3 p = edge * Vector3(std::cos(angle), std::sin(angle), 0.0);
+    if (p.x() < 0.0) p.x() *= stretch;
+    return Vector3(p + kRadius * kDown);
+  };
+  return {kRadius * kDown, at(k), at(k + 1)};
+}
+
+Vector3 meanOf(const ShapeDistance& shape, double edge, double stretch) {
+  NodalNormal normal(shape, kRadius * kDown, kDown);
+  for (int k = 0; k < kSectors; ++k) normal.add(sector(k, edge, stretch), 0);
+  return normal.mean();
+}
+
+/// Normals over the third of a triangle next to its first corner, by points in the middle of many small parts; times the area.
+Vector3 integralOverThird(const ShapeDistance& shape, const std::array<Vector3, 3>& corners) {
+  constexpr int kParts = 300;
+  const Vector3 a = corners[1] - corners[0], b = corners[2] - corners[0];
+  Vector3 sum = Vector3::Zero();
+  for (int i = 0; i < kParts; ++i) {
+    for (int j = 0; i + j < kParts; ++j) {
+      const double s = (i + 1.0 / 3.0) / kParts, t = (j + 1.0 / 3.0) / kParts;
+      if (1.0 - s - t < std::max(s, t)) continue;  // nearer to another corner, in barycentric weights
+      sum += shape.at(corners[0] + s * a + t * b).normal;
+    }
+  }
+  return a.cross(b).norm() * sum;
+}
+
+TEST(NodalNormal, OfAnEvenPatchIsTheVertexsOwn) {
+  EXPECT_LE((meanOf(*makeSphereDistance(kRadius), 0.001, 1.0) - kDown).norm(), 1e-12);
+}
+
+TEST(NodalNormal, LeansToWhereTrianglesAreLarger) {
+  const auto ball = makeSphereDistance(kRadius);
+  for (const double stretch : {1.2, 1.7}) {
+    Vector3 expected = Vector3::Zero();
+    for (int k = 0; k < kSectors; ++k) expected += integralOverThird(*ball, sector(k, 0.001, stretch));
+    expected.normalize();
+    const Vector3 found = meanOf(*ball, 0.001, stretch);
+    EXPECT_LT(expected.x(), -0.005) << stretch;
+    // One point per triangle: of second order in the edge over the radius, .2 of it here.
+    EXPECT_LE((found - expected).norm(), 0.05 * std::abs(expected.x())) << stretch;
+    EXPECT_NEAR(found.norm(), 1.0, 1e-12);
+  }
+}
+
+TEST(NodalNormal, OfATipThatPokesIntoTrianglesIsTheVertexsOwn) {
+  // A corner of the ball's radius away is half a radian and more around it at a fifth of the way.
+  EXPECT_EQ(meanOf(*makeSphereDistance(kRadius), 0.01, 1.7), kDown);
+}
+
+TEST(NodalNormal, ABoxsSideTurnsNothing) {
+  const auto box = makeBoxDistance({0.01, 0.01, kRadius});
+  EXPECT_EQ(meanOf(*box, 0.001, 1.7), kDown);
+  // Beyond its edge the normal is another's.
+  NodalNormal normal(*box, Vector3(0.0099, 0.0, -kRadius), kDown);
+  normal.add({Vector3(0.0099, 0.0, -kRadius), Vector3(0.012, 0.0, -kRadius), Vector3(0.0099, 0.002, -kRadius)}, 0);
+  EXPECT_EQ(normal.mean(), kDown);
+}
+
+TEST(NodalNormal, ChangesWithoutAJumpFromSmoothToSharp) {
+  const auto ball = makeSphereDistance(kRadius);
+  Vector3 before = meanOf(*ball, 0.002, 1.7);
+  for (int k = 1; k <= 200; ++k) {
+    const Vector3 now = meanOf(*ball, 0.002 + k * 4e-5, 1.7);
+    EXPECT_LE((now - before).norm(), 0.004) << k;
+    before = now;
+  }
+}
+
+}  // namespace
+}  // namespace tissue_contact::contact_test
