@@ -15,7 +15,8 @@ namespace tissue_contact {
 /// other corners a and b, by area. That differs from the normal at the vertex where triangles are larger on one side: a dragged ball stretches the
 /// tissue behind it to some 1.7 times its length and presses that ahead together, to some .65, and with vertices' own normals its load is too far ahead by a tenth of an edge
 /// (doc/method.md). Where the shape bends by more than kSmooth on the way from the vertex, its normal there counts less, from kSharp on not
-/// at all: edges, and tips that poke into triangles.
+/// at all: edges, and tips that poke into triangles. Nor does it where the turn has not begun by kBegins of the way: beside a vertex on a flat
+/// face there is an edge, and the face presses straight.
 class NodalNormal {
  public:
   /// @param here of the shape at the vertex; all in the shape's frame.
@@ -26,9 +27,15 @@ class NodalNormal {
   void add(const std::array<Vector3, 3>& corners, std::size_t corner) {
     const Vector3 a = corners[(corner + 1) % 3] - vertex_;
     const Vector3 b = corners[(corner + 2) % 3] - vertex_;
-    const Vector3 turn = shape_.at(vertex_ + 7.0 / 36.0 * (a + b)).normal - here_;
+    const Vector3 way = 7.0 / 36.0 * (a + b);
+    const Vector3 turn = turnOn(way);
+    const double angle = turn.norm();
     const double area = a.cross(b).norm();
-    turns_ += area * std::clamp((kSharp - turn.norm()) / (kSharp - kSmooth), 0.0, 1.0) * turn;
+    double share = std::clamp((kSharp - angle) / (kSharp - kSmooth), 0.0, 1.0);
+    if (share > 0.0 && angle > 0.0 && shape_.hasFlatParts()) {
+      share *= std::min(turnOn(kBegins * way).norm() / (kBegins * angle), 1.0);
+    }
+    turns_ += area * share * turn;
     area_ += area;
   }
 
@@ -37,6 +44,9 @@ class NodalNormal {
  private:
   static constexpr double kSmooth = 0.25;  // rad
   static constexpr double kSharp = 0.5;
+  static constexpr double kBegins = 0.25;  // of the way
+
+  Vector3 turnOn(const Vector3& way) const { return shape_.at(vertex_ + way).normal - here_; }
 
   const ShapeDistance& shape_;
   const Vector3 vertex_;
