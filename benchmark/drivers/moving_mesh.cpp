@@ -2,7 +2,7 @@
 /// much the force turns in either; of the stepping thread, and by the clock on the wall, which also has in it what steps wait for the
 /// worker that prepares meshes. The ball is pressed .4 of its radius deep and slides along a figure of eight.
 /// usage: moving_mesh [--speed M_PER_S] [--length M] [--radius M] [--block X_M,Y_M,Z_M,CELLS_X,CELLS_Y,CELLS_Z] [--mesh FILE]
-///                    [--refinement never|auto|MAP] [--tolerance T] [--trace FILE] [--surfaces FILE]
+///                    [--refinement never|auto|fine|MAP] [--tolerance T] [--trace FILE] [--surfaces FILE]
 ///   --mesh: the same block from a Gmsh file (roam.py); --trace: every step as CSV; --surfaces: the surface at six moments, for
 ///   plot_moving_mesh.py
 #include <algorithm>
@@ -45,7 +45,7 @@ Arguments parse(int argc, char** argv) {
       throw std::invalid_argument(
           "usage: moving_mesh [--speed M_PER_S] [--length M] [--radius M] [--block "
           "X_M,Y_M,Z_M,CELLS_X,CELLS_Y,CELLS_Z] "
-          "[--mesh FILE] [--refinement never|auto|MAP] [--tolerance T] [--trace FILE] [--surfaces FILE]");
+          "[--mesh FILE] [--refinement never|auto|fine|MAP] [--tolerance T] [--trace FILE] [--surfaces FILE]");
     }
     value->second = argv[i + 1];
   }

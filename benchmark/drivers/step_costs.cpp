@@ -1,7 +1,7 @@
 /// Prints what an implicit step costs: press and drag (a 5 mm ball, 4 mm deep, 20 mm/s) on a block or on a Gmsh mesh of the
 /// same block, with the median and the 99th percentile of the processor time of a step in contact. `--trace FILE` writes
 /// every step, with its page faults: why was this one slow?
-/// usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--refinement never|auto|MAP] [--tolerance T] [--relaxation NAME] [--iterations N]
+/// usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--refinement never|auto|fine|MAP] [--tolerance T] [--relaxation NAME] [--iterations N]
 /// [--step S] [--drag M] [--youngs-modulus PA] [--poissons-ratio NU] [--trace FILE]
 #include <algorithm>
 #include <array>
@@ -116,7 +116,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   if (!parse(argc, argv, arguments)) {
     std::fprintf(stderr,
-                 "usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--refinement never|auto|MAP] [--tolerance T] "
+                 "usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--refinement never|auto|fine|MAP] [--tolerance T] "
                  "[--relaxation NAME] "
                  "[--iterations N] [--step S] [--drag M] [--youngs-modulus PA] [--poissons-ratio NU] [--trace FILE]\n");
     return 2;

@@ -3,7 +3,7 @@
 /// truth, where there is one, and how well the simulator's own estimate (Simulator::forceErrors()) tells it.
 /// usage: truth_run SCENE MESH STEP_S TOLERANCE SECONDS [BAG]
 ///   SCENE press-drag, grasp, partial-slip or robot (with its BAG); MESH a file in the tissue's frame, - for the scene's
-///   own, refined for that one with refinement: auto, or CELL_MM,REACH_MM,NODES for it refined so; SECONDS of the motion, 0: all
+///   own, refined for that one with refinement: auto, fine for refinement: fine, or CELL_MM,REACH_MM,NODES for it refined so; SECONDS of the motion, 0: all
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -38,6 +38,8 @@ void prepare(const std::vector<std::string>& words, Scene& scene) {
   double reach_mm = 0.0;
   if (words[1] == "refined") {
     refinement.mode = RefinementDescription::Mode::kAuto;
+  } else if (words[1] == "fine") {
+    refinement.mode = RefinementDescription::Mode::kFine;
   } else if (std::sscanf(words[1].c_str(), "%lf,%lf,%d", &cell_mm, &reach_mm, &refinement.nodes_at_most) == 3) {
     refinement.mode = RefinementDescription::Mode::kGiven;
     refinement.cell_m = 1e-3 * cell_mm;

@@ -117,7 +117,8 @@ RefinementDescription parseRefinement(const YamlCursor& cursor) {
   using Mode = RefinementDescription::Mode;
   RefinementDescription refinement;
   if (cursor.isScalar()) {
-    constexpr std::pair<const char*, Mode> kModes[] = {{"never", Mode::kNever}, {"auto", Mode::kAuto}};
+    constexpr std::pair<const char*, Mode> kModes[] = {
+        {"never", Mode::kNever}, {"auto", Mode::kAuto}, {"fine", Mode::kFine}};
     refinement.mode = cursor.choice(kModes);
     return refinement;
   }

@@ -19,7 +19,7 @@ namespace tissue_contact {
 
 /// Once it has been taken it holds what was before, to be done away with wherever there is time.
 struct ComingMesh {
-  NextMesh next = {FineCells(0.0), {}, std::nullopt};
+  NextMesh next = {FineCells(RefinementDescription()), {}, std::nullopt};
   std::optional<Tissue> tissue;  ///< none: the mesh stays, and there is nothing of what follows
   std::optional<MovingSurface> surface;
   SurfaceEdges::Lengths edges;

@@ -45,10 +45,10 @@ double FineCells::longestEdge(const Vector3& p_T) const {
     const double finest = focus.coarsening * focus.asked_m;
     if (cell <= finest) continue;
     const double reach_m = focus.coarsening * reach(focus.asked_m);
-    const double lowers_within = reach_m + (cell - finest) / kGrowth;
+    const double lowers_within = reach_m + (cell - finest) / growth_;
     const double squared = (focus.p_T - p_T).squaredNorm();
     if (!(squared < lowers_within * lowers_within)) continue;  // most are too far: spares a root
-    cell = std::min(cell, finest + kGrowth * std::max(std::sqrt(squared) - reach_m, 0.0));
+    cell = std::min(cell, finest + growth_ * std::max(std::sqrt(squared) - reach_m, 0.0));
   }
   return std::sqrt(3.0) * cell;
 }

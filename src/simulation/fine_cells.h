@@ -2,13 +2,14 @@
 /// Room `simulation`, private: where the cells of a refined mesh are fine. Places that are touched in; foci around which cells are fine,
 /// and how long edges may be anywhere, out.
 ///
-/// Cells are fine within the reach of a focus, and longer by kGrowth per metre beyond it.
+/// Cells are fine within the reach of a focus, and longer by a growth per metre beyond it.
 #pragma once
 
 #include <vector>
 
 #include "tissue_contact/core/state_archive.h"
 #include "tissue_contact/core/types.h"
+#include "tissue_contact/mesh/refinement_description.h"
 
 namespace tissue_contact {
 
@@ -20,13 +21,11 @@ struct FinePlace {
 
 class FineCells {
  public:
-  /// Length that cells gain per length of distance beyond the reach: steeper ones err more with as many nodes (doc/accuracy.md).
-  static constexpr double kGrowth = 0.5;
   /// Of the reach: a contact that far from a focus has as much of fine cells beyond it.
   static constexpr double kCovered = 0.5;
 
-  /// @param reach_m how far fine cells reach beyond a place; 0: kCellsOfReach cells.
-  explicit FineCells(double reach_m) : reach_m_(reach_m) {}
+  explicit FineCells(const RefinementDescription& refinement)
+      : reach_m_(refinement.reach_m), growth_(refinement.choice().growth) {}
 
   double reach(double cell_m) const;
   bool isCovered(const FinePlace& place, double share_of_reach) const;
@@ -53,7 +52,8 @@ class FineCells {
   };
   bool covers(const Focus& focus, const FinePlace& place, double share) const;
 
-  double reach_m_;
+  double reach_m_;  ///< how far fine cells reach beyond a place; 0: kCellsOfReach cells
+  double growth_;   ///< length that they gain per length of distance beyond that
   std::vector<Focus> foci_;
   double coarsening_ = 1.0;
 };

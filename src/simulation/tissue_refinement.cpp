@@ -74,7 +74,7 @@ TissueRefinement::TissueRefinement(RefinableMesh&& mesh, const Pose& X_WT)
       bisection_(std::move(mesh.bisection)),
       nodes_at_most_(
           static_cast<int>(mostNodes(description_.refinement, static_cast<std::size_t>(bisection_.unrefinedNodes())))),
-      cells_(description_.refinement.reach_m) {
+      cells_(description_.refinement) {
   refineWithin(cells_, mesh_);
 }
 

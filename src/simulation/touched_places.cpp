@@ -21,7 +21,7 @@ double TouchedPlaces::cellUnder(int tissue, int instrument, int contact_link, in
   const RefinementDescription& refinement = refinements_[tissue];
   if (refinement.mode == RefinementDescription::Mode::kNever) return 0.0;
   if (refinement.cell_m > 0.0) return refinement.cell_m;
-  return half_extents_[instrument][contact_link][shape] / kCellsPerHalfExtent;
+  return half_extents_[instrument][contact_link][shape] / refinement.choice().cells_per_half_extent;
 }
 
 std::vector<double> TouchedPlaces::cellsOn(int tissue) const {

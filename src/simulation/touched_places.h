@@ -30,10 +30,6 @@ struct HalfExtents {
 
 class TouchedPlaces {
  public:
-  /// Cells along the smallest half extent of a shape, where the advisor chooses: a ball that is pressed in by most of its radius
-  /// errs by 3 to 4 % with them (doc/accuracy.md).
-  static constexpr double kCellsPerHalfExtent = 3.4;
-
   TouchedPlaces(const Scene& scene, const std::vector<Instrument>& instruments);
 
   /// Edge of the finest cells under a shape, m; 0: they are not refined for it.

@@ -9,21 +9,27 @@ namespace tissue_contact {
 
 /// Refinement that follows whatever touches a volume. Away from contacts the mesh is that of the scene.
 struct RefinementDescription {
-  /// Whether the mesh follows: never; with cells that the advisor chooses from the shapes that touch; with those given.
-  enum class Mode { kNever, kAuto, kGiven };
+  /// Whether the mesh follows: never; with cells that the advisor chooses from the shapes that touch, for steps of less than a
+  /// millisecond or for little error; with those given.
+  enum class Mode { kNever, kAuto, kFine, kGiven };
   Mode mode = Mode::kNever;
   double cell_m = 0.0;    ///< edge of the finest cells; 0: chosen
   double reach_m = 0.0;   ///< how far they reach beyond what touches; 0: three times cell_m
-  int nodes_at_most = 0;  ///< of the refined mesh: cells grow until it has no more; 0: kDefaultNodes
+  int nodes_at_most = 0;  ///< of the refined mesh: cells grow until it has no more; 0: chosen
 
-  /// Or one and a half times those of the unrefined mesh if that is more. One ball on a block of 605 takes 1500.
-  static constexpr int kDefaultNodes = 3000;
+  /// What is chosen where it is not given. What forces err by then: doc/accuracy.md.
+  struct Choice {
+    double cells_per_half_extent;  ///< along the smallest half extent of a shape
+    double growth;                 ///< length that cells gain per length of distance beyond the reach
+    int nodes_at_most;             ///< or one and a half times those of the unrefined mesh if that is more
+  };
+  Choice choice() const { return mode == Mode::kFine ? Choice{8.0, 0.2, 20000} : Choice{3.4, 0.5, 3000}; }
 };
 
 /// How many nodes the refined mesh may have. @param unrefined nodes of the mesh before.
 inline std::size_t mostNodes(const RefinementDescription& refinement, std::size_t unrefined) {
   if (refinement.nodes_at_most > 0) return static_cast<std::size_t>(refinement.nodes_at_most);
-  return std::max(static_cast<std::size_t>(RefinementDescription::kDefaultNodes), unrefined * 3 / 2);
+  return std::max(static_cast<std::size_t>(refinement.choice().nodes_at_most), unrefined * 3 / 2);
 }
 
 }  // namespace tissue_contact

@@ -23,6 +23,7 @@ TEST_F(SceneTest, FillsRefinement) {
         .refinement;
   };
   EXPECT_EQ(as("auto").mode, RefinementDescription::Mode::kAuto);
+  EXPECT_EQ(as("fine").mode, RefinementDescription::Mode::kFine);
   EXPECT_EQ(as("never").mode, RefinementDescription::Mode::kNever);
   EXPECT_EQ(as("{cell_m: 0.001}").reach_m, 0.0) << "chosen";
   EXPECT_EQ(parse(kSmallestScene).tissues.at(0).refinement.mode, RefinementDescription::Mode::kNever);
@@ -36,7 +37,7 @@ const BadScene kBadRefinements[] = {
     {"nodes_at_most: 1500", "nodes_at_most: 0", "5: tissues[0].refinement.nodes_at_most", "1"},
     {"nodes_at_most: 1500", "nodes_at_most: 1e9", "5: tissues[0].refinement.nodes_at_most", "300000"},
     {"nodes_at_most: 1500", "nodes: 1500", "5: tissues[0].refinement.nodes", "did you mean"},
-    {"{cell_m: 0.002, reach_m: 0.007, nodes_at_most: 1500}", "always", "5: tissues[0].refinement", "never, auto"},
+    {"{cell_m: 0.002, reach_m: 0.007, nodes_at_most: 1500}", "always", "5: tissues[0].refinement", "never, auto, fine"},
     {"{cell_m: 0.002, reach_m: 0.007, nodes_at_most: 1500}", "[1]", "5: tissues[0].refinement", "map"},
     {"youngs_modulus_pa: 3000", "model: mass_spring, youngs_modulus_pa: 3000", "5: tissues[0].refinement",
      "mass-spring"},
