@@ -4,6 +4,7 @@ watch.py."""
 import itertools
 import math
 import os
+import time
 import xml.etree.ElementTree
 
 import roslib.message
@@ -164,9 +165,15 @@ class Pictures(harness.TestCase):
             source = harness.JointSource()
             harness.wait_until(lambda: self.is_heard("/tissue_contact/status"), "watch.py listening")
             wrenches = harness.wrenches()
-            source.send_all(harness.press(100))
-            wrenches.wait(lambda all: len(all) == 100, "the wrenches")
-            harness.wait_until(lambda: watch.poll() is not None, "the picture")
+            sent = []
+
+            def is_drawn():  # on a busy machine it is known to listen some time before anything reaches it
+                source.send_all(harness.press(100, harness.START_S + len(sent) // 100))
+                sent.extend(range(100))
+                wrenches.wait(lambda all: len(all) == len(sent), "the wrenches")
+                time.sleep(1.0)
+                return watch.poll() is not None
+            harness.wait_until(is_drawn, "the picture")
             self.assertEqual(watch.returncode, 0, harness.output_of(watch))
             self.assertIn("wrote " + picture, harness.output_of(watch))
         with open(picture, "rb") as stream:
