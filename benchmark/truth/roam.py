@@ -41,10 +41,9 @@ class Scene:
 # settings: (refinement, tolerance)
 SCENES = {
     "ball": Scene(0.005, (0.1, 0.1, 0.04), (10, 10, 4), 0.1, 0.2,
-                  [("never", "1e-2"), ("auto", "1e-2"), ("auto", "1e-4"), ("{cell_m: 0.001, reach_m: 0.003, nodes_at_most: 6000}", "1e-3"),
-                   ("{cell_m: 0.0007, reach_m: 0.003, nodes_at_most: 12000}", "1e-3")]),
+                  [("never", "1e-2"), ("auto", "1e-2"), ("auto", "1e-4"), ("fine", "1e-2"), ("fine", "1e-4")]),
     "small-tool": Scene(0.001, (0.2, 0.2, 0.05), (20, 20, 5), 0.02, 0.06,
-                        [("never", "1e-2"), ("auto", "1e-2"), ("auto", "1e-4"), ("{cell_m: 0.0002, reach_m: 0.0006, nodes_at_most: 6000}", "1e-3")]),
+                        [("never", "1e-2"), ("auto", "1e-2"), ("auto", "1e-4"), ("fine", "1e-2"), ("fine", "1e-4")]),
 }
 
 
