@@ -149,6 +149,7 @@ void ContactDetector::Implementation::detectPair(MovingSurface& surface, const T
     contact.p_WC = pointOf(surface.positions(), one.nodes, one.weights);
     contact.R_WC = contactFrame(one.normal_W);
     contact.gap_m = one.gap;
+    contact.lean_W = one.lean_W;
   }
 }
 
@@ -200,7 +201,9 @@ bool ContactDetector::Implementation::fitBetweenShapes(const TouchingShape& shap
   }
   if (!before || !(united.distance < before->distance)) return true;
   contact.gap_m += united.distance - before->distance;
-  contact.R_WC = contactFrame(united.normal.normalized());
+  const Vector3 normal_W = (united.normal + contact.lean_W).normalized();
+  contact.R_WC = contactFrame(normal_W);
+  contact.lean_W = normal_W - united.normal;
   return true;
 }
 
@@ -228,29 +231,32 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
     const Vector3 p_W = pointOf(x, contact.nodes, contact.weights);
     std::array<Vector3, 3> corners_S;
     std::array<double, 3> distances;
+    const auto inShape = [&](int node) -> Vector3 {
+      return X_WS.linear().transpose() * (x.col(node) - X_WS.translation());
+    };
     for (int i = 0; i < 3; ++i) {
-      corners_S[i] = X_WS.linear().transpose() * (x.col(contact.nodes[i]) - X_WS.translation());
+      corners_S[i] = inShape(contact.nodes[i]);
       distances[i] = shape.distance->at(corners_S[i]).distance;
     }
     const Vector3 p_S = X_WS.linear().transpose() * (p_W - X_WS.translation());
     SignedDistance here = shape.distance->at(p_S);
     here.distance = conformingGap(corners_S, distances, contact.weights, here.distance).gap;
     const double groove = implementation_->deepestGroove(shape, X_WL[shape.instrument]);
-    if (key.feature[1] < 0 && key.corner < 0) {
-      const auto inShape = [&](int node) -> Vector3 {
-        return X_WS.linear().transpose() * (x.col(node) - X_WS.translation());
-      };
-      here = vertexContact(*shape.distance, surface, key.feature[0], inShape, groove == 0.0, here);
-    }
-    const Vector3 normal_W = (X_WS.linear() * here.normal).normalized();
-    const double gap = here.distance - surface.halfThickness();
-    const auto faces = [&](int triangle) {
+    const auto normalOf = [&](int triangle) -> Vector3 {
       const Triangle& nodes = surface.triangles()[triangle];
-      return normal_W.dot(triangleNormal(x.col(nodes[0]), x.col(nodes[1]), x.col(nodes[2]))) < -kFacing;
+      return triangleNormal(inShape(nodes[0]), inShape(nodes[1]), inShape(nodes[2]));
     };
+    const VertexContact vertex(*shape.distance, surface, key.feature[0], inShape, normalOf);
+    const bool is_vertex = key.feature[1] < 0 && key.corner < 0;
+    const Vector3 own = here.normal;
+    if (is_vertex && groove == 0.0) here = vertex.leaves(here);
+    const double gap = here.distance - surface.halfThickness();
+    const auto faces = [&](int triangle) { return here.normal.dot(normalOf(triangle)) < -kFacing; };
     if (!(gap <= margin_m + groove) || (surface.isVolume() && !surface.anyTriangleOf(key.feature, faces))) return false;
     contact.p_WC = p_W;
-    contact.R_WC = contactFrame(normal_W);
+    const Vector3 normal = is_vertex && here.normal == own ? vertex.meanNormal(own) : here.normal;
+    contact.R_WC = contactFrame((X_WS.linear() * normal).normalized());
+    contact.lean_W = X_WS.linear() * (normal - here.normal);
     contact.gap_m = gap;
     if (implementation_->shapes.size() == 1) return true;
     return implementation_->fitBetweenShapes(shape, X_WL, contact) && contact.gap_m <= margin_m;
@@ -273,27 +279,30 @@ void ContactDetector::turnWithSlide(const std::vector<std::vector<Pose>>& start_
   if (key.corner >= 0) return;  // its normal is the tissue's
   for (const TouchingShape& shape : implementation_->shapes) {
     if (shape.instrument != key.instrument || shape.contact_link != key.link || shape.shape != key.shape) continue;
-    if (contact.gap_m < -kMostDepth * shape.half_extent) return;
     const Pose start = start_X_WL.at(shape.instrument).at(shape.link) * shape.X_LS;
     const Pose end = end_X_WL.at(shape.instrument).at(shape.link) * shape.X_LS;
     const Vector3 p_S = start.linear().transpose() * (contact.p_WC - start.translation());
+    const Vector3 way_S = end.linear().transpose() * (contact.p_WC + way_W - end.translation()) - p_S;
     const SignedDistance here = shape.distance->at(p_S);
     const Vector3 from_W = start.linear() * here.normal;
-    if (!(from_W.dot(contact.R_WC.col(0)) > kOwn)) return;
-    const Vector3 all_of_way = end.linear().transpose() * (contact.p_WC + way_W - end.translation()) - p_S;
-    const Vector3 way = all_of_way - here.normal.dot(all_of_way) * here.normal;
-    const SignedDistance there = shape.distance->at(p_S + way);
-    const double turned = std::max((there.normal - here.normal).norm() - kRoundOff, 0.0);
-    const double curvature = turned > 0.0 ? turned * shape.half_extent / way.norm() : 0.0;
-    const double share = std::min(faded(turned, kMostTurn, kSharpTurn), faded(curvature, kMostCurved, kSharpCurvature));
-    const Quaternion turn = Quaternion::FromTwoVectors(from_W, end.linear() * there.normal);
-    const Matrix3 turn_W = Quaternion::Identity().slerp(share, turn).toRotationMatrix();
-    // By what the direction of a vertex's contact leans away from the shape's normal there, no way leads to the shape.
-    Vector3 lean_W = turn_W * (contact.R_WC.col(0) - from_W);
-    if (key.feature[1] >= 0) lean_W.setZero();  // where on a face the nearest point lies may hang on round-off
-    contact.R_WC = turn_W * contact.R_WC;
-    contact.gap_m +=
-        share * (there.distance - here.distance - there.normal.dot(way)) - lean_W.dot(end.linear() * all_of_way);
+    const bool is_own = from_W.dot(contact.R_WC.col(0) - contact.lean_W) > kOwn;
+    if (is_own && contact.gap_m >= -kMostDepth * shape.half_extent) {
+      const Vector3 way = way_S - here.normal.dot(way_S) * here.normal;
+      const SignedDistance there = shape.distance->at(p_S + way);
+      const double turned = std::max((there.normal - here.normal).norm() - kRoundOff, 0.0);
+      const double curvature = turned > 0.0 ? turned * shape.half_extent / way.norm() : 0.0;
+      const double share =
+          std::min(faded(turned, kMostTurn, kSharpTurn), faded(curvature, kMostCurved, kSharpCurvature));
+      if (share > 0.0) {
+        const Quaternion turn = Quaternion::FromTwoVectors(from_W, end.linear() * there.normal);
+        const Matrix3 turn_W = Quaternion::Identity().slerp(share, turn).toRotationMatrix();
+        contact.R_WC = turn_W * contact.R_WC;
+        contact.lean_W = turn_W * contact.lean_W;
+        contact.gap_m += share * (there.distance - here.distance - there.normal.dot(way));
+      }
+    }
+    // The way along the normal is to change the gap by what leads to the shape alone.
+    contact.gap_m -= contact.lean_W.dot(end.linear() * way_S);
     return;
   }
 }

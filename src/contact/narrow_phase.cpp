@@ -110,13 +110,19 @@ const NarrowPhase::NodeCache& NarrowPhase::measureVertex(int triangle, int corne
   cache.measured = call_index_;
   const SignedDistance here = call_.shape->at(cache.p_S);
   cache.distance = here.distance;
-  SignedDistance left = here;
-  if (here.distance <= call_.margin) {
-    const auto position = [this](int node) -> const Vector3& { return nodePosition(node); };
-    left = vertexContact(*call_.shape, *call_.surface, call_.surface->triangles()[triangle][corner], position,
-                         call_.lets_under, here);
-  }
+  const int node = call_.surface->triangles()[triangle][corner];
+  const auto position = [this](int other) -> const Vector3& { return nodePosition(other); };
+  const auto normal = [this](int other) -> const Vector3& { return triangleNormalOf(other); };
+  const VertexContact vertex(*call_.shape, *call_.surface, node, position, normal);
+  const bool is_near = here.distance <= call_.margin;
+  const SignedDistance left = is_near && call_.lets_under ? vertex.leaves(here) : here;
   const bool touches = add(triangle, Vector3::Unit(corner), -1, left.normal, left.distance);
+  if (touches && left.normal == here.normal) {
+    ShapeContact& contact = call_.contacts->back();
+    const Vector3 gradient_W = contact.normal_W;
+    contact.normal_W = call_.R_SW.transpose() * vertex.meanNormal(here.normal);
+    contact.lean_W = contact.normal_W - gradient_W;
+  }
   cache.contact_gap = touches ? left.distance : std::numeric_limits<double>::infinity();
   return cache;
 }

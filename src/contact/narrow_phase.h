@@ -8,7 +8,8 @@
 ///
 /// Which contacts are real (shapes are solid):
 ///  - Where the nearest face of a shape with edges stands across the surface at a vertex, the one below it counts
-///    (leaving_face.h).
+///    (leaving_face.h). Elsewhere a vertex is pressed along the mean normal over the surface that it stands for
+///    (nodal_normal.h); which triangles face the shape, and how far it is, its own normal tells.
 ///  - On the boundary of a volume a contact counts when at least one surface triangle at its feature faces the
 ///    instrument (contact normal times triangle normal < -kFacing). A point of the tissue nearest to something outside
 ///    it always has such a triangle. The lower face of a thin layer pressed from above has none, nor has a surface that
@@ -38,6 +39,7 @@ struct ShapeContact {
   std::array<int, 3> nodes = {0, 0, 0};  ///< of the first surface triangle that contains the feature
   Vector3 weights = Vector3::Zero();     ///< barycentric in it
   Vector3 normal_W = Vector3::Zero();    ///< unit, from the shape into the tissue
+  Vector3 lean_W = Vector3::Zero();      ///< as Contact has it
   double gap = 0.0;                      ///< m, less half the thickness of a sheet
 };
 

@@ -1,5 +1,6 @@
 /// @file
-/// Room `contact`, private: the direction of a vertex's contact: a smooth shape's normal over the surface that the vertex stands for.
+/// Room `contact`, private: the direction of a vertex's contact, a smooth shape's normal over the surface that the vertex
+/// stands for.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +11,15 @@
 
 namespace tissue_contact {
 
-/// The force on a vertex is the traction on a third of each triangle around it, each a quadrilateral of the vertex, the middles of two edges and
-/// that of the triangle. Its direction is therefore the mean of the normals at the centroids of these, (22 x + 7 a + 7 b) / 36 with the
-/// other corners a and b, by area. That differs from the normal at the vertex where triangles are larger on one side: a dragged ball stretches the
-/// tissue behind it to some 1.7 times its length and presses that ahead together, to some .65, and with vertices' own normals its load is too far ahead by a tenth of an edge
-/// (doc/method.md). Where the shape bends by more than kSmooth on the way from the vertex, its normal there counts less, from kSharp on not
-/// at all: edges, and tips that poke into triangles. Nor does it where the turn has not begun by kBegins of the way: beside a vertex on a flat
-/// face there is an edge, and the face presses straight.
+/// The force on a vertex is the traction on a third of each triangle around it, each a quadrilateral of the vertex, the
+/// middles of two edges and that of the triangle. Its direction is therefore the mean of the normals at the centroids of
+/// these, (22 x + 7 a + 7 b) / 36 with the other corners a and b, by area. That differs from the normal at the vertex
+/// where triangles are larger on one side: a dragged ball stretches the tissue behind it to some 1.7 times its length and
+/// presses that ahead together, to some .65, and with vertices' own normals its load is too far ahead by a tenth of an
+/// edge (doc/method.md). Where the shape bends by more than kMostTurn on the way from the vertex, its normal there counts
+/// less, from kNoTurn on not at all: edges, and tips that poke into triangles. Of a shape with flat parts it counts by the
+/// share of the turn that is made at kBegins of the way: where none is, the vertex is on a flat face beside an edge, and
+/// that face presses straight.
 class NodalNormal {
  public:
   /// @param here of the shape at the vertex; all in the shape's frame.
@@ -29,11 +32,11 @@ class NodalNormal {
     const Vector3 b = corners[(corner + 2) % 3] - vertex_;
     const Vector3 way = 7.0 / 36.0 * (a + b);
     const Vector3 turn = turnOn(way);
-    const double angle = turn.norm();
+    const double turned = turn.norm();
     const double area = a.cross(b).norm();
-    double share = std::clamp((kSharp - angle) / (kSharp - kSmooth), 0.0, 1.0);
-    if (share > 0.0 && angle > 0.0 && shape_.hasFlatParts()) {
-      share *= std::min(turnOn(kBegins * way).norm() / (kBegins * angle), 1.0);
+    double share = std::clamp((kNoTurn - turned) / (kNoTurn - kMostTurn), 0.0, 1.0);
+    if (share > 0.0 && turned > 0.0 && shape_.hasFlatParts()) {
+      share *= std::min(turnOn(kBegins * way).norm() / (kBegins * turned), 1.0);
     }
     turns_ += area * share * turn;
     area_ += area;
@@ -42,8 +45,8 @@ class NodalNormal {
   Vector3 mean() const { return area_ > 0.0 ? Vector3((here_ + turns_ / area_).normalized()) : here_; }
 
  private:
-  static constexpr double kSmooth = 0.25;  // rad
-  static constexpr double kSharp = 0.5;
+  static constexpr double kMostTurn = 0.25;  // length of the difference of two normals
+  static constexpr double kNoTurn = 0.5;
   static constexpr double kBegins = 0.25;  // of the way
 
   Vector3 turnOn(const Vector3& way) const { return shape_.at(vertex_ + way).normal - here_; }

@@ -1,5 +1,5 @@
 /// @file
-/// Room `contact`, private: where and which way a shape presses a vertex of the tissue.
+/// Room `contact`, private: which way a shape presses a vertex of the tissue.
 #pragma once
 
 #include <algorithm>
@@ -9,42 +9,57 @@
 #include "contact/leaving_face.h"
 #include "contact/nodal_normal.h"
 #include "contact/shape/shape_distance.h"
+#include "contact/tolerances.h"
 #include "mesh/surface/moving_surface.h"
-#include "mesh/surface/triangle_geometry.h"
 
 namespace tissue_contact {
 
-/// The face through which a vertex leaves a shape (leaving_face.h) or, through the nearest, the shape's mean normal over what the vertex
-/// stands for (nodal_normal.h).
-/// @param position of a node, in the shape's frame, m.
-/// @param lets_under nothing else of the instrument closes the way under the shape.
-/// @param here the shape's distance at the vertex.
-template <typename Position>
-SignedDistance vertexContact(const ShapeDistance& shape, const MovingSurface& surface, int node,
-                             const Position& position, bool lets_under, const SignedDistance& here) {
-  const auto cornersOf = [&](int triangle) -> std::array<Vector3, 3> {
-    const Triangle& nodes = surface.triangles()[triangle];
-    return {position(nodes[0]), position(nodes[1]), position(nodes[2])};
-  };
-  const Vector3 vertex = position(node);
-  if (lets_under && shape.hasFlatParts() && surface.isVolume()) {
+/// What is around a vertex of a surface.
+/// @tparam Position of a node, m, and Normal of a triangle: both in the shape's frame.
+template <typename Position, typename Normal>
+class VertexContact {
+ public:
+  VertexContact(const ShapeDistance& shape, const MovingSurface& surface, int node, const Position& position,
+                const Normal& normal)
+      : shape_(shape), surface_(surface), node_(node), position_(position), normal_(normal) {}
+
+  /// The face through which the vertex leaves the shape (leaving_face.h). @param here the shape's distance at it.
+  SignedDistance leaves(const SignedDistance& here) const {
+    if (!shape_.hasFlatParts() || !surface_.isVolume()) return here;
     VertexSurroundings around;
-    surface.anyTriangleOf({node, -1, -1}, [&](int triangle) {
-      const std::array<Vector3, 3> corners = cornersOf(triangle);
-      around.add(vertex, corners, triangleNormal(corners[0], corners[1], corners[2]), here.normal);
+    eachTriangle([&](int triangle, const std::array<Vector3, 3>& corners) {
+      around.add(position_(node_), corners, normal_(triangle), here.normal);
+    });
+    return leavingFace(shape_, position_(node_), around, here);
+  }
+
+  /// Mean normal of the shape over what the vertex stands for (nodal_normal.h) of the triangles that face the shape.
+  /// @param here the shape's normal at the vertex.
+  Vector3 meanNormal(const Vector3& here) const {
+    NodalNormal mean(shape_, position_(node_), here);
+    eachTriangle([&](int triangle, const std::array<Vector3, 3>& corners) {
+      if (surface_.isVolume() && !(normal_(triangle).dot(here) < -kFacing)) return;
+      const Triangle& nodes = surface_.triangles()[triangle];
+      mean.add(corners, static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), node_) - nodes.begin()));
+    });
+    return mean.mean();
+  }
+
+ private:
+  template <typename Visit>
+  void eachTriangle(const Visit& visit) const {
+    surface_.anyTriangleOf({node_, -1, -1}, [&](int triangle) {
+      const Triangle& nodes = surface_.triangles()[triangle];
+      visit(triangle, std::array<Vector3, 3>{position_(nodes[0]), position_(nodes[1]), position_(nodes[2])});
       return false;
     });
-    const SignedDistance left = leavingFace(shape, vertex, around, here);
-    if (left.normal != here.normal || left.distance != here.distance) return left;
   }
-  NodalNormal normal(shape, vertex, here.normal);
-  surface.anyTriangleOf({node, -1, -1}, [&](int triangle) {
-    const Triangle& nodes = surface.triangles()[triangle];
-    normal.add(cornersOf(triangle),
-               static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin()));
-    return false;
-  });
-  return {here.distance, normal.mean()};
-}
+
+  const ShapeDistance& shape_;
+  const MovingSurface& surface_;
+  const int node_;
+  const Position& position_;
+  const Normal& normal_;
+};
 
 }  // namespace tissue_contact

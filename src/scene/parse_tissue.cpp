@@ -16,6 +16,7 @@ constexpr Range kCellRange{1e-5, 1.0, "m", "give metres: 6 mm is 0.006"};
 constexpr double kMostCoarsening = 20.0;
 constexpr Range kThicknessRange{1e-6, 1.0, "m", "give metres: 2 mm is 0.002"};
 constexpr Range kGrowthRange{1.0, 3.0};
+constexpr Range kCellGrowthRange{0.05, 2.0};
 constexpr Range kScaleRange{1e-6, 1000.0, "m per file unit", "a file in millimetres has 0.001"};
 constexpr Range kAreaStiffnessRange{1.0, 1e12, "Pa/m", "give N/m per m^2: 1 N/mm on 1 cm^2 is 1e7"};
 constexpr Range kNodeStiffnessRange{1e-6, 1e9, "N/m", "give newtons per metre: 1 N/mm is 1000"};
@@ -126,6 +127,7 @@ RefinementDescription parseRefinement(const YamlCursor& cursor) {
   refinement.mode = Mode::kGiven;
   refinement.cell_m = map.get("cell_m").number(kSizeRange);
   if (const YamlCursor* value = map.find("reach_m")) refinement.reach_m = value->number(kSizeRange);
+  if (const YamlCursor* value = map.find("growth")) refinement.growth = value->number(kCellGrowthRange);
   if (const YamlCursor* value = map.find("nodes_at_most")) {
     refinement.nodes_at_most = value->integer(1, kMostRefinedNodes);
   }

@@ -41,7 +41,7 @@ const std::map<std::string, std::vector<std::string>>& sceneKeys() {
       {"tissues[]",
        {"name", "block", "mesh", "sheet", "shell", "pose", "material", "damping", "fibre_direction", "regions", "fixed",
         "attachments", "pressure_pa", "pressure_where", "refinement"}},
-      {"tissues[].refinement", {"cell_m", "reach_m", "nodes_at_most"}},
+      {"tissues[].refinement", {"cell_m", "reach_m", "growth", "nodes_at_most"}},
       {"tissues[].block", {"size_m", "cells", "grading"}},
       {"tissues[].block.grading", {"x", "y", "z"}},
       {"tissues[].block.grading.x", {"growth", "fine_at"}},

@@ -206,7 +206,7 @@ Advice meshLine(const TissueDescription& tissue, double edge_m, const HalfExtent
 }
 
 Advice refinementLine(const TissueDescription& tissue, const std::vector<double>& cells_m, double reach_m,
-                      int nodes_at_most, const HalfExtents& shapes) {
+                      double growth, int nodes_at_most, const HalfExtents& shapes) {
   std::ostringstream line;
   line << "mesh of tissue " << quoted(tissue.name) << ": ";
   if (cells_m.empty()) {
@@ -215,8 +215,8 @@ Advice refinementLine(const TissueDescription& tissue, const std::vector<double>
   }
   line.precision(3);
   line << "refined to cells of " << 1e3 * cells_m.front() << " mm, " << 1e3 * reach_m
-       << " mm around what touches it, and moved along with that; at most " << nodes_at_most
-       << " nodes, for which cells grow";
+       << " mm around what touches it, growing by " << growth
+       << " per length beyond, and moved along with that; at most " << nodes_at_most << " nodes, for which cells grow";
   return withExpectedError(tissue, line.str(), kEdgePerCell * cells_m.front(), kEdgePerCell * cells_m.back(), shapes);
 }
 
@@ -228,7 +228,8 @@ std::string coarseCellsText(const Simulator& simulator) {
   text << "tissue " << quoted(simulator.scene().tissues[tissue].name) << ": cells are " << cells.factor
        << " times as long as its refinement asks for, since its mesh, of " << simulator.tissues()[tissue].nodeCount()
        << " nodes now, may not have enough of them for shorter ones: forces are those of coarser cells. Raise "
-          "tissues[].refinement.nodes_at_most, or give a larger tissues[].refinement.cell_m";
+          "tissues[].refinement.nodes_at_most, or give a larger tissues[].refinement.cell_m, in a map with the numbers "
+          "that the log has of this mesh";
   return text.str();
 }
 

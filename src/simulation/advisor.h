@@ -40,7 +40,7 @@ Advice meshLine(const TissueDescription& tissue, double edge_m, const HalfExtent
 /// The same of a mesh that follows. @param cells_m edges of the finest cells under all shapes, ascending; none: nothing asks for any.
 /// @param reach_m of the finest.
 Advice refinementLine(const TissueDescription& tissue, const std::vector<double>& cells_m, double reach_m,
-                      int nodes_at_most, const HalfExtents& shapes);
+                      double growth, int nodes_at_most, const HalfExtents& shapes);
 
 /// Of a tenth of the surface's triangles the mean edge is shorter, m.
 double shortSurfaceEdge(const Tissue& tissue);

@@ -25,9 +25,11 @@ class FineCells {
   static constexpr double kCovered = 0.5;
 
   explicit FineCells(const RefinementDescription& refinement)
-      : reach_m_(refinement.reach_m), growth_(refinement.choice().growth) {}
+      : reach_m_(refinement.reach_m),
+        growth_(refinement.growth > 0.0 ? refinement.growth : refinement.choice().growth) {}
 
   double reach(double cell_m) const;
+  double growth() const { return growth_; }
   bool isCovered(const FinePlace& place, double share_of_reach) const;
   double longestEdge(const Vector3& p_T) const;  ///< m
 

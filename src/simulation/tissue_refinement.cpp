@@ -94,7 +94,7 @@ void TissueRefinement::carry(StateArchive& archive) {
   archive.carry(nodes);
   if (!archive.isReading()) return;
   const bool is_same = refineWithin(cells_, mesh_) && static_cast<std::uint64_t>(mesh_.mesh.positions.cols()) == nodes;
-  archive.check(is_same, "the mesh comes out another one than that of the state");
+  archive.check(is_same, "the mesh comes out another one than that of the state: is the tissue's refinement the same?");
   constexpr int kMostRevisions = 1'000'000'000;
   archive.check(revision >= 0 && revision < kMostRevisions, "a number of meshes that is none");
   revision_ = std::max(revision_, revision) + 1;

@@ -30,7 +30,7 @@ def pack(number):
     message = JointState(name=["x", "y", "z"], position=[0.0, 0.0, -0.001])
     message.header.seq = number
     # So far apart that a hundred, which leave at once, are more than MAX_LAG_S.
-    message.header.stamp = rospy.Time(harness.START_S) + rospy.Duration(0, 1000000) * number
+    message.header.stamp = rospy.Time(harness.START_S) + rospy.Duration.from_sec(0.001) * number
     stream = io.BytesIO()
     message.serialize(stream)
     return Packed(stream.getvalue())

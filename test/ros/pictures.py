@@ -4,7 +4,7 @@ watch.py."""
 import itertools
 import math
 import os
-import time
+import subprocess
 import xml.etree.ElementTree
 
 import roslib.message
@@ -165,14 +165,17 @@ class Pictures(harness.TestCase):
             source = harness.JointSource()
             harness.wait_until(lambda: self.is_heard("/tissue_contact/status"), "watch.py listening")
             wrenches = harness.wrenches()
-            sent = []
+            rounds = itertools.count()
 
             def is_drawn():  # on a busy machine it is known to listen some time before anything reaches it
-                source.send_all(harness.press(100, harness.START_S + len(sent) // 100))
-                sent.extend(range(100))
-                wrenches.wait(lambda all: len(all) == len(sent), "the wrenches")
-                time.sleep(1.0)
-                return watch.poll() is not None
+                samples = harness.press(100, harness.START_S + next(rounds))
+                source.send_all(samples)
+                wrenches.wait(lambda all: all and all[-1].header.stamp == samples[-1][0], "the wrenches")
+                try:
+                    watch.wait(1.0)
+                except subprocess.TimeoutExpired:
+                    return False
+                return True
             harness.wait_until(is_drawn, "the picture")
             self.assertEqual(watch.returncode, 0, harness.output_of(watch))
             self.assertIn("wrote " + picture, harness.output_of(watch))

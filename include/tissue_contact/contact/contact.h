@@ -46,7 +46,9 @@ struct Contact {
   Vector3 p_WC = Vector3::Zero();        ///< tissue point, m
   /// Columns (n, t1, t2); n is unit and points from the instrument INTO the tissue.
   Matrix3 R_WC = Matrix3::Identity();
-  double gap_m = 0.0;                          ///< signed distance along n from shape to tissue point; < 0: penetrating
+  double gap_m = 0.0;  ///< signed distance from shape to tissue point; < 0: penetrating
+  /// n less the gradient of the gap: 0, but for a vertex, which is pressed along the mean of the shape's normals around it.
+  Vector3 lean_W = Vector3::Zero();
   std::array<int, 3> other_nodes = {0, 0, 0};  ///< tissue against tissue: nodes of the other surface point
   Vector3 other_weights = Vector3::Zero();     ///< and their barycentric weights
 };

@@ -84,8 +84,9 @@ class ContactDetector {
   /// Turns the frame of a contact with a shape as the shape's surface turns under its point while that slides in a step, and lets the gap
   /// follow to second order: frame and gap are then those of the step's end, as its forces are (doc/method.md, "Sliding").
   /// Only where the surface is smooth: all of a turn up to 0.1 rad and of a curvature up to 4 over its smallest half extent, nothing from
-  /// twice that on (close to an edge the distance is rounded by no more than the gap); where the frame's normal is the shape's own, and where
-  /// the point is not deeper than a tenth of that half extent.
+  /// twice that on (close to an edge the distance is rounded by no more than the gap); where the gap's gradient is the shape's own normal, and
+  /// where the point is not deeper than a tenth of that half extent. Always takes the way along Contact::lean_W out of the gap, which the
+  /// way along the normal would add to it.
   /// @param start_X_WL, end_X_WL at both ends of the step.
   /// @param way_W of the tissue's point in the step, as expected, m.
   void turnWithSlide(const std::vector<std::vector<Pose>>& start_X_WL, const std::vector<std::vector<Pose>>& end_X_WL,

@@ -9,19 +9,22 @@ namespace tissue_contact {
 
 /// Refinement that follows whatever touches a volume. Away from contacts the mesh is that of the scene.
 struct RefinementDescription {
-  /// Whether the mesh follows: never; with cells that the advisor chooses from the shapes that touch, for steps of less than a
-  /// millisecond or for little error; with those given.
+  /// Whether the mesh follows: never; with cells that the advisor chooses from the shapes that touch, for steps of less
+  /// than a millisecond or for little error; with those given.
   enum class Mode { kNever, kAuto, kFine, kGiven };
   Mode mode = Mode::kNever;
   double cell_m = 0.0;    ///< edge of the finest cells; 0: chosen
   double reach_m = 0.0;   ///< how far they reach beyond what touches; 0: three times cell_m
   int nodes_at_most = 0;  ///< of the refined mesh: cells grow until it has no more; 0: chosen
+  double growth = 0.0;    ///< length that cells gain per length of distance beyond the reach; 0: chosen
 
-  /// What is chosen where it is not given. What forces err by then: doc/accuracy.md.
+  /// What is chosen where it is not given. Errors and times of these and of others: table in doc/method.md, "Cells and
+  /// growth". `auto` is what a step of less than a millisecond allows one ball. `fine` has cells small enough for vertices
+  /// to carry all of the contact, and a growth below which the error falls no more.
   struct Choice {
     double cells_per_half_extent;  ///< along the smallest half extent of a shape
-    double growth;                 ///< length that cells gain per length of distance beyond the reach
-    int nodes_at_most;             ///< or one and a half times those of the unrefined mesh if that is more
+    double growth;
+    int nodes_at_most;  ///< or one and a half times those of the unrefined mesh if that is more
   };
   Choice choice() const { return mode == Mode::kFine ? Choice{8.0, 0.2, 20000} : Choice{3.4, 0.5, 3000}; }
 };

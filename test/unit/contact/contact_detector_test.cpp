@@ -197,6 +197,32 @@ TEST(ContactDetector, FramesTurnWithASlideOverABall) {
   EXPECT_EQ(contact.gap_m, gap);
 }
 
+// The gap at the end of the way is that of the shape, whichever way the contact presses.
+TEST(ContactDetector, WhatAFrameLeansByDoesNotLeadToTheShape) {
+  const TwoByTwo scene = makeScene();
+  std::vector<Instrument> instruments;
+  instruments.push_back(makeInstrument("ball", {sphere(0.005, Vector3::Zero())}));
+  const ContactDetector detector(instruments, shareSurfaces(scene.surfaces, scene.positions));
+  const std::vector<std::vector<Pose>> still = {{Pose::Identity(), Pose::Identity()}};
+  const Vector3 way = 4e-4 * Vector3(0.39, 0.1, 0.3).normalized();
+  for (const double tilt : {0.0, 0.05, 0.2}) {
+    for (const double depth : {1e-4, 1e-3}) {  // of a slide; of what is being freed, and keeps its frame
+      const Vector3 p = (0.005 - depth) * Vector3(0.61, 0.0, -0.79).normalized();
+      Contact contact;
+      contact.key = {0, 0, 0, 0, {0, -1, -1}};
+      contact.p_WC = p;
+      const Vector3 normal = Eigen::AngleAxisd(tilt, Vector3::UnitY()) * p.normalized();
+      contact.R_WC = contactFrame(normal);
+      contact.lean_W = normal - p.normalized();
+      contact.gap_m = -depth;
+      detector.turnWithSlide(still, still, way, contact);
+      const double there = contact.gap_m + contact.R_WC.col(0).dot(way);
+      const double expected = depth < 5e-4 ? (p + way).norm() - 0.005 : -depth + p.normalized().dot(way);
+      EXPECT_NEAR(there, expected, 1e-16) << tilt << " " << depth;
+    }
+  }
+}
+
 TEST(ContactDetector, FramesDoNotTurnAtEdgesNorOfCorners) {
   const TwoByTwo scene = makeScene();
   std::vector<Instrument> instruments;

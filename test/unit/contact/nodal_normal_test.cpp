@@ -64,8 +64,17 @@ TEST(NodalNormal, LeansToWhereTrianglesAreLarger) {
   }
 }
 
+TEST(NodalNormal, OfASampledBallIsThatOfTheBall) {
+  const auto mesh = makeMeshDistance(sphereMesh(kRadius, 4));
+  const Vector3 own = mesh->at(kRadius * kDown).normal;
+  NodalNormal normal(*mesh, kRadius * kDown, own);
+  for (int k = 0; k < kSectors; ++k) normal.add(sector(k, 0.001, 1.7), 0);
+  const double expected = meanOf(*makeSphereDistance(kRadius), 0.001, 1.7).x();
+  EXPECT_NEAR((normal.mean() - own).x(), expected, 0.2 * std::abs(expected));  // its triangles turn by .07 each
+}
+
 TEST(NodalNormal, OfATipThatPokesIntoTrianglesIsTheVertexsOwn) {
-  // A corner of the ball's radius away is half a radian and more around it at a fifth of the way.
+  // Edges of two radii: at the centroid of a third of a triangle the ball has turned by more than half a radian.
   EXPECT_EQ(meanOf(*makeSphereDistance(kRadius), 0.01, 1.7), kDown);
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/refusal.h"
@@ -337,13 +338,19 @@ TEST(RefinedPress, OfTwoTissuesTheOneWithTheLongestCellsIsTold) {
 }
 
 TEST(RefinedPress, AdviceSaysWhatWasChosen) {
-  const std::vector<Advice> lines = simulatorOf("auto").advice();
-  const auto about = std::find_if(lines.begin(), lines.end(), [](const Advice& line) {
-    return line.text.find("mesh of tissue 'block'") != std::string::npos;
-  });
-  ASSERT_NE(about, lines.end());
-  expectContains(about->text, {"1.47 mm", "3000 nodes"});
-  EXPECT_FALSE(about->is_warning) << about->text;
+  const std::pair<std::string, std::vector<std::string>> choices[] = {
+      {"auto", {"cells of 1.47 mm", "growing by 0.5", "3000 nodes"}},
+      {"fine", {"cells of 0.625 mm", "growing by 0.2", "20000 nodes"}},
+      {"{cell_m: 0.002, growth: 0.3}", {"cells of 2 mm", "growing by 0.3", "3000 nodes"}}};
+  for (const auto& [refinement, words] : choices) {
+    const std::vector<Advice> lines = simulatorOf(refinement).advice();
+    const auto about = std::find_if(lines.begin(), lines.end(), [](const Advice& line) {
+      return line.text.find("mesh of tissue 'block'") != std::string::npos;
+    });
+    ASSERT_NE(about, lines.end());
+    for (const std::string& word : words) expectContains(about->text, {word});
+    EXPECT_FALSE(about->is_warning) << about->text;
+  }
 }
 
 }  // namespace

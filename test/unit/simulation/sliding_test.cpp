@@ -87,6 +87,7 @@ TEST(Sliding, WhatIsHeldKeepsItsNormal) {
                                   [&](const SolvedContact& one) { return one.contact.key == solved.contact.key; });
     if (was == before.end()) continue;
     ++held;
+    // Of what the surface around a node strains by in the step it may lean a little more or less.
     EXPECT_LT((solved.contact.R_WC.col(0) - was->contact.R_WC.col(0)).norm(), 1e-3);
   }
   EXPECT_GT(held, 5);

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/refusal.h"
@@ -50,6 +52,30 @@ std::optional<NodeTransfer> follow(TissueRefinement& refinement, const std::vect
   NextMesh next = refinement.plan(places);
   refinement.take(next);
   return next.transfer;
+}
+
+TEST(FineCells, GrowAsTheRefinementSays) {
+  using Mode = RefinementDescription::Mode;
+  const std::pair<RefinementDescription, double> refinements[] = {{{Mode::kAuto}, 0.5},
+                                                                  {{Mode::kFine}, 0.2},
+                                                                  {{Mode::kGiven, 0.00125}, 0.5},
+                                                                  {{Mode::kGiven, 0.00125, 0.0, 0, 0.3}, 0.3}};
+  constexpr double kCell = 0.00125;
+  for (const auto& [refinement, growth] : refinements) {
+    FineCells cells(refinement);
+    cells.add({{Vector3::Zero(), kCell}});
+    EXPECT_EQ(cells.longestEdge(Vector3(0.003, 0.0, 0.0)), std::sqrt(3.0) * kCell);
+    const Vector3 beyond(cells.reach(kCell) + 0.005, 0.0, 0.0);
+    EXPECT_NEAR(cells.longestEdge(beyond), std::sqrt(3.0) * (kCell + growth * 0.005), 1e-15) << growth;
+  }
+}
+
+TEST(TissueRefinement, FineMayHaveMoreNodes) {
+  using Mode = RefinementDescription::Mode;
+  const auto nodesAtMost = [](const RefinementDescription& refinement) { return mostNodes(refinement, 605); };
+  EXPECT_EQ(nodesAtMost({Mode::kAuto}), 3000U);
+  EXPECT_EQ(nodesAtMost({Mode::kFine}), 20000U);
+  EXPECT_EQ(nodesAtMost({Mode::kFine, 0.0, 0.0, 700}), 700U);
 }
 
 /// `count` by `count` places.
