@@ -207,7 +207,7 @@ TEST(ContactDetector, WhatAFrameLeansByDoesNotLeadToTheShape) {
   const Vector3 way = 4e-4 * Vector3(0.39, 0.1, 0.3).normalized();
   for (const double tilt : {0.0, 0.05, 0.2}) {
     for (const double depth : {1e-4, 1e-3}) {  // of a slide; of what is being freed, and keeps its frame
-      const Vector3 p = (0.005 - depth) * Vector3(0.61, 0.0, -0.79).normalized();
+      const Vector3 p = (0.005 - depth) * Vector3(0.3, 0.0, -0.39).normalized();  // across the way
       Contact contact;
       contact.key = {0, 0, 0, 0, {0, -1, -1}};
       contact.p_WC = p;
