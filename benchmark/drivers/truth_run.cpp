@@ -3,7 +3,8 @@
 /// truth, where there is one, and how well the simulator's own estimate (Simulator::forceErrors()) tells it.
 /// usage: truth_run SCENE MESH STEP_S TOLERANCE SECONDS [BAG]
 ///   SCENE press-drag, grasp, partial-slip or robot (with its BAG); MESH a file in the tissue's frame, - for the scene's
-///   own, refined for that one with refinement: auto, fine for refinement: fine, or CELL_MM,REACH_MM,NODES for it refined so; SECONDS of the motion, 0: all
+///   own, refined for that one with refinement: auto, fine for
+///   refinement: fine, or CELL_MM,REACH_MM,NODES for it refined so; SECONDS of the motion, 0: all
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,6 +1,6 @@
 /// @file
-/// Room `contact`, private: the direction of a vertex's contact, a smooth shape's normal over the surface that the vertex
-/// stands for.
+/// Room `contact`, private: the direction of a vertex's contact, a smooth shape's normal over the surface that the
+/// vertex stands for.
 #pragma once
 
 #include <algorithm>
@@ -11,15 +11,15 @@
 
 namespace tissue_contact {
 
-/// The force on a vertex is the traction on a third of each triangle around it, each a quadrilateral of the vertex, the
-/// middles of two edges and that of the triangle. Its direction is therefore the mean of the normals at the centroids of
-/// these, (22 x + 7 a + 7 b) / 36 with the other corners a and b, by area. That differs from the normal at the vertex
-/// where triangles are larger on one side: a dragged ball stretches the tissue behind it to some 1.7 times its length and
-/// presses that ahead together, to some .65, and with vertices' own normals its load is too far ahead by a tenth of an
-/// edge (doc/method.md). Where the shape bends by more than kMostTurn on the way from the vertex, its normal there counts
-/// less, from kNoTurn on not at all: edges, and tips that poke into triangles. Of a shape with flat parts it counts by the
-/// share of the turn that is made at kBegins of the way: where none is, the vertex is on a flat face beside an edge, and
-/// that face presses straight.
+/// The force on a vertex is the traction on a third of each triangle around it, each a quadrilateral of the
+/// vertex, the middles of two edges and that of the triangle. Its direction is therefore the mean of the normals
+/// at the centroids of these, (22 x + 7 a + 7 b) / 36 with the other corners a and b, by area. That differs from
+/// the normal at the vertex where triangles are larger on one side: a dragged ball stretches the tissue behind it
+/// to some 1.7 times its length and presses that ahead together, to some .65, and with vertices' own normals its
+/// load is too far ahead by a tenth of an edge (doc/method.md). Where the shape bends by more than kMostTurn on
+/// the way from the vertex, its normal there counts less, from kNoTurn on not at all: edges, and tips that poke
+/// into triangles. Of a shape with flat parts it counts by the share of the turn that is made at kBegins of the
+/// way: where none is, the vertex is on a flat face beside an edge, and that face presses straight.
 class NodalNormal {
  public:
   /// @param here of the shape at the vertex; all in the shape's frame.

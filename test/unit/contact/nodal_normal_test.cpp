@@ -14,7 +14,8 @@ constexpr double kRadius = 0.005;
 constexpr int kSectors = 6;
 const Vector3 kDown = -Vector3::UnitZ();
 
-/// Corners around the lowest point of a ball that lies on the plane z = -kRadius; those with x < 0 are `stretch` times as far away.
+/// Corners around the lowest point of a ball that lies on the plane z = -kRadius; those with x < 0 are `stretch` times
+/// as far away.
 std::array<Vector3, 3> sector(int k, double edge, double stretch) {
   const auto at = [&](int corner) {
     const double angle = 2.0 * M_PI * (corner + 0.5) / kSectors;
@@ -31,7 +32,8 @@ Vector3 meanOf(const ShapeDistance& shape, double edge, double stretch) {
   return normal.mean();
 }
 
-/// Normals over the third of a triangle next to its first corner, by points in the middle of many small parts; times the area.
+/// Normals over the third of a triangle next to its first corner, by points in the middle of many small parts; times
+/// the area.
 Vector3 integralOverThird(const ShapeDistance& shape, const std::array<Vector3, 3>& corners) {
   constexpr int kParts = 300;
   const Vector3 a = corners[1] - corners[0], b = corners[2] - corners[0];
