@@ -115,10 +115,11 @@ void run(Simulator& simulator, const Arguments& arguments) {
 int main(int argc, char** argv) {
   Arguments arguments;
   if (!parse(argc, argv, arguments)) {
-    std::fprintf(stderr,
-                 "usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--refinement never|auto|fine|MAP] [--tolerance T] "
-                 "[--relaxation NAME] "
-                 "[--iterations N] [--step S] [--drag M] [--youngs-modulus PA] [--poissons-ratio NU] [--trace FILE]\n");
+    std::fprintf(
+        stderr,
+        "usage: step_costs CELLS_X,CELLS_Y,CELLS_Z|MESH.msh [--refinement never|auto|fine|MAP] [--tolerance T] "
+        "[--relaxation NAME] "
+        "[--iterations N] [--step S] [--drag M] [--youngs-modulus PA] [--poissons-ratio NU] [--trace FILE]\n");
     return 2;
   }
   try {

@@ -56,8 +56,9 @@ std::vector<Advice> Simulator::advice() const {
     }
     const std::vector<double> cells_m = all.touched_places.cellsOn(static_cast<int>(t));
     const double cell_m = cells_m.empty() ? 0.0 : cells_m.front();
-    meshes[t].push_back(refinementLine(tissue, cells_m, all.refinements[t]->cells().reach(cell_m), all.refinements[t]->cells().growth(),
-                                       all.refinements[t]->nodesAtMost(), shapes));
+    meshes[t].push_back(refinementLine(tissue, cells_m, all.refinements[t]->cells().reach(cell_m),
+                                       all.refinements[t]->cells().growth(), all.refinements[t]->nodesAtMost(),
+                                       shapes));
   }
   return adviceLines(scene(), all.folds, meshes);
 }
