@@ -3,8 +3,8 @@
 /// truth, where there is one, and how well the simulator's own estimate (Simulator::forceErrors()) tells it.
 /// usage: truth_run SCENE MESH STEP_S TOLERANCE SECONDS [BAG]
 ///   SCENE press-drag, grasp, partial-slip or robot (with its BAG); MESH a file in the tissue's frame, - for the scene's
-///   own, refined for that one with refinement: auto, fine for
-///   refinement: fine, or CELL_MM,REACH_MM,NODES for it refined so; SECONDS of the motion, 0: all
+///   own, refined or fine for that one with refinement: auto or fine, or CELL_MM,REACH_MM,NODES[,GROWTH] for it refined
+///   so; SECONDS of the motion, 0: all
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -41,7 +41,8 @@ void prepare(const std::vector<std::string>& words, Scene& scene) {
     refinement.mode = RefinementDescription::Mode::kAuto;
   } else if (words[1] == "fine") {
     refinement.mode = RefinementDescription::Mode::kFine;
-  } else if (std::sscanf(words[1].c_str(), "%lf,%lf,%d", &cell_mm, &reach_mm, &refinement.nodes_at_most) == 3) {
+  } else if (std::sscanf(words[1].c_str(), "%lf,%lf,%d,%lf", &cell_mm, &reach_mm, &refinement.nodes_at_most,
+                         &refinement.growth) >= 3) {
     refinement.mode = RefinementDescription::Mode::kGiven;
     refinement.cell_m = 1e-3 * cell_mm;
     refinement.reach_m = 1e-3 * reach_mm;

@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "contact/shape/shape_distance.h"
+#include "contact/tolerances.h"
 
 namespace tissue_contact {
 
@@ -23,23 +24,26 @@ namespace tissue_contact {
 class NodalNormal {
  public:
   /// @param here of the shape at the vertex; all in the shape's frame.
-  NodalNormal(const ShapeDistance& shape, const Vector3& vertex, const Vector3& here)
-      : shape_(shape), vertex_(vertex), here_(here) {}
+  /// @param has_inside the surface bounds a volume: only triangles that face the shape bear its pressure.
+  NodalNormal(const ShapeDistance& shape, const Vector3& vertex, const Vector3& here, bool has_inside)
+      : shape_(shape), vertex_(vertex), here_(here), has_inside_(has_inside) {}
 
-  /// A triangle that has the vertex. @param corner the vertex among its corners.
+  /// A triangle that has the vertex, counter-clockwise from outside. @param corner the vertex among its corners.
   void add(const std::array<Vector3, 3>& corners, std::size_t corner) {
     const Vector3 a = corners[(corner + 1) % 3] - vertex_;
     const Vector3 b = corners[(corner + 2) % 3] - vertex_;
+    const Vector3 cross = a.cross(b);
+    const double area = cross.norm();
+    if (has_inside_ && !(cross.dot(here_) < -kFacing * area)) return;
+    area_ += area;
     const Vector3 way = 7.0 / 36.0 * (a + b);
     const Vector3 turn = turnOn(way);
     const double turned = turn.norm();
-    const double area = a.cross(b).norm();
     double share = std::clamp((kNoTurn - turned) / (kNoTurn - kMostTurn), 0.0, 1.0);
     if (share > 0.0 && turned > 0.0 && shape_.hasFlatParts()) {
       share *= std::min(turnOn(kBegins * way).norm() / (kBegins * turned), 1.0);
     }
     turns_ += area * share * turn;
-    area_ += area;
   }
 
   Vector3 mean() const { return area_ > 0.0 ? Vector3((here_ + turns_ / area_).normalized()) : here_; }
@@ -54,6 +58,7 @@ class NodalNormal {
   const ShapeDistance& shape_;
   const Vector3 vertex_;
   const Vector3 here_;
+  const bool has_inside_;
   Vector3 turns_ = Vector3::Zero();  ///< over the areas, twice as large as the triangles
   double area_ = 0.0;
 };

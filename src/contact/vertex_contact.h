@@ -9,7 +9,6 @@
 #include "contact/leaving_face.h"
 #include "contact/nodal_normal.h"
 #include "contact/shape/shape_distance.h"
-#include "contact/tolerances.h"
 #include "mesh/surface/moving_surface.h"
 
 namespace tissue_contact {
@@ -33,12 +32,11 @@ class VertexContact {
     return leavingFace(shape_, position_(node_), around, here);
   }
 
-  /// Mean normal of the shape over what the vertex stands for (nodal_normal.h) of the triangles that face the shape.
+  /// Mean normal of the shape over what the vertex stands for (nodal_normal.h).
   /// @param here the shape's normal at the vertex.
   Vector3 meanNormal(const Vector3& here) const {
-    NodalNormal mean(shape_, position_(node_), here);
+    NodalNormal mean(shape_, position_(node_), here, surface_.isVolume());
     eachTriangle([&](int triangle, const std::array<Vector3, 3>& corners) {
-      if (surface_.isVolume() && !(normal_(triangle).dot(here) < -kFacing)) return;
       const Triangle& nodes = surface_.triangles()[triangle];
       mean.add(corners, static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), node_) - nodes.begin()));
     });

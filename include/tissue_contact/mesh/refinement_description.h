@@ -9,8 +9,8 @@ namespace tissue_contact {
 
 /// Refinement that follows whatever touches a volume. Away from contacts the mesh is that of the scene.
 struct RefinementDescription {
-  /// Whether the mesh follows: never; with cells that the advisor chooses from the shapes that touch, for steps of less
-  /// than a millisecond or for little error; with those given.
+  /// Whether the mesh follows: never; with cells that the advisor chooses from the shapes that touch, for short steps
+  /// or for little error; with those given.
   enum class Mode { kNever, kAuto, kFine, kGiven };
   Mode mode = Mode::kNever;
   double cell_m = 0.0;    ///< edge of the finest cells; 0: chosen
@@ -19,7 +19,7 @@ struct RefinementDescription {
   double growth = 0.0;    ///< length that cells gain per length of distance beyond the reach; 0: chosen
 
   /// What is chosen where it is not given. Errors and times of these and of others: table in doc/method.md, "Cells and
-  /// growth". `auto` is what a step of less than a millisecond allows one ball. `fine` has cells small enough for vertices
+  /// growth". `auto` is what a step of a millisecond allows one ball. `fine` has cells small enough for vertices
   /// to carry all of the contact, and a growth below which the error falls no more.
   struct Choice {
     double cells_per_half_extent;  ///< along the smallest half extent of a shape

@@ -223,6 +223,34 @@ TEST(ContactDetector, WhatAFrameLeansByDoesNotLeadToTheShape) {
   }
 }
 
+// Tissue that bulges between two balls of one instrument is pressed by the filled groove; what its vertices lean by goes on there.
+TEST(ContactDetector, InAGrooveVerticesLeanAsBesideIt) {
+  Surface block = boxSurface({0.04, 0.04, 0.02}, {40, 40, 4});
+  for (Eigen::Index i = 0; i < block.nodes.cols(); ++i) {
+    Vector3 p = block.nodes.col(i);
+    p.y() += 8.0 * (p.y() - 0.02) * std::abs(p.y() - 0.02);  // triangles grow away from the middle
+    if (p.z() > 0.0199) p.z() += 0.0019 * std::max(0.0, 1.0 - std::pow((p.x() - 0.02) / 0.004, 2));
+    block.nodes.col(i) = p;
+  }
+  std::vector<ShapeDescription> shapes;
+  shapes.push_back(sphere(0.005, {0.0155, 0.021, 0.024}));
+  shapes.push_back(sphere(0.005, {0.0245, 0.021, 0.024}));
+  std::vector<Instrument> instruments;
+  instruments.push_back(makeInstrument("balls", shapes));
+  ContactDetector detector(instruments, shareSurfaces({{block.triangles, block.fixed()}}, {block.nodes}));
+  std::vector<Contact> contacts;
+  detector.detect({block.nodes}, {{Pose::Identity(), Pose::Identity()}}, 1e-4, contacts);
+  int filled = 0;
+  for (const Contact& c : contacts) {
+    const Vector3 gradient = c.R_WC.col(0) - c.lean_W;
+    EXPECT_NEAR(gradient.norm(), 1.0, 1e-9);
+    const Vector3 middle(c.key.shape == 0 ? 0.0155 : 0.0245, 0.021, 0.024);
+    const bool in_groove = (gradient - (c.p_WC - middle).normalized()).norm() > 0.05;
+    filled += in_groove && c.lean_W.norm() > 1e-3;
+  }
+  EXPECT_GT(filled, 0);
+}
+
 TEST(ContactDetector, FramesDoNotTurnAtEdgesNorOfCorners) {
   const TwoByTwo scene = makeScene();
   std::vector<Instrument> instruments;

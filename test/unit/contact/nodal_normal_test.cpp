@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "contact_test_utilities.h"
@@ -27,7 +28,7 @@ std::array<Vector3, 3> sector(int k, double edge, double stretch) {
 }
 
 Vector3 meanOf(const ShapeDistance& shape, double edge, double stretch) {
-  NodalNormal normal(shape, kRadius * kDown, kDown);
+  NodalNormal normal(shape, kRadius * kDown, kDown, false);
   for (int k = 0; k < kSectors; ++k) normal.add(sector(k, edge, stretch), 0);
   return normal.mean();
 }
@@ -69,10 +70,41 @@ TEST(NodalNormal, LeansToWhereTrianglesAreLarger) {
 TEST(NodalNormal, OfASampledBallIsThatOfTheBall) {
   const auto mesh = makeMeshDistance(sphereMesh(kRadius, 4));
   const Vector3 own = mesh->at(kRadius * kDown).normal;
-  NodalNormal normal(*mesh, kRadius * kDown, own);
+  NodalNormal normal(*mesh, kRadius * kDown, own, false);
   for (int k = 0; k < kSectors; ++k) normal.add(sector(k, 0.001, 1.7), 0);
   const double expected = meanOf(*makeSphereDistance(kRadius), 0.001, 1.7).x();
   EXPECT_NEAR((normal.mean() - own).x(), expected, 0.2 * std::abs(expected));  // its triangles turn by .07 each
+}
+
+// At the edge of a block half of the triangles around a vertex are of the wall below, which bears nothing.
+TEST(NodalNormal, OnlyWhatFacesTheShapeCounts) {
+  const Surface block = boxSurface({0.02, 0.02, 0.01}, {10, 10, 5});
+  const double radius = 0.005;
+  const Vector3 vertex(0.0, 0.01, 0.01);
+  const Vector3 centre = vertex + Vector3(0.0004, 0.0, radius - 1e-5);
+  const auto ball = makeSphereDistance(radius);
+  const auto contacts = findContacts(*ball, at(centre), block, 1e-4);
+  const auto found = std::find_if(contacts.begin(), contacts.end(), [&](const ShapeContact& c) {
+    return c.feature[1] < 0 && (pointOf(c, block.nodes) - vertex).norm() < 1e-12;
+  });
+  ASSERT_NE(found, contacts.end());
+  NodalNormal above(*ball, vertex - centre, (vertex - centre).normalized(), false);
+  int walls = 0;
+  for (const Triangle& triangle : block.triangles) {
+    std::array<Vector3, 3> corners;
+    std::size_t corner = 3;
+    for (std::size_t i = 0; i < 3; ++i) {
+      corners[i] = block.nodes.col(triangle[i]) - centre;
+      if ((corners[i] + centre - vertex).norm() < 1e-12) corner = i;
+    }
+    if (corner == 3) continue;
+    const bool is_above = corners[0].z() == corners[1].z() && corners[1].z() == corners[2].z();
+    if (is_above) above.add(corners, corner);
+    walls += !is_above;
+  }
+  ASSERT_GT(walls, 1);
+  EXPECT_LT((found->normal_W - above.mean()).norm(), 1e-12);
+  EXPECT_GT(found->lean_W.x(), 0.01) << "all that it stands for lies inwards";
 }
 
 TEST(NodalNormal, OfATipThatPokesIntoTrianglesIsTheVertexsOwn) {
@@ -86,7 +118,7 @@ TEST(NodalNormal, ABoxsSideTurnsNothing) {
   // Beyond its edge the normal is another's, or, some way off, turns on to it.
   for (const double off : {0.0, 0.0004}) {
     const Vector3 vertex(0.0097, 0.0, -kRadius - off);
-    NodalNormal normal(*box, vertex, kDown);
+    NodalNormal normal(*box, vertex, kDown, false);
     normal.add({vertex, vertex + Vector3(0.002, 0.0, 0.0), vertex + Vector3(0.0, 0.002, 0.0)}, 0);
     EXPECT_EQ(normal.mean(), kDown) << off;
   }
@@ -95,9 +127,9 @@ TEST(NodalNormal, ABoxsSideTurnsNothing) {
 TEST(NodalNormal, ACylindersSideCountsAsABalls) {
   const auto cylinder = makeCylinderDistance(kRadius, 0.02);
   const auto turned = [](const Vector3& p) { return Vector3(p.z(), p.y(), p.x()); };  // its axis is z
-  NodalNormal normal(*cylinder, turned(kRadius * kDown), turned(kDown));
+  NodalNormal normal(*cylinder, turned(kRadius * kDown), turned(kDown), false);
   const auto ball = makeSphereDistance(kRadius);
-  NodalNormal of_ball(*ball, kRadius * kDown, kDown);
+  NodalNormal of_ball(*ball, kRadius * kDown, kDown, false);
   for (int k = 0; k < kSectors; ++k) {
     const std::array<Vector3, 3> corners = sector(k, 0.001, 1.7);
     std::array<Vector3, 3> along;  // stretched across the cylinder
