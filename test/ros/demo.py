@@ -5,6 +5,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import unittest
 
 import rosbag
@@ -112,6 +113,16 @@ class Demo(harness.TestCase):
                                       "output:=" + self.plots)
         self.assertEqual(code, 0, output)
         self.assertEqual((master.getParam("/run_id"), sorted(rospy.get_param_names()), master.getSystemState()), before)
+
+    def test_no_outgoing_connection_gets_the_port_of_the_master(self):
+        sys.path.insert(0, os.path.dirname(harness.program("run_launch.py")))
+        from run_launch import free_port
+        with open("/proc/sys/net/ipv4/ip_local_port_range", encoding="ascii") as limits:
+            first_given = int(limits.read().split()[0])
+        if first_given <= 2048:
+            self.skipTest("this system gives any port to outgoing connections (net.ipv4.ip_local_port_range)")
+        for _ in range(20):
+            self.assertLess(free_port(), first_given)
 
     def test_recording_is_what_its_script_makes(self):
         bags = [self.path(name) for name in ["first.bag", "second.bag"]]

@@ -1,7 +1,6 @@
 """Shared by live.py, flood.py and the faults_*.py: what the node says it did with every joint state, and its end."""
 import re
 import signal
-import socket
 import threading
 import time
 
@@ -33,12 +32,6 @@ def all_told(diagnostics, sent):
         values = figures(messages[-1]) if messages else {}
         return values.get("joint states: received") == str(sent) and values["joint states: waiting"] == "0"
     return figures(diagnostics.wait(complete, "%d joint states received and played" % sent)[-1])
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("localhost", 0))
-        return probe.getsockname()[1]
 
 
 class Driver:
