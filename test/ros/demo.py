@@ -115,7 +115,7 @@ class Demo(harness.TestCase):
         self.assertEqual((master.getParam("/run_id"), sorted(rospy.get_param_names()), master.getSystemState()), before)
 
     def test_no_outgoing_connection_gets_the_port_of_the_master(self):
-        sys.path.insert(0, os.path.dirname(harness.program("run_launch.py")))
+        sys.path.insert(0, os.path.join(harness.PACKAGE, "scripts"))
         from run_launch import free_port
         with open("/proc/sys/net/ipv4/ip_local_port_range", encoding="ascii") as limits:
             first_given = int(limits.read().split()[0])

@@ -14,7 +14,7 @@ import rostest
 import faults
 import harness
 
-sys.path.insert(0, os.path.dirname(harness.program("run_launch.py")))
+sys.path.insert(0, os.path.join(harness.PACKAGE, "scripts"))
 from run_launch import free_port  # noqa: E402
 
 PORT = free_port()
