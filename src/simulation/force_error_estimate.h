@@ -17,12 +17,12 @@ namespace tissue_contact {
 /// @param x per tissue: positions, m.
 /// @param contacts of the step, sorted by key.
 /// @param shapes of the instruments.
-/// @param momentum_residual of the step, see Residuals.
+/// @param unbalanced_n what the step's answer leaves, N: of all nodes together, or the norm over them if that is more.
 /// @return one per instrument. Allocates.
 std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const std::vector<Tissue>& tissues,
                                                     const std::vector<NodalVectors>& x,
                                                     const std::vector<SolvedContact>& contacts,
                                                     const TouchedPlaces& shapes, std::size_t instruments,
-                                                    double momentum_residual);
+                                                    double unbalanced_n);
 
 }  // namespace tissue_contact

@@ -19,9 +19,20 @@ struct Work {
   PaddedVector* v;
 };
 
-/// Gauss-Seidel step of a slice's rows. @param squares |defect|^2 of each free row, else 0.
+/// Of four rows side by side: |defect|^2 and the defect of each that is free, else 0.
+struct LaneDefects {
+  Lanes squares = {0.0, 0.0, 0.0, 0.0};
+  LaneVectors defects{};
+};
+
+TISSUE_CONTACT_INLINE void add(const LaneDefects& some, LaneDefects& all) {
+  all.squares += some.squares;
+  for (std::size_t r = 0; r < 3; ++r) all.defects[r] += some.defects[r];
+}
+
+/// Gauss-Seidel step of a slice's rows.
 template <bool kDamped>
-TISSUE_CONTACT_INLINE void relax(const Work& all, int slice, Lanes& squares) {
+TISSUE_CONTACT_INLINE void relax(const Work& all, int slice, LaneDefects& met) {
   const BlockMatrix& K = *all.body.K;
   const int* const rows = rowsOf(*K.pattern, slice);
   LaneVectors elastic{};
@@ -51,7 +62,8 @@ TISSUE_CONTACT_INLINE void relax(const Work& all, int slice, Lanes& squares) {
   scatter(v, rows, all.v);  // a slice with fewer rows repeats the first, unmoved
   Lanes free;
   load(all.free[slice].data(), free);
-  squares = free * (defect[0] * defect[0] + defect[1] * defect[1] + defect[2] * defect[2]);
+  met.squares = free * (defect[0] * defect[0] + defect[1] * defect[1] + defect[2] * defect[2]);
+  for (std::size_t r = 0; r < 3; ++r) met.defects[r] = free * defect[r];
 }
 
 /// Adds what a slice's rows do to the rows after them.
@@ -64,48 +76,53 @@ TISSUE_CONTACT_INLINE void carry(const Work& all, int slice) {
   if (kDamped) scatterMirrored(*all.body.D, slice, all.body.damping_scale, v, all.lower);
 }
 
-TISSUE_CONTACT_INLINE double sum(const Lanes& squares) { return (squares[0] + squares[1]) + (squares[2] + squares[3]); }
+TISSUE_CONTACT_INLINE double sum(const Lanes& lanes) { return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]); }
 
-template <bool kDamped>
-TISSUE_CONTACT_INLINE double sweepForth(const Work& all, const std::vector<unsigned char>& moves, int begin, int end) {
-  Lanes change = {0.0, 0.0, 0.0, 0.0};
-  for (int slice = begin; slice < end; ++slice) {
-    if (moves[slice] == 0) continue;
-    Lanes squares;
-    relax<kDamped>(all, slice, squares);
-    carry<kDamped>(all, slice);
-    change += squares;
-  }
-  return sum(change);
+TISSUE_CONTACT_INLINE DefectsMet sum(const LaneDefects& met) {
+  return {sum(met.squares), Vector3(sum(met.defects[0]), sum(met.defects[1]), sum(met.defects[2]))};
 }
 
 template <bool kDamped>
-TISSUE_CONTACT_INLINE double sweepBack(const Work& all, const std::vector<unsigned char>& moves, int begin, int end) {
-  Lanes change = {0.0, 0.0, 0.0, 0.0};
+TISSUE_CONTACT_INLINE DefectsMet sweepForth(const Work& all, const std::vector<unsigned char>& moves, int begin, int end) {
+  LaneDefects met;
+  for (int slice = begin; slice < end; ++slice) {
+    if (moves[slice] == 0) continue;
+    LaneDefects here;
+    relax<kDamped>(all, slice, here);
+    carry<kDamped>(all, slice);
+    add(here, met);
+  }
+  return sum(met);
+}
+
+template <bool kDamped>
+TISSUE_CONTACT_INLINE DefectsMet sweepBack(const Work& all, const std::vector<unsigned char>& moves, int begin, int end) {
+  LaneDefects met;
   for (int slice = end; slice-- > begin;) {
     if (moves[slice] == 0) continue;
-    Lanes squares;
-    relax<kDamped>(all, slice, squares);
-    change += squares;
+    LaneDefects here;
+    relax<kDamped>(all, slice, here);
+    add(here, met);
   }
-  return sum(change);
+  return sum(met);
 }
 
 TISSUE_CONTACT_CLONES
-double runForth(const Work& all, const std::vector<unsigned char>& moves, int begin, int end) {
+DefectsMet runForth(const Work& all, const std::vector<unsigned char>& moves, int begin, int end) {
   return all.body.D != nullptr ? sweepForth<true>(all, moves, begin, end) : sweepForth<false>(all, moves, begin, end);
 }
 
 TISSUE_CONTACT_CLONES
-double runBack(const Work& all, const std::vector<unsigned char>& moves, int begin, int end) {
+DefectsMet runBack(const Work& all, const std::vector<unsigned char>& moves, int begin, int end) {
   return all.body.D != nullptr ? sweepBack<true>(all, moves, begin, end) : sweepBack<false>(all, moves, begin, end);
 }
 
 TISSUE_CONTACT_CLONES
-void runRelax(const Work& all, int slice, double* squares) {
-  Lanes of_lanes;
-  all.body.D != nullptr ? relax<true>(all, slice, of_lanes) : relax<false>(all, slice, of_lanes);
-  std::memcpy(squares, &of_lanes, sizeof(of_lanes));
+void runRelax(const Work& all, int slice, double* squares, SliceVectors& defects) {
+  LaneDefects met;
+  all.body.D != nullptr ? relax<true>(all, slice, met) : relax<false>(all, slice, met);
+  std::memcpy(squares, &met.squares, sizeof(met.squares));
+  for (std::size_t r = 0; r < 3; ++r) std::memcpy(defects.at[r].data(), &met.defects[r], sizeof(Lanes));
 }
 
 TISSUE_CONTACT_CLONES
@@ -201,18 +218,28 @@ void BodySweep::follow(int node, const Vector3& change) {
   if (body_->D != nullptr) add(*body_->D, body_->damping_scale);
 }
 
-double BodySweep::forth(int begin, int end) {
+DefectsMet BodySweep::forth(int begin, int end) {
   return runForth({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, moves_, begin, end);
 }
 
-double BodySweep::back(int begin, int end) {
+DefectsMet BodySweep::back(int begin, int end) {
   return runBack({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, moves_, begin, end);
 }
 
-BodySweep::SquaresOfLanes BodySweep::relaxSlice(int slice) {
-  SquaresOfLanes squares{};
-  runRelax({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, slice, squares.data());
-  return squares;
+BodySweep::SliceDefects BodySweep::relaxSlice(int slice) {
+  SliceDefects met;
+  runRelax({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, slice, met.squares.data(),
+           met.defects);
+  return met;
+}
+
+DefectsMet BodySweep::SliceDefects::total() const {
+  DefectsMet met;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    met.squared += squares[lane];
+    for (std::size_t r = 0; r < 3; ++r) met.sum.data()[r] += defects.at[r][lane];
+  }
+  return met;
 }
 
 void BodySweep::carrySlice(int slice) {

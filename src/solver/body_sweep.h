@@ -17,6 +17,18 @@
 
 namespace tissue_contact {
 
+/// Of the nodes that a sweep has visited and no contact holds: b + J'lambda - A v as it was when their turn came.
+struct DefectsMet {
+  double squared = 0.0;           ///< sum of squares, (N s)^2
+  Vector3 sum = Vector3::Zero();  ///< N s
+
+  DefectsMet& operator+=(const DefectsMet& other) {
+    squared += other.squared;
+    sum += other.sum;
+    return *this;
+  }
+};
+
 class BodySweep {
  public:
   /// Begins a step, without impulses. Allocates only for a body of another size than before. @param body must stay until the next one begins.
@@ -37,50 +49,59 @@ class BodySweep {
   /// @param v 3 x nodes, m/s.
   /// @param held what BlockPattern::lane_of gives for the nodes that a contact may hold, ascending.
   /// @param hold called with each of them after its step; true: its contact holds it, so that its defect does not count.
-  /// @return |defects met|^2, (N s)^2.
   template <class Hold>
-  double sweep(bool forward, const std::vector<int>& held, NodalVectors& v, const Hold& hold) {
+  DefectsMet sweep(bool forward, const std::vector<int>& held, NodalVectors& v, const Hold& hold) {
     if (forward) std::fill(lower_.begin(), lower_.end(), PaddedVector{});
     pad(v, v_);
     const int slices = pattern().slices();
     int begin = 0;  // of what is left
     int end = slices;
-    double change = 0.0;
+    DefectsMet met;
     for (std::size_t done = 0; done < held.size();) {
       const auto next = [&] { return held[forward ? done : held.size() - 1 - done]; };
       const int slice = next() / kLanes;
-      change += forward ? forth(begin, slice) : back(slice + 1, end);
-      SquaresOfLanes squares = relaxSlice(slice);
+      met += forward ? forth(begin, slice) : back(slice + 1, end);
+      SliceDefects slice_met = relaxSlice(slice);
       for (; done < held.size() && next() / kLanes == slice; ++done) {
         const int node = pattern().rows[next()];
         v.col(node) = vectorOf(v_[node]);
-        if (hold(node)) squares[next() % kLanes] = 0.0;
+        if (hold(node)) slice_met.forget(next() % kLanes);
         vectorOf(v_[node]) = v.col(node);
       }
-      for (const double square : squares) change += square;
+      met += slice_met.total();
       if (forward) carrySlice(slice);
       (forward ? begin : end) = forward ? slice + 1 : slice;
     }
-    change += forward ? forth(begin, end) : back(begin, end);
+    met += forward ? forth(begin, end) : back(begin, end);
     unpad(v_, v);
-    return change;
+    return met;
   }
 
  private:
-  using SquaresOfLanes = std::array<double, kLanes>;
+  /// Of each row of a slice.
+  struct SliceDefects {
+    std::array<double, kLanes> squares{};
+    SliceVectors defects{};
+
+    void forget(std::size_t lane) {
+      squares[lane] = 0.0;
+      for (auto& component : defects.at) component[lane] = 0.0;
+    }
+    DefectsMet total() const;
+  };
 
   const BlockPattern& pattern() const { return *body_->K->pattern; }
   void prepareSlices();
-  double forth(int begin, int end);
-  double back(int begin, int end);
-  SquaresOfLanes relaxSlice(int slice);
+  DefectsMet forth(int begin, int end);
+  DefectsMet back(int begin, int end);
+  SliceDefects relaxSlice(int slice);
   void carrySlice(int slice);
 
   const BodySystem* body_ = nullptr;       ///< of the step; null: it sleeps
   std::vector<SymmetricBlocks> diagonal_;  ///< A_ii of each slice's rows
   std::vector<SymmetricBlocks> inverse_;   ///< A_ii^-1, 0 for fixed nodes
   std::vector<SliceVectors> right_;        ///< b + J'lambda, N s
-  std::vector<SquaresOfLanes> free_;       ///< 1 for a row that is free, else 0
+  std::vector<std::array<double, kLanes>> free_;  ///< 1 for a row that is free, else 0
   std::vector<unsigned char> moves_;       ///< some row of the slice is free
   PaddedVectors lower_;                    ///< sum_{j<i} A_ij v_j after the sweep forth, N s
   PaddedVectors v_;                        ///< scratch: what a sweep works on, m/s

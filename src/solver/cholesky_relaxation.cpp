@@ -29,7 +29,7 @@ double normOf(const std::vector<NodalVectors>& defects) {
 class CholeskyRelaxation : public Relaxation {
  public:
   void prepare(const ContactProblem& problem, ContactSolution& solution) override;
-  double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
+  MomentumDefect relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                ContactSolution& solution) override;
   void beginPasses(const ContactSolution& solution) override;
   void contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
@@ -43,6 +43,7 @@ class CholeskyRelaxation : public Relaxation {
     Matrix3 W;  ///< contact frame, 1/kg; W(0, 0) = 0: nothing of it can move
   };
 
+  MomentumDefect defectLeft(const ContactProblem& problem, double norm_n_s) const;
   double computeDefect(const ContactProblem& problem, const ContactSolution& solution);
   double relaxOnce(const ContactProblem& problem, ContactSolution& solution, double before);
   double relaxSafely(const ContactProblem& problem, ContactSolution& solution);
@@ -155,13 +156,22 @@ double CholeskyRelaxation::relaxOnce(const ContactProblem& problem, ContactSolut
   return after;
 }
 
-double CholeskyRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& /*corrector*/,
+MomentumDefect CholeskyRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& /*corrector*/,
                                  ContactSolution& solution) {
-  if (iteration == 0) return normOf(defect_);  // prepare() has relaxed already
+  if (iteration == 0) return defectLeft(problem, normOf(defect_));  // prepare() has relaxed already
   const bool was_fresh = fresh_;
   const double left = relaxSafely(problem, solution);
   if (fresh_ != was_fresh) {  // the compliances went with the old factor
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) prepareContact(problem, c, solution);
+  }
+  return defectLeft(problem, left);
+}
+
+/// @param norm_n_s of defect_.
+MomentumDefect CholeskyRelaxation::defectLeft(const ContactProblem& problem, double norm_n_s) const {
+  MomentumDefect left{norm_n_s, 0.0};
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (!problem.bodies[k].asleep) left.net_n_s += defect_[k].rowwise().sum().norm();
   }
   return left;
 }

@@ -35,8 +35,8 @@ AndersonMixing::View viewOf(std::vector<double>& all) { return {all.data(), stat
 class GaussSeidelRelaxation : public Relaxation {
  public:
   void prepare(const ContactProblem& problem, ContactSolution& solution) override;
-  double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
-               ContactSolution& solution) override;
+  MomentumDefect relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
+                       ContactSolution& solution) override;
   void contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
 
  private:
@@ -178,23 +178,27 @@ void GaussSeidelRelaxation::findHeld(const ContactProblem& problem, int body) {
   std::sort(held_.begin(), held_.end());
 }
 
-double GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
-                                    ContactSolution& solution) {
+MomentumDefect GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
+                                            ContactSolution& solution) {
   const bool forward = iteration % 2 == 0;
   if (iteration == kPlainIterations) beginMixing(problem, solution.v);
   if (forward && iteration > kPlainIterations) mix(solution.v);
   if (!forward) followTouched(problem, solution.v);
-  double change = 0.0;
+  MomentumDefect met;
+  double squared = 0.0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     if (problem.bodies[k].asleep) continue;
     findHeld(problem, static_cast<int>(k));
     const auto hold = [&](int i) { return project(problem, node_contact_[k][i], corrector, solution); };
-    change += bodies_[k].sweep(forward, held_, solution.v[k], hold);
+    const DefectsMet of_body = bodies_[k].sweep(forward, held_, solution.v[k], hold);
+    squared += of_body.squared;
+    met.net_n_s += of_body.sum.norm();
   }
   if (forward) {
     for (Touched& at : touched_) at.v = solution.v[at.body].col(at.node);
   }
-  return std::sqrt(change);
+  met.norm_n_s = std::sqrt(squared);
+  return met;
 }
 
 /// Bodies that contacts of this step join share one map of velocities; those that nothing joins have maps of their own,

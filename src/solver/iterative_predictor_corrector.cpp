@@ -21,11 +21,23 @@ constexpr double kPassShare = 0.3;
 /// Impulses that fall less than to this share of their change before only pass from one of dependent contacts to the next.
 constexpr double kFalls = 0.9;
 
+/// Of the tolerance: what all nodes of a body may lack together, over the sum of impulses. Defects of many nodes that point the same way
+/// hold the whole body back while their squares say little: a liver under a probe erred by seven times its tolerance (doc/method.md).
+constexpr double kNetShare = 2.0;
+
 /// Of all contacts together, N s.
-double impulseNorm(const std::vector<Vector3>& impulses) {
-  double sum = 0.0;
-  for (const Vector3& impulse : impulses) sum += impulse.squaredNorm();
-  return std::sqrt(sum);
+struct ImpulseSize {
+  double norm = 0.0;
+  double sum = 0.0;  ///< of the magnitudes
+};
+ImpulseSize sizeOf(const std::vector<Vector3>& impulses) {
+  ImpulseSize size;
+  for (const Vector3& impulse : impulses) {
+    size.norm += impulse.squaredNorm();
+    size.sum += impulse.norm();
+  }
+  size.norm = std::sqrt(size.norm);
+  return size;
 }
 
 }  // namespace
@@ -64,9 +76,16 @@ double IterativePredictorCorrector::pass(const ContactProblem& problem, ContactS
 /// @param change of the impulses by the last pass. @param before the same of the one to compare it with, N s.
 bool IterativePredictorCorrector::settled(const ContactProblem& problem, const ContactSolution& solution, double change,
                                           double before, double share) {
-  const double little = options_.tolerance * impulseNorm(solution.impulses);
+  const double little = options_.tolerance * sizeOf(solution.impulses).norm;
   return (change <= little || change > kFalls * before) &&
          momentum_.change(problem, before_, solution.impulses) <= share * little;
+}
+
+/// Whether what momentum lacks is within the tolerance: node by node, and all together.
+bool IterativePredictorCorrector::balanced(const MomentumDefect& met, const ContactSolution& solution) const {
+  const ImpulseSize pressed = sizeOf(solution.impulses);
+  return met.norm_n_s <= options_.tolerance * (load_scale_ + pressed.norm) &&
+         met.net_n_s <= kNetShare * options_.tolerance * (load_scale_ + pressed.sum);
 }
 
 /// At most contact_passes passes over the contacts, fewer once they settle.
@@ -98,12 +117,12 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
   SolverReport report;
   first_change_ = std::numeric_limits<double>::infinity();
   for (bool stop = false; !stop;) {
-    const double momentum_change = relaxation_->relax(problem, report.iterations, corrector_, solution);
+    const MomentumDefect met = relaxation_->relax(problem, report.iterations, corrector_, solution);
     const bool had_settled = correctContacts(problem, solution);
     ++report.iterations;
     const double until = report.iterations >= kLeastBeforePrompt ? std::min(hard_s, prompt_s_) : hard_s;
     stop = true;
-    if (had_settled && momentum_change <= options_.tolerance * (load_scale_ + impulseNorm(solution.impulses))) {
+    if (had_settled && balanced(met, solution)) {
       report.stop = StopReason::kTolerance;
     } else if (report.iterations >= options_.iterations) {
       report.stop = StopReason::kIterations;

@@ -51,6 +51,7 @@ class IterativePredictorCorrector : public ContactSolver {
   double pass(const ContactProblem& problem, ContactSolution& solution);
   bool settled(const ContactProblem& problem, const ContactSolution& solution, double change, double before,
                double share);
+  bool balanced(const MomentumDefect& met, const ContactSolution& solution) const;
 
   SolverOptions options_;
   SecondsClock clock_;

@@ -10,6 +10,12 @@
 
 namespace tissue_contact {
 
+/// What is missing from A v = b + J'lambda, nodes that contacts hold aside.
+struct MomentumDefect {
+  double norm_n_s = 0.0;  ///< root of the squares over all nodes, N s
+  double net_n_s = 0.0;   ///< what all nodes of a body lack together, summed over the bodies, N s
+};
+
 class Relaxation {
  public:
   virtual ~Relaxation() = default;
@@ -18,8 +24,8 @@ class Relaxation {
   virtual void prepare(const ContactProblem& problem, ContactSolution& solution) = 0;
 
   /// Relaxes v with the impulses held (MICA's projections aside).
-  /// @return |A v - b - J'lambda| met on the way, N s.
-  virtual double relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
+  /// @return what was met on the way.
+  virtual MomentumDefect relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                        ContactSolution& solution) = 0;
 
   /// Called before the passes of an iteration, with v relaxed.

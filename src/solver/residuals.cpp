@@ -44,6 +44,7 @@ void momentumResidual(const ContactProblem& problem, const ContactSolution& solu
     if (problem.bodies[k].asleep) continue;
     pressed += contact_impulses[k].squaredNorm();
     defect += bodyDefect(problem.bodies[k], solution.v[k], contact_impulses[k], contact_impulses[k]);
+    residuals.net_defect_n_s += contact_impulses[k].rowwise().sum().norm();
   }
   residuals.momentum_defect_n_s = std::sqrt(defect);
   if (defect == 0.0) return;

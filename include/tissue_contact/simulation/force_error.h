@@ -16,7 +16,7 @@ struct ForceErrorEstimate {
   /// The force times 0.18 of the slip over the contact radius, by which normals turn around a ball in the step: frames follow, but for what
   /// changes from step to step. Too small where they do not, at tools' sharp edges. What only presses has none: forces are those at the step's end.
   double step_n = 0.0;
-  double solver_n = 0.0;   ///< momentum residual, of all tissues and contacts, times force
+  double solver_n = 0.0;   ///< of what the step leaves unbalanced in all tissues, by the force's share
   double total_n() const;  ///< root of the sum of squares: the parts have nothing to do with each other
 };
 

@@ -420,6 +420,7 @@ TEST(Conversions, NoResidualIsOverlookedByTheFiniteCheck) {
   EXPECT_TRUE(isFinite(Residuals()));
   double Residuals::*const all[] = {&Residuals::momentum,
                                     &Residuals::momentum_defect_n_s,
+                                    &Residuals::net_defect_n_s,
                                     &Residuals::penetration_m,
                                     &Residuals::adhesion_n,
                                     &Residuals::complementarity_w,

@@ -77,11 +77,11 @@ struct RandomBody {
 /// What a contact makes of a node that it may hold: true, it holds it.
 using Hold = std::function<bool(int node, Vector3& v)>;
 
-/// The textbook's sweep. @return |defects met|^2 of the nodes that nothing holds.
-double plainSweep(const BodySystem& body, const NodalVectors& impulses, bool forward, const std::vector<bool>& may_hold,
+/// The textbook's sweep. @return the defects met at nodes that nothing holds.
+DefectsMet plainSweep(const BodySystem& body, const NodalVectors& impulses, bool forward, const std::vector<bool>& may_hold,
                   const Hold& hold, NodalVectors& v) {
   const int nodes = body.K->rows();
-  double squares = 0.0;
+  DefectsMet met;
   for (int step = 0; step < nodes; ++step) {
     const int i = forward ? step : nodes - 1 - step;
     if ((*body.fixed)[i]) continue;
@@ -98,9 +98,9 @@ double plainSweep(const BodySystem& body, const NodalVectors& impulses, bool for
     Vector3 moved = v.col(i);
     const bool held = may_hold[i] && hold(i, moved);
     v.col(i) = moved;
-    if (!held) squares += defect.squaredNorm();
+    if (!held) met += {defect.squaredNorm(), defect};
   }
-  return squares;
+  return met;
 }
 
 /// Some sweeps forth and back, with impulses and with nodes that contacts hold, against the textbook's.
@@ -128,8 +128,8 @@ void compareSweeps(RandomBody& body, double held_share) {
   NodalVectors expected = v;
   for (int sweep = 0; sweep < 4; ++sweep) {
     const bool forward = sweep % 2 == 0;
-    const double expected_squares = plainSweep(body.system, impulses, forward, may_hold, hold, expected);
-    const double squares = sweeps.sweep(forward, held, v, [&](int node) {
+    const DefectsMet expected_met = plainSweep(body.system, impulses, forward, may_hold, hold, expected);
+    const DefectsMet met = sweeps.sweep(forward, held, v, [&](int node) {
       Vector3 moved = v.col(node);
       const bool holds = hold(node, moved);
       v.col(node) = moved;
@@ -139,7 +139,8 @@ void compareSweeps(RandomBody& body, double held_share) {
     EXPECT_LE((v - expected).norm(), 1e-14 * expected.norm()) << nodes << " nodes, sweep " << sweep;
     // A defect is the difference of the loads and of A v; the blocks of A's diagonal are below 10 + nodes.
     const double terms = (body.system.b + impulses).norm() + (10.0 + nodes) * expected.norm();
-    EXPECT_NEAR(std::sqrt(squares), std::sqrt(expected_squares), 1e-14 * terms) << nodes << " nodes, sweep " << sweep;
+    EXPECT_NEAR(std::sqrt(met.squared), std::sqrt(expected_met.squared), 1e-14 * terms) << nodes << " nodes, sweep " << sweep;
+    EXPECT_LE((met.sum - expected_met.sum).norm(), 1e-14 * terms) << nodes << " nodes, sweep " << sweep;
     for (int i = 0; i < nodes; ++i) {
       if (!body.fixed[i]) continue;
       EXPECT_EQ(Vector3(v.col(i)), Vector3::Zero());
