@@ -36,6 +36,8 @@ std::vector<NamedScene> allScenes(const std::string& stl_file) {
                                                    {"sheet on block", sheetOnBlockScene()}}) {
       one.name += relaxation == RelaxationKind::kCholesky ? ", Cholesky" : ", Gauss-Seidel";
       one.scene.solver.relaxation = relaxation;
+      // Round-off grows in what a step leaves unsolved: with 1e-3 and Cholesky to 1e-7 within the 120 steps, with one flip to 1e-3.
+      one.scene.solver.tolerance = 1e-4;
       scenes.push_back(one);
     }
   }
