@@ -223,9 +223,10 @@ void fillStatus(const Simulator& simulator, const JointStatePlayer& player, std:
 
 bool isFinite(const Residuals& residuals) {
   return std::isfinite(residuals.momentum) && std::isfinite(residuals.momentum_defect_n_s) &&
-         std::isfinite(residuals.net_defect_n_s) && std::isfinite(residuals.penetration_m) && std::isfinite(residuals.adhesion_n) &&
-         std::isfinite(residuals.complementarity_w) && std::isfinite(residuals.cone_violation_n) &&
-         std::isfinite(residuals.static_slip_m_per_s) && std::isfinite(residuals.kinetic_angle_rad);
+         std::isfinite(residuals.net_defect_n_s) && std::isfinite(residuals.penetration_m) &&
+         std::isfinite(residuals.adhesion_n) && std::isfinite(residuals.complementarity_w) &&
+         std::isfinite(residuals.cone_violation_n) && std::isfinite(residuals.static_slip_m_per_s) &&
+         std::isfinite(residuals.kinetic_angle_rad);
 }
 
 bool isFinite(const Simulator& simulator) {

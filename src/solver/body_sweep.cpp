@@ -83,7 +83,8 @@ TISSUE_CONTACT_INLINE DefectsMet sum(const LaneDefects& met) {
 }
 
 template <bool kDamped>
-TISSUE_CONTACT_INLINE DefectsMet sweepForth(const Work& all, const std::vector<unsigned char>& moves, int begin, int end) {
+TISSUE_CONTACT_INLINE DefectsMet sweepForth(const Work& all, const std::vector<unsigned char>& moves, int begin,
+                                            int end) {
   LaneDefects met;
   for (int slice = begin; slice < end; ++slice) {
     if (moves[slice] == 0) continue;
@@ -96,7 +97,8 @@ TISSUE_CONTACT_INLINE DefectsMet sweepForth(const Work& all, const std::vector<u
 }
 
 template <bool kDamped>
-TISSUE_CONTACT_INLINE DefectsMet sweepBack(const Work& all, const std::vector<unsigned char>& moves, int begin, int end) {
+TISSUE_CONTACT_INLINE DefectsMet sweepBack(const Work& all, const std::vector<unsigned char>& moves, int begin,
+                                           int end) {
   LaneDefects met;
   for (int slice = end; slice-- > begin;) {
     if (moves[slice] == 0) continue;

@@ -97,14 +97,14 @@ class BodySweep {
   SliceDefects relaxSlice(int slice);
   void carrySlice(int slice);
 
-  const BodySystem* body_ = nullptr;       ///< of the step; null: it sleeps
-  std::vector<SymmetricBlocks> diagonal_;  ///< A_ii of each slice's rows
-  std::vector<SymmetricBlocks> inverse_;   ///< A_ii^-1, 0 for fixed nodes
-  std::vector<SliceVectors> right_;        ///< b + J'lambda, N s
+  const BodySystem* body_ = nullptr;              ///< of the step; null: it sleeps
+  std::vector<SymmetricBlocks> diagonal_;         ///< A_ii of each slice's rows
+  std::vector<SymmetricBlocks> inverse_;          ///< A_ii^-1, 0 for fixed nodes
+  std::vector<SliceVectors> right_;               ///< b + J'lambda, N s
   std::vector<std::array<double, kLanes>> free_;  ///< 1 for a row that is free, else 0
-  std::vector<unsigned char> moves_;       ///< some row of the slice is free
-  PaddedVectors lower_;                    ///< sum_{j<i} A_ij v_j after the sweep forth, N s
-  PaddedVectors v_;                        ///< scratch: what a sweep works on, m/s
+  std::vector<unsigned char> moves_;              ///< some row of the slice is free
+  PaddedVectors lower_;                           ///< sum_{j<i} A_ij v_j after the sweep forth, N s
+  PaddedVectors v_;                               ///< scratch: what a sweep works on, m/s
 };
 
 }  // namespace tissue_contact

@@ -30,7 +30,7 @@ class CholeskyRelaxation : public Relaxation {
  public:
   void prepare(const ContactProblem& problem, ContactSolution& solution) override;
   MomentumDefect relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
-               ContactSolution& solution) override;
+                       ContactSolution& solution) override;
   void beginPasses(const ContactSolution& solution) override;
   void contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
   void finish(const ContactProblem& problem, ContactSolution& solution) override;
@@ -157,7 +157,7 @@ double CholeskyRelaxation::relaxOnce(const ContactProblem& problem, ContactSolut
 }
 
 MomentumDefect CholeskyRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& /*corrector*/,
-                                 ContactSolution& solution) {
+                                         ContactSolution& solution) {
   if (iteration == 0) return defectLeft(problem, normOf(defect_));  // prepare() has relaxed already
   const bool was_fresh = fresh_;
   const double left = relaxSafely(problem, solution);

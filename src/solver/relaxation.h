@@ -26,7 +26,7 @@ class Relaxation {
   /// Relaxes v with the impulses held (MICA's projections aside).
   /// @return what was met on the way.
   virtual MomentumDefect relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
-                       ContactSolution& solution) = 0;
+                               ContactSolution& solution) = 0;
 
   /// Called before the passes of an iteration, with v relaxed.
   virtual void beginPasses(const ContactSolution& /*solution*/) {}

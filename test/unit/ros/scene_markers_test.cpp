@@ -418,15 +418,10 @@ TEST(Conversions, StatusOfADiscardedStepIsFiniteAndSaysSo) {
 
 TEST(Conversions, NoResidualIsOverlookedByTheFiniteCheck) {
   EXPECT_TRUE(isFinite(Residuals()));
-  double Residuals::*const all[] = {&Residuals::momentum,
-                                    &Residuals::momentum_defect_n_s,
-                                    &Residuals::net_defect_n_s,
-                                    &Residuals::penetration_m,
-                                    &Residuals::adhesion_n,
-                                    &Residuals::complementarity_w,
-                                    &Residuals::cone_violation_n,
-                                    &Residuals::static_slip_m_per_s,
-                                    &Residuals::kinetic_angle_rad};
+  double Residuals::*const all[] = {
+      &Residuals::momentum,         &Residuals::momentum_defect_n_s, &Residuals::net_defect_n_s,
+      &Residuals::penetration_m,    &Residuals::adhesion_n,          &Residuals::complementarity_w,
+      &Residuals::cone_violation_n, &Residuals::static_slip_m_per_s, &Residuals::kinetic_angle_rad};
   static_assert(sizeof(Residuals) == sizeof(all) / sizeof(all[0]) * sizeof(double), "a residual is missing here");
   for (double Residuals::*const one : all) {
     for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {

@@ -167,9 +167,9 @@ TEST(ForceError, ASolverThatStopsEarlyHasMore) {
 
 // A column pushed at its top, by 20 mm/s in steps of 2 ms: it gives way as a whole, which each node's own defect hardly tells.
 TEST(ForceError, OfABodyThatGivesWayAsAWholeIsKnownAndFollowsTheTolerance) {
-  const std::string column =
-      blockScene("[0.06, 0.06, 0.16]", "[6, 6, 16]", "poissons_ratio: 0.45") + onlyBall("[-0.036, 0.001, 0.143]") +
-      "friction: [{instrument: probe, tissue: block, static: 0.3}]\nstep: {max_step_s: 0.002}\n";
+  const std::string column = blockScene("[0.06, 0.06, 0.16]", "[6, 6, 16]", "poissons_ratio: 0.45") +
+                             onlyBall("[-0.036, 0.001, 0.143]") +
+                             "friction: [{instrument: probe, tissue: block, static: 0.3}]\nstep: {max_step_s: 0.002}\n";
   const auto simulator = [&](const std::string& tolerance) {
     return simulatorOf(column + "solver: {iterations: 1000, tolerance: " + tolerance + "}\n");
   };

@@ -78,8 +78,8 @@ struct RandomBody {
 using Hold = std::function<bool(int node, Vector3& v)>;
 
 /// The textbook's sweep. @return the defects met at nodes that nothing holds.
-DefectsMet plainSweep(const BodySystem& body, const NodalVectors& impulses, bool forward, const std::vector<bool>& may_hold,
-                  const Hold& hold, NodalVectors& v) {
+DefectsMet plainSweep(const BodySystem& body, const NodalVectors& impulses, bool forward,
+                      const std::vector<bool>& may_hold, const Hold& hold, NodalVectors& v) {
   const int nodes = body.K->rows();
   DefectsMet met;
   for (int step = 0; step < nodes; ++step) {
@@ -139,7 +139,8 @@ void compareSweeps(RandomBody& body, double held_share) {
     EXPECT_LE((v - expected).norm(), 1e-14 * expected.norm()) << nodes << " nodes, sweep " << sweep;
     // A defect is the difference of the loads and of A v; the blocks of A's diagonal are below 10 + nodes.
     const double terms = (body.system.b + impulses).norm() + (10.0 + nodes) * expected.norm();
-    EXPECT_NEAR(std::sqrt(met.squared), std::sqrt(expected_met.squared), 1e-14 * terms) << nodes << " nodes, sweep " << sweep;
+    EXPECT_NEAR(std::sqrt(met.squared), std::sqrt(expected_met.squared), 1e-14 * terms)
+        << nodes << " nodes, sweep " << sweep;
     EXPECT_LE((met.sum - expected_met.sum).norm(), 1e-14 * terms) << nodes << " nodes, sweep " << sweep;
     for (int i = 0; i < nodes; ++i) {
       if (!body.fixed[i]) continue;
