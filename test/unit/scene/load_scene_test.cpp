@@ -179,7 +179,7 @@ TEST_F(SceneTest, HasDefaults) {
   EXPECT_EQ(scene.step.max_lag_s, 0.02);
   EXPECT_EQ(scene.solver.iterations, defaults.solver.iterations);
   EXPECT_EQ(scene.solver.contact_passes, 20);
-  EXPECT_EQ(scene.solver.tolerance, 1e-4);
+  EXPECT_EQ(scene.solver.tolerance, 1e-3);
   EXPECT_TRUE(scene.friction.empty());
   const TissueDescription& tissue = scene.tissues.at(0);
   EXPECT_TRUE(tissue.pose.X.isApprox(Pose::Identity()));
