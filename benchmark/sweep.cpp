@@ -56,7 +56,7 @@ class Grid {
       for (const int count : quick_ ? std::vector{5, 30} : std::vector{1, 2, 5, 10, 20, 50, 100}) {
         if (quick_ || count <= most) addSolver(SolverMethod::kPredictorCorrector, relaxation, count, 0.0);
       }
-      for (const double tolerance : quick_ ? std::vector{1e-3} : std::vector{1e-2, 3e-3, 1e-3, 3e-4, 3e-5, 1e-5}) {
+      for (const double tolerance : quick_ ? std::vector{1e-4} : std::vector{1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5}) {
         addSolver(SolverMethod::kPredictorCorrector, relaxation, 30, tolerance);
       }
       if (!quick_ && swept) addSolver(SolverMethod::kPredictorCorrector, relaxation, 300, 1e-6);
@@ -99,7 +99,7 @@ class Grid {
 
   /// A mesh that follows the tool, at tolerances of which one is enough for a haptic device.
   void refined(const RefinementDescription& refinement) {
-    for (const double tolerance : {1e-2, 1e-3, shipped_.solver.tolerance}) {
+    for (const double tolerance : {1e-2, 1e-4, shipped_.solver.tolerance}) {
       Settings settings = shipped_;
       settings.refinement = refinement;
       settings.solver.tolerance = tolerance;

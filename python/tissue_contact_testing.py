@@ -12,6 +12,7 @@ Every wait has a deadline. In one process and without a ROS master, from C++: ti
 import contextlib
 import math
 import os
+import random
 import select
 import signal
 import socket
@@ -28,6 +29,7 @@ from std_msgs.msg import Empty
 from tissue_contact.msg import Status
 
 DEADLINE_S = 60.0  # a machine may be busy with other tests
+DEFAULT_PORTS = (11311, 11345)  # of ROS and Gazebo: whoever starts there later would come to this master
 HASH_START, HASH_FACTOR = 0xcbf29ce484222325, 0x100000001b3  # of ContentHash in C++
 
 
@@ -151,16 +153,26 @@ class TissueFixture:
         return digest
 
 
-def _free_port():
-    with socket.socket() as listener:
-        listener.bind(("localhost", 0))
-        return listener.getsockname()[1]
+def free_port():
+    """For a ROS master. Below those that the system gives to outgoing connections: one of them could take the port before the master does."""
+    with open("/proc/sys/net/ipv4/ip_local_port_range", encoding="ascii") as limits:
+        end = max(int(limits.read().split()[0]), 2048)  # some let the system give any
+    for port in random.sample(range(1024, end), 1000):
+        if port in DEFAULT_PORTS:
+            continue
+        with socket.socket() as probe:
+            try:
+                probe.bind(("", port))
+                return port
+            except OSError:
+                continue  # somebody's
+    raise OSError("no free port among 1000 below %d" % end)
 
 
 @contextlib.contextmanager
 def launched(package, launch_file, *arguments, deadline_s=DEADLINE_S):
     """A launch file on a ROS master of its own, which this process uses from then on; ended with the block. For pytest: rostest does it itself."""
-    port = str(_free_port())
+    port = str(free_port())
     os.environ["ROS_MASTER_URI"] = "http://localhost:" + port
     with subprocess.Popen(["roslaunch", "--port", port, package, launch_file, *arguments], stdin=subprocess.DEVNULL) as roslaunch:
         try:

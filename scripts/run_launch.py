@@ -8,26 +8,12 @@ roslaunch returns 0 whatever became of its nodes. This returns 0 only when the p
 listens on a free port, so neither topics nor parameters (/use_sim_time) of a robot that is up on this machine are touched.
 """
 import os
-import random
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
 
-
-def free_port():
-    """Below those that the system gives to outgoing connections: one of them could take the port before the master does."""
-    with open("/proc/sys/net/ipv4/ip_local_port_range", encoding="ascii") as limits:
-        end = max(int(limits.read().split()[0]), 2048)  # some let the system give any
-    for port in random.sample(range(1024, end), 1000):
-        with socket.socket() as probe:
-            try:
-                probe.bind(("", port))
-                return port
-            except OSError:
-                continue  # somebody's
-    raise OSError("no free port among 1000 below %d" % end)
+from tissue_contact_testing import free_port
 
 
 def run(arguments):

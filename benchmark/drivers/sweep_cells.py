@@ -15,7 +15,8 @@ import tempfile
 SCENE = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "..", "config", "psm_dvrk.yaml")
 CELL, TOLERANCE = "tissues.slab.refinement.cell_m", "solver.tolerance"
 REFERENCE = {CELL: 0.001, "tissues.slab.refinement.nodes_at_most": 12000, TOLERANCE: 0.001}
-ROWS = [{}, {CELL: 0.003}, {CELL: 0.002, TOLERANCE: 0.01}, {CELL: 0.002}, {CELL: 0.0015}, {"tissues.slab.refinement": "auto"}]
+ROWS = [dict({TOLERANCE: 1e-4}, **row)
+        for row in ({}, {CELL: 0.003}, {CELL: 0.002, TOLERANCE: 0.01}, {CELL: 0.002}, {CELL: 0.0015}, {"tissues.slab.refinement": "auto"})]
 AXES = ["force_x_n", "force_y_n", "force_z_n"]
 
 

@@ -257,6 +257,7 @@ py::dict PythonSimulator::residuals() const {
   const Residuals& all = simulator_.residuals();
   py::dict named;
   named["momentum"] = all.momentum;
+  named["net_defect_n_s"] = all.net_defect_n_s;
   named["penetration_m"] = all.penetration_m;
   named["adhesion_n"] = all.adhesion_n;
   named["complementarity_w"] = all.complementarity_w;

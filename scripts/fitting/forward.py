@@ -120,6 +120,8 @@ class Simulated(typing.NamedTuple):
     torque_nm: numpy.ndarray = None  # about the tip
 
 
+SOLVER = {"solver.tolerance": 1e-4}  # differences of runs are taken, which want less than a run's own error of 1e-3
+
 DOUBTS = {  # by the report's field
     "jumped": "the tool went too far to be swept and was put there: are the positions in metres, is the recording of one piece?",
     "discarded": "the scene had no finite answer and stopped the tissue where it was, without forces: take smaller steps or a finer mesh",
@@ -135,7 +137,7 @@ def _doubt(doubts, report):
 def forces(scene_path, settings, tool_name, times_s, motion):
     """Simulated; forces are those after each sample's step: the first sample only places the tool."""
     try:
-        scene = tissue_contact.load_scene(scene_path, set=settings)
+        scene = tissue_contact.load_scene(scene_path, set=dict(SOLVER, **settings))
         simulator = tissue_contact.Simulator(scene)
         simulator.place(tool_name, motion[0])
         index = list(simulator.instruments).index(tool_name)

@@ -9,7 +9,7 @@ from scipy import optimize, stats
 from fitting import FitError
 
 FIRST_SCALE = 0.05  # of the peak force, until residuals give it
-LEAST_SCALE = 1e-4  # of the peak force: less than a replay's solver leaves
+LEAST_SCALE = 1e-4  # of the peak force: what a run's solver leaves, see SOLVER in forward.py
 LEAST_TOUCHING = 10  # samples, to tell a scale from those alone
 HUBER = 1.5          # scales from which on a residual counts by its magnitude only; 96 % efficient with normal noise
 STEP = 0.01          # of the way between bounds, for differences: far above the solver's tolerance, far below what bends

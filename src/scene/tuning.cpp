@@ -50,8 +50,10 @@ class Places {
                     {1, kMaxContactPasses},
                     nullptr,
                     &solver.contact_passes});
-    all_.push_back({"solver/tolerance", "stop when an iteration changes less than this (relative)", kToleranceRange,
-                    &solver.tolerance});
+    all_.push_back(
+        {"solver/tolerance",
+         "stop when an iteration changes less than this, and all nodes together lack less than twice this (relative)",
+         kToleranceRange, &solver.tolerance});
   }
 
   const std::vector<Place>& all() const { return all_; }

@@ -160,7 +160,7 @@ const std::vector<ForceErrorEstimate>& Simulator::forceErrors() const {
   Implementation& all = *implementation_;
   if (all.force_errors) return *all.force_errors;
   const double defect_n_s = std::max(residuals().net_defect_n_s, residuals().momentum_defect_n_s);
-  const double unbalanced_n = defect_n_s > 0.0 ? defect_n_s / all.problem.dt_s : 0.0;  // no step yet: no length of it
+  const double unbalanced_n = defect_n_s == 0.0 ? 0.0 : defect_n_s / all.problem.dt_s;  // no step yet: no length of it
   all.force_errors = estimateForceErrors(all.scene, all.tissues, all.x, all.contacts.solved(), all.touched_places,
                                          all.instruments.size(), unbalanced_n);
   return *all.force_errors;

@@ -171,7 +171,8 @@ MomentumDefect CholeskyRelaxation::relax(const ContactProblem& problem, int iter
 MomentumDefect CholeskyRelaxation::defectLeft(const ContactProblem& problem, double norm_n_s) const {
   MomentumDefect left{norm_n_s, 0.0};
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    if (!problem.bodies[k].asleep) left.net_n_s += defect_[k].rowwise().sum().norm();
+    const bool touched = !impulses_[k].isZero(0.0);
+    if (!problem.bodies[k].asleep && touched) left.net_n_s += defect_[k].rowwise().sum().norm();
   }
   return left;
 }

@@ -45,6 +45,7 @@ class GaussSeidelRelaxation : public Relaxation {
   void findNodeContacts(const ContactProblem& problem);
   void findTouched(const ContactProblem& problem);
   void followTouched(const ContactProblem& problem, const std::vector<NodalVectors>& v);
+  bool contactsActOn(int body) const;
   void findHeld(const ContactProblem& problem, int body);
   bool project(const ContactProblem& problem, int contact, ContactCorrector& corrector, ContactSolution& solution);
   void correctNormal(const ContactRow& row, std::size_t contact, ContactSolution& solution);
@@ -178,6 +179,12 @@ void GaussSeidelRelaxation::findHeld(const ContactProblem& problem, int body) {
   std::sort(held_.begin(), held_.end());
 }
 
+bool GaussSeidelRelaxation::contactsActOn(int body) const {
+  const auto first =
+      std::lower_bound(touched_.begin(), touched_.end(), body, [](const Touched& at, int k) { return at.body < k; });
+  return first != touched_.end() && first->body == body;
+}
+
 MomentumDefect GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                                             ContactSolution& solution) {
   const bool forward = iteration % 2 == 0;
@@ -192,7 +199,7 @@ MomentumDefect GaussSeidelRelaxation::relax(const ContactProblem& problem, int i
     const auto hold = [&](int i) { return project(problem, node_contact_[k][i], corrector, solution); };
     const DefectsMet of_body = bodies_[k].sweep(forward, held_, solution.v[k], hold);
     squared += of_body.squared;
-    met.net_n_s += of_body.sum.norm();
+    if (contactsActOn(static_cast<int>(k))) met.net_n_s += of_body.sum.norm();
   }
   if (forward) {
     for (Touched& at : touched_) at.v = solution.v[at.body].col(at.node);

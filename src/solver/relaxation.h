@@ -13,7 +13,7 @@ namespace tissue_contact {
 /// What is missing from A v = b + J'lambda, nodes that contacts hold aside.
 struct MomentumDefect {
   double norm_n_s = 0.0;  ///< root of the squares over all nodes, N s
-  double net_n_s = 0.0;   ///< what all nodes of a body lack together, summed over the bodies, N s
+  double net_n_s = 0.0;   ///< what all nodes of a body lack together, N s: added over the bodies that contacts act on
 };
 
 class Relaxation {

@@ -42,9 +42,10 @@ void momentumResidual(const ContactProblem& problem, const ContactSolution& solu
   double pressed = 0.0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     if (problem.bodies[k].asleep) continue;
-    pressed += contact_impulses[k].squaredNorm();
+    const double pressed_here = contact_impulses[k].squaredNorm();
+    pressed += pressed_here;
     defect += bodyDefect(problem.bodies[k], solution.v[k], contact_impulses[k], contact_impulses[k]);
-    residuals.net_defect_n_s += contact_impulses[k].rowwise().sum().norm();
+    if (pressed_here > 0.0) residuals.net_defect_n_s += contact_impulses[k].rowwise().sum().norm();
   }
   residuals.momentum_defect_n_s = std::sqrt(defect);
   if (defect == 0.0) return;

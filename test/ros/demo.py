@@ -5,7 +5,6 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 import unittest
 
 import rosbag
@@ -13,6 +12,7 @@ import rosgraph
 import rospy
 
 import harness
+from tissue_contact_testing import free_port
 
 
 class Demo(harness.TestCase):
@@ -115,8 +115,6 @@ class Demo(harness.TestCase):
         self.assertEqual((master.getParam("/run_id"), sorted(rospy.get_param_names()), master.getSystemState()), before)
 
     def test_no_outgoing_connection_gets_the_port_of_the_master(self):
-        sys.path.insert(0, os.path.join(harness.PACKAGE, "scripts"))
-        from run_launch import free_port
         with open("/proc/sys/net/ipv4/ip_local_port_range", encoding="ascii") as limits:
             first_given = int(limits.read().split()[0])
         if first_given <= 2048:

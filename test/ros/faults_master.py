@@ -13,9 +13,7 @@ import rostest
 
 import faults
 import harness
-
-sys.path.insert(0, os.path.join(harness.PACKAGE, "scripts"))
-from run_launch import free_port  # noqa: E402
+from tissue_contact_testing import free_port
 
 PORT = free_port()
 

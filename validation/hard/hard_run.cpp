@@ -10,7 +10,7 @@ namespace tissue_contact {
 namespace {
 
 /// What an answer needs to judge another by. 1e-10 is the aim; where a face carries as many points as it has degrees of
-/// freedom W is singular and 1e-6 is met, still a hundredth of what the defaults leave.
+/// freedom W is singular and 1e-6 is met, still a thousandth of what the defaults leave.
 constexpr double kExactEnough = 1e-5;
 
 /// Relative difference of forces from which on a contact that sticks here and slides there counts as such.

@@ -13,8 +13,8 @@ namespace tissue_contact {
 
 /// What a run must keep to.
 struct HardBands {
-  /// Of the force of a step against the exact answer to the same step; RMS over RMS. The default settings leave less
-  /// than 0.1 % on ordinary scenes; a hard case may have 0.5 %. Over the steps in which the same contacts stick: one that
+  /// Of the force of a step against the exact answer to the same step; RMS over RMS. The default settings leave some
+  /// 0.1 % in a step of ordinary scenes; a hard case may have 0.5 %. Over the steps in which the same contacts stick: one that
   /// is within the tolerance of letting go may do so a step early or late, and that step is off by up to mu_s / mu_k - 1.
   double force = 0.005;
 

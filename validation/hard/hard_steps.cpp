@@ -40,8 +40,8 @@ void validateHardFriction(Report& report) {
   scene.mu_static = 1.0;
   scene.mu_kinetic = 0.1;
   // With a friction that drops to a tenth several answers satisfy all laws, and which one a step takes hangs by the order in which
-  // contacts let go: .006 to .047 and .06 to .1 of the steps take another than the reference solver when the tolerance is .8 to
-  // 1.2 of the default. They are solved as the others (natural map).
+  // contacts let go: .006 to .047 and .06 to .1 of the steps take another than the reference solver when the tolerance is .8e-4 to
+  // 1.2e-4. They are solved as the others (natural map).
   HardBands bands;
   bands.let_go_else = 0.15;
   runPad("mu 1 / .1", scene, {}, bands, report, 0.6, 0.8, 11);

@@ -16,7 +16,8 @@ struct ForceErrorEstimate {
   /// The force times 0.18 of the slip over the contact radius, by which normals turn around a ball in the step: frames follow, but for what
   /// changes from step to step. Too small where they do not, at tools' sharp edges. What only presses has none: forces are those at the step's end.
   double step_n = 0.0;
-  double solver_n = 0.0;   ///< of what the step leaves unbalanced in all tissues, by the force's share
+  /// .7 of what the step leaves unbalanced in all tissues that something touches, by the instrument's share of all pressing; at most all it presses with.
+  double solver_n = 0.0;
   double total_n() const;  ///< root of the sum of squares: the parts have nothing to do with each other
 };
 

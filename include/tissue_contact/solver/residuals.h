@@ -12,7 +12,8 @@ struct Residuals {
   /// step, so that 1 is an unbalanced force as large as these.
   double momentum = 0.0;
   double momentum_defect_n_s = 0.0;  ///< |A v - b - J'lambda|, N s
-  double net_defect_n_s = 0.0;       ///< its sum over the nodes of each body, magnitudes added over the bodies, N s
+  /// Its sum over the nodes of a body, N s: magnitudes added over the bodies that a contact presses or pulls.
+  double net_defect_n_s = 0.0;
   double penetration_m = 0.0;        ///< how deep the linearised gap at the end of the step is below 0, m
   double adhesion_n = 0.0;           ///< pulling normal force, N
   double complementarity_w = 0.0;    ///< normal force times separation speed, W

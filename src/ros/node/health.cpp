@@ -165,9 +165,9 @@ std::string Health::notConvergedText(const PlayedSample& played) {
   if (report.stop == StopReason::kTolerance || !not_converged_.pass()) return {};
   const Residuals& residuals = simulator_.residuals();
   std::ostringstream text;
-  text << toTime(played.stamp_ns) << " s: momentum " << residuals.momentum << ", penetration "
-       << residuals.penetration_m << " m, cone " << residuals.cone_violation_n << " N after " << report.iterations
-       << " iterations";
+  text << toTime(played.stamp_ns) << " s: momentum " << residuals.momentum << ", all nodes together "
+       << residuals.net_defect_n_s << " N s, penetration " << residuals.penetration_m << " m, cone "
+       << residuals.cone_violation_n << " N after " << report.iterations << " iterations";
   return text.str();
 }
 

@@ -180,6 +180,46 @@ TEST(MixedSweeps, KnowThisProblemAlone) {
 }
 
 /// Adds a body with its contacts at the end of a problem.
+void append(const PressedBlock& from, ContactProblem& problem, ContactSolution& solution);
+
+/// Two blocks that lack the same the opposite way: of those that something presses magnitudes are added.
+TEST(Residuals, TheNetDefectIsThatOfEachBodyThatIsPressed) {
+  PressedBlock one(0.5, 0.03);
+  PressedBlock other(0.5, 0.03);
+  ContactProblem problem;
+  ContactSolution solution;
+  for (PressedBlock* const block : {&one, &other}) {
+    block->keepContacts(1);
+    append(*block, problem, solution);
+  }
+  problem.bodies[0].b.row(0).setConstant(0.01);
+  problem.bodies[1].b.row(0).setConstant(-0.01);
+  const auto free = static_cast<double>(std::count(one.fixed.begin(), one.fixed.end(), false));
+  std::vector<NodalVectors> scratch;
+  EXPECT_EQ(computeResiduals(problem, solution, scratch).net_defect_n_s, 0.0);  // nothing is pressed
+  const double tiny = 1e-9;
+  solution.impulses[0].x() = tiny;
+  EXPECT_NEAR(computeResiduals(problem, solution, scratch).net_defect_n_s, 0.01 * free, 2.0 * tiny);
+  solution.impulses[1].x() = tiny;
+  const Residuals both = computeResiduals(problem, solution, scratch);
+  EXPECT_NEAR(both.net_defect_n_s, 0.02 * free, 4.0 * tiny);
+  EXPECT_NEAR(both.momentum_defect_n_s, 0.01 * std::sqrt(2.0 * free), 4.0 * tiny);
+  problem.bodies[1].asleep = true;
+  EXPECT_NEAR(computeResiduals(problem, solution, scratch).net_defect_n_s, 0.01 * free, 2.0 * tiny);
+}
+
+/// Both ways to relax go on until what all nodes lack together is little.
+TEST(Residuals, WhatNodesLackTogetherIsWithinTheToleranceAtTheEnd) {
+  for (const RelaxationKind relaxation : {RelaxationKind::kGaussSeidel, RelaxationKind::kCholesky}) {
+    PressedBlock scene(0.5, 0.03);
+    IterativePredictorCorrector solver(options(500, 20, 1e-2, relaxation));
+    ASSERT_EQ(solver.solve(scene.problem, scene.solution).stop, StopReason::kTolerance);
+    double pressed = loadScale(scene.problem);
+    for (const Vector3& impulse : scene.solution.impulses) pressed += impulse.norm();
+    EXPECT_LT(residualsOf(scene).net_defect_n_s, 0.02 * pressed) << relaxationName(relaxation);
+  }
+}
+
 void append(const PressedBlock& from, ContactProblem& problem, ContactSolution& solution) {
   const int body = static_cast<int>(problem.bodies.size());
   problem.dt_s = from.problem.dt_s;
