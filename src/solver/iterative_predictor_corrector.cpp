@@ -81,11 +81,11 @@ bool IterativePredictorCorrector::settled(const ContactProblem& problem, const C
          momentum_.change(problem, before_, solution.impulses) <= share * little;
 }
 
-/// Whether what momentum lacks is within the tolerance: node by node, and, where something is pressed, all together.
+/// Whether what momentum lacks is within the tolerance: node by node, and all together, also while a contact is only near: what a body does between touches, it touches with.
 bool IterativePredictorCorrector::balanced(const MomentumDefect& met, const ContactSolution& solution) const {
   const ImpulseSize pressed = sizeOf(solution.impulses);
   return met.norm_n_s <= options_.tolerance * (load_scale_ + pressed.norm) &&
-         (pressed.sum == 0.0 || met.net_n_s <= kNetShare * options_.tolerance * (load_scale_ + pressed.sum));
+         met.net_n_s <= kNetShare * options_.tolerance * (load_scale_ + pressed.sum);
 }
 
 /// At most contact_passes passes over the contacts, fewer once they settle.
