@@ -257,7 +257,7 @@ void openAndComeToRest(Grasp& grasp, const std::string& name, Report& report) {
 
 // Implicit Euler only loses energy, so what is more than the work is round-off, but for what the linearised step gets
 // wrong. 30 sweeps end before the tolerance where a jaw first touches the flap at rest, where it snaps back at mu 1 / .1 (.0096
-// measured: with a tolerance of 1e-3 the steps before hand it more than with 1e-4, .0024), and while it swings freely as a whole (.007 of its load and weight).
+// measured with a tolerance of 1e-3, .0024 with 1e-4), and while it swings freely as a whole (.007 of its load and weight).
 // Two micrometres are two thousandths of the flap's cells; 1.0 measured.
 void wasStable(const Grasp& grasp, const std::string& name, Report& report) {
   const Stability& stability = grasp.stability();

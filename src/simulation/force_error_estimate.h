@@ -17,7 +17,7 @@ namespace tissue_contact {
 /// @param x per tissue: positions, m.
 /// @param contacts of the step, sorted by key.
 /// @param shapes of the instruments.
-/// @param unbalanced_n what the step's answer leaves, N: of all nodes together, or the norm over them if that is more.
+/// @param unbalanced_n what the step's answer leaves, N: of all nodes of a body together.
 /// @return one per instrument. Allocates.
 std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const std::vector<Tissue>& tissues,
                                                     const std::vector<NodalVectors>& x,

@@ -1,6 +1,5 @@
 #include "tissue_contact/simulation/simulator.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -159,7 +158,7 @@ const Residuals& Simulator::residuals() const {
 const std::vector<ForceErrorEstimate>& Simulator::forceErrors() const {
   Implementation& all = *implementation_;
   if (all.force_errors) return *all.force_errors;
-  const double defect_n_s = std::max(residuals().net_defect_n_s, residuals().momentum_defect_n_s);
+  const double defect_n_s = residuals().net_defect_n_s;
   const double unbalanced_n = defect_n_s == 0.0 ? 0.0 : defect_n_s / all.problem.dt_s;  // no step yet: no length of it
   all.force_errors = estimateForceErrors(all.scene, all.tissues, all.x, all.contacts.solved(), all.touched_places,
                                          all.instruments.size(), unbalanced_n);

@@ -26,18 +26,17 @@ constexpr double kFalls = 0.9;
 constexpr double kNetShare = 2.0;
 
 /// Of all contacts together, N s.
-struct ImpulseSize {
-  double norm = 0.0;
-  double sum = 0.0;  ///< of the magnitudes
-};
-ImpulseSize sizeOf(const std::vector<Vector3>& impulses) {
-  ImpulseSize size;
-  for (const Vector3& impulse : impulses) {
-    size.norm += impulse.squaredNorm();
-    size.sum += impulse.norm();
-  }
-  size.norm = std::sqrt(size.norm);
-  return size;
+double impulseNorm(const std::vector<Vector3>& impulses) {
+  double sum = 0.0;
+  for (const Vector3& impulse : impulses) sum += impulse.squaredNorm();
+  return std::sqrt(sum);
+}
+
+/// Of the magnitudes, N s.
+double impulseSum(const std::vector<Vector3>& impulses) {
+  double sum = 0.0;
+  for (const Vector3& impulse : impulses) sum += impulse.norm();
+  return sum;
 }
 
 }  // namespace
@@ -76,16 +75,16 @@ double IterativePredictorCorrector::pass(const ContactProblem& problem, ContactS
 /// @param change of the impulses by the last pass. @param before the same of the one to compare it with, N s.
 bool IterativePredictorCorrector::settled(const ContactProblem& problem, const ContactSolution& solution, double change,
                                           double before, double share) {
-  const double little = options_.tolerance * sizeOf(solution.impulses).norm;
+  const double little = options_.tolerance * impulseNorm(solution.impulses);
   return (change <= little || change > kFalls * before) &&
          momentum_.change(problem, before_, solution.impulses) <= share * little;
 }
 
-/// Whether what momentum lacks is within the tolerance: node by node, and all together, also while a contact is only near: what a body does between touches, it touches with.
+/// Whether what momentum lacks is within the tolerance: node by node, and all together, also while a contact is only near,
+/// since the next touch is with what a body did before it.
 bool IterativePredictorCorrector::balanced(const MomentumDefect& met, const ContactSolution& solution) const {
-  const ImpulseSize pressed = sizeOf(solution.impulses);
-  return met.norm_n_s <= options_.tolerance * (load_scale_ + pressed.norm) &&
-         met.net_n_s <= kNetShare * options_.tolerance * (load_scale_ + pressed.sum);
+  return met.norm_n_s <= options_.tolerance * (load_scale_ + impulseNorm(solution.impulses)) &&
+         met.net_n_s <= kNetShare * options_.tolerance * (load_scale_ + impulseSum(solution.impulses));
 }
 
 /// At most contact_passes passes over the contacts, fewer once they settle.

@@ -180,7 +180,18 @@ TEST(MixedSweeps, KnowThisProblemAlone) {
 }
 
 /// Adds a body with its contacts at the end of a problem.
-void append(const PressedBlock& from, ContactProblem& problem, ContactSolution& solution);
+void append(const PressedBlock& from, ContactProblem& problem, ContactSolution& solution) {
+  const int body = static_cast<int>(problem.bodies.size());
+  problem.dt_s = from.problem.dt_s;
+  problem.bodies.push_back(from.problem.bodies[0]);
+  solution.v.push_back(from.solution.v[0]);
+  for (ContactRow row : from.problem.contacts) {
+    for (int a = 0; a < row.node_count; ++a) row.nodes[a].body = body;
+    problem.contacts.push_back(row);
+  }
+  solution.impulses.insert(solution.impulses.end(), from.solution.impulses.begin(), from.solution.impulses.end());
+  solution.states.insert(solution.states.end(), from.solution.states.begin(), from.solution.states.end());
+}
 
 /// Two blocks that lack the same the opposite way: of those that something presses magnitudes are added.
 TEST(Residuals, TheNetDefectIsThatOfEachBodyThatIsPressed) {
@@ -218,19 +229,6 @@ TEST(Residuals, WhatNodesLackTogetherIsWithinTheToleranceAtTheEnd) {
     for (const Vector3& impulse : scene.solution.impulses) pressed += impulse.norm();
     EXPECT_LT(residualsOf(scene).net_defect_n_s, 0.02 * pressed) << relaxationName(relaxation);
   }
-}
-
-void append(const PressedBlock& from, ContactProblem& problem, ContactSolution& solution) {
-  const int body = static_cast<int>(problem.bodies.size());
-  problem.dt_s = from.problem.dt_s;
-  problem.bodies.push_back(from.problem.bodies[0]);
-  solution.v.push_back(from.solution.v[0]);
-  for (ContactRow row : from.problem.contacts) {
-    for (int a = 0; a < row.node_count; ++a) row.nodes[a].body = body;
-    problem.contacts.push_back(row);
-  }
-  solution.impulses.insert(solution.impulses.end(), from.solution.impulses.begin(), from.solution.impulses.end());
-  solution.states.insert(solution.states.end(), from.solution.states.begin(), from.solution.states.end());
 }
 
 /// A contact between two bodies.
