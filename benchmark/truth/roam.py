@@ -41,9 +41,9 @@ class Scene:
 # settings: (refinement, tolerance)
 SCENES = {
     "ball": Scene(0.005, (0.1, 0.1, 0.04), (10, 10, 4), 0.1, 0.2,
-                  [("never", "1e-2"), ("auto", "1e-2"), ("auto", "1e-3"), ("fine", "1e-2"), ("fine", "1e-3")]),
+                  [("never", "1e-2"), ("auto", "3e-2"), ("auto", "1e-2"), ("auto", "1e-3"), ("fine", "1e-2"), ("fine", "1e-3")]),
     "small-tool": Scene(0.001, (0.2, 0.2, 0.05), (20, 20, 5), 0.02, 0.06,
-                        [("never", "1e-2"), ("auto", "1e-2"), ("auto", "1e-3"), ("fine", "1e-2"), ("fine", "1e-3")]),
+                        [("never", "1e-2"), ("auto", "3e-2"), ("auto", "1e-2"), ("auto", "1e-3"), ("fine", "1e-2"), ("fine", "1e-3")]),
 }
 
 
