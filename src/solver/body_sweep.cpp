@@ -168,6 +168,7 @@ void BodySweep::prepare(const BodySystem& body) {
   lower_.resize(static_cast<std::size_t>(body.K->rows()));
   v_.resize(lower_.size());
   prepareSlices();
+  deflation_.prepare(body);
   invertAll(diagonal_, free_, inverse_);
 }
 
@@ -209,15 +210,18 @@ void BodySweep::addImpulse(int node, const Vector3& impulse_W) {
   for (std::size_t r = 0; r < 3; ++r) right_[place / kLanes].at[r][place % kLanes] += impulse_W.data()[r];
 }
 
-void BodySweep::follow(int node, const Vector3& change) {
-  const auto add = [&](const BlockMatrix& matrix, double scale) {
-    const Vector3 scaled = scale * change;
-    matrix.pattern->forRow(node, [&](int j, int place) {
-      if (j > node) vectorOf(lower_[j]) += matrix.block(place).transpose() * scaled;  // A is symmetric
-    });
-  };
-  add(*body_->K, body_->stiffness_scale);
-  if (body_->D != nullptr) add(*body_->D, body_->damping_scale);
+void BodySweep::follow(int node, const Vector3& change) { deflation_.follow(node, change, lower_); }
+
+void BodySweep::deflate(NodalVectors& v) {
+  pad(v, v_);
+  deflation_.correct(v_, lower_);
+  unpad(v_, v);
+}
+
+void BodySweep::finish(bool forth, const NodalVectors& v) {
+  if (!forth) return deflation_.finish(lower_);
+  pad(v, v_);
+  deflation_.finish(v_, lower_);
 }
 
 DefectsMet BodySweep::forth(int begin, int end) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/slice_product.h"
+#include "solver/deflation.h"
 #include "tissue_contact/solver/contact_problem.h"
 
 namespace tissue_contact {
@@ -35,7 +36,13 @@ class BodySweep {
   void prepare(const BodySystem& body);
 
   /// Begins a step in which the body sleeps: none of its nodes moves, and impulses on it are not kept.
-  void rest() { body_ = nullptr; }
+  void rest() {
+    body_ = nullptr;
+    deflation_.forget();
+  }
+
+  /// Forgets what it has learnt in earlier steps.
+  void forget() { deflation_.forget(); }
 
   /// P_i^-1 of a node, 1/kg; 0 if it does not move.
   Matrix3 inverse(int node) const;
@@ -43,8 +50,17 @@ class BodySweep {
   /// Adds to J'lambda of a node, N s.
   void addImpulse(int node, const Vector3& impulse_W);
 
+  /// A node that contacts may move, before any follows: deflation leaves it alone in this step.
+  void exclude(int node) { deflation_.exclude(node); }
+
   /// A contact has moved a node by `change` (m/s) since the sweep forth.
   void follow(int node, const Vector3& change);
+
+  /// Between a sweep forth and the sweep back, with what contacts moved followed: v goes where earlier steps say it is slow to go (Deflation).
+  void deflate(NodalVectors& v);
+
+  /// Ends a step. @param forth the last sweep was one forth, and what contacts moved since is followed.
+  void finish(bool forth, const NodalVectors& v);
 
   /// @param v 3 x nodes, m/s.
   /// @param held what BlockPattern::lane_of gives for the nodes that a contact may hold, ascending.
@@ -53,6 +69,7 @@ class BodySweep {
   DefectsMet sweep(bool forward, const std::vector<int>& held, NodalVectors& v, const Hold& hold) {
     if (forward) std::fill(lower_.begin(), lower_.end(), PaddedVector{});
     pad(v, v_);
+    if (forward) deflation_.beginForth(v_);
     const int slices = pattern().slices();
     int begin = 0;  // of what is left
     int end = slices;
@@ -104,7 +121,8 @@ class BodySweep {
   std::vector<std::array<double, kLanes>> free_;  ///< 1 for a row that is free, else 0
   std::vector<unsigned char> moves_;              ///< some row of the slice is free
   PaddedVectors lower_;                           ///< sum_{j<i} A_ij v_j after the sweep forth, N s
-  PaddedVectors v_;                               ///< scratch: what a sweep works on, m/s
+  Deflation deflation_;
+  PaddedVectors v_;  ///< scratch: what a sweep works on, m/s
 };
 
 }  // namespace tissue_contact

@@ -38,12 +38,17 @@ class GaussSeidelRelaxation : public Relaxation {
   MomentumDefect relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                        ContactSolution& solution) override;
   void contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
+  void finish(const ContactProblem& problem, ContactSolution& solution) override;
+  void reset() override {
+    for (BodySweep& body : bodies_) body.forget();
+  }
 
  private:
   void prepareBodies(const ContactProblem& problem);
   void prepareContacts(const ContactProblem& problem, ContactSolution& solution);
   void findNodeContacts(const ContactProblem& problem);
   void findTouched(const ContactProblem& problem);
+  void deflate(const ContactProblem& problem, int iteration, std::vector<NodalVectors>& v);
   void followTouched(const ContactProblem& problem, const std::vector<NodalVectors>& v);
   bool contactsActOn(int body) const;
   void findHeld(const ContactProblem& problem, int body);
@@ -56,6 +61,7 @@ class GaussSeidelRelaxation : public Relaxation {
   void mix(std::vector<NodalVectors>& v);
 
   std::vector<BodySweep> bodies_;
+  bool forward_ = false;  ///< the last sweep was one forth
   struct Touched {
     int body;
     int node;
@@ -157,6 +163,23 @@ void GaussSeidelRelaxation::followTouched(const ContactProblem& problem, const s
   }
 }
 
+void GaussSeidelRelaxation::deflate(const ContactProblem& problem, int iteration, std::vector<NodalVectors>& v) {
+  for (const Touched& at : touched_) {
+    if (iteration == 1 && !problem.bodies[at.body].asleep) bodies_[at.body].exclude(at.node);
+  }
+  followTouched(problem, v);
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (!problem.bodies[k].asleep) bodies_[k].deflate(v[k]);
+  }
+}
+
+void GaussSeidelRelaxation::finish(const ContactProblem& problem, ContactSolution& solution) {
+  if (forward_) followTouched(problem, solution.v);
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (!problem.bodies[k].asleep) bodies_[k].finish(forward_, solution.v[k]);
+  }
+}
+
 /// A node whose own contact is static is projected at once: its tangential velocity becomes the tool's, its impulse the
 /// reaction. A reaction that leaves the limit releases the node.
 /// @return it was projected.
@@ -190,7 +213,8 @@ MomentumDefect GaussSeidelRelaxation::relax(const ContactProblem& problem, int i
   const bool forward = iteration % 2 == 0;
   if (iteration == kPlainIterations) beginMixing(problem, solution.v);
   if (forward && iteration > kPlainIterations) mix(solution.v);
-  if (!forward) followTouched(problem, solution.v);
+  if (!forward) deflate(problem, iteration, solution.v);
+  forward_ = forward;
   MomentumDefect met;
   double squared = 0.0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {

@@ -20,7 +20,7 @@ void noteDefaults(const std::string& name, PadScene scene, Report& report) {
   Report found;
   run.report(name, {}, found);
   report.require(name + ": finite, no step discarded", run.finite(), "stability");
-  report.atLeast(name + ": steps whose status says 'missed'", "", 1000, static_cast<double>(missed),
+  report.atLeast(name + ": steps whose status says 'missed'", "", 500, static_cast<double>(missed),
                  "a wrong answer is not silent");
   for (const std::string& note : found.notes()) report.note(note);
   for (const Check& check : found.checks()) {

@@ -212,5 +212,114 @@ TEST(BodySweep, BeginsAnew) {
   }
 }
 
+const auto kHoldsNothing = [](int /*node*/) { return false; };
+
+/// A step of three pairs of sweeps, without contacts.
+void takeStep(const BodySystem& body, BodySweep& sweeps, NodalVectors& v) {
+  sweeps.prepare(body);
+  for (int pair = 0; pair < 3; ++pair) {
+    sweeps.sweep(true, {}, v, kHoldsNothing);
+    sweeps.deflate(v);
+    sweeps.sweep(false, {}, v, kHoldsNothing);
+  }
+  sweeps.finish(false, v);
+}
+
+/// The first sweep forth of a step after that, whose contacts may move nodes 3 and 20, and move 3.
+/// @return how deflation moves the nodes; zero at those.
+NodalVectors deflated(const BodySystem& body, BodySweep& sweeps, NodalVectors& v) {
+  sweeps.prepare(body);
+  sweeps.sweep(true, {}, v, kHoldsNothing);
+  sweeps.exclude(3);
+  sweeps.exclude(20);
+  const Vector3 moved(0.01, -0.02, 0.03);
+  v.col(3) += moved;
+  sweeps.follow(3, moved);
+  const NodalVectors before = v;
+  sweeps.deflate(v);
+  const NodalVectors way = v - before;
+  EXPECT_EQ(Vector3(way.col(3)), Vector3::Zero());
+  EXPECT_EQ(Vector3(way.col(20)), Vector3::Zero());
+  return way;
+}
+
+/// way'(b - A v) by the textbook's product, J.
+double workLeft(const BodySystem& body, const NodalVectors& way, const NodalVectors& v) {
+  double work = 0.0;
+  const auto product = [&](const BlockMatrix& matrix, int i) {
+    return Vector3(matrix.diagonal[i] * v.col(i) + matrix.offDiagonalProduct(i, v));
+  };
+  for (int i = 0; i < body.K->rows(); ++i) {
+    Vector3 defect = body.b.col(i) - body.mass[i] * v.col(i) - body.stiffness_scale * product(*body.K, i);
+    if (body.D != nullptr) defect -= body.damping_scale * product(*body.D, i);
+    work += way.col(i).dot(defect);
+  }
+  return work;
+}
+
+/// In a step with other loads, without damping of its own also of another length, and with one more node that does not move.
+TEST(BodySweep, DeflationGoesToWhereTheEnergyIsLeast) {
+  for (const bool damped : {false, true}) {
+    RandomBody body(30, 0.2, {0, 7}, {}, damped);
+    BodySweep sweeps;
+    NodalVectors v = NodalVectors::Zero(3, 30);
+    takeStep(body.system, sweeps, v);
+    for (int i = 0; i < 30; ++i) {
+      if (!body.fixed[i]) body.system.b.col(i) = body.randomVector();
+    }
+    if (!damped) body.system.stiffness_scale *= 1.7;
+    body.fixed[11] = true;
+    v.col(11).setZero();
+    const NodalVectors way = deflated(body.system, sweeps, v);
+    EXPECT_EQ(Vector3(way.col(11)), Vector3::Zero());
+    ASSERT_GT(way.norm(), 1e-3 * v.norm());
+    // Round-off of sums of some hundred terms.
+    EXPECT_LE(std::abs(workLeft(body.system, way, v)), 1e-13 * way.norm() * body.system.b.norm()) << damped;
+    NodalVectors expected = v;
+    plainSweep(body.system, NodalVectors::Zero(3, 30), false, std::vector<bool>(30, false), {}, expected);
+    sweeps.sweep(false, {}, v, kHoldsNothing);
+    EXPECT_LE((v - expected).norm(), 1e-14 * expected.norm()) << damped;
+  }
+}
+
+/// What is not known of the step's system moves nothing.
+TEST(BodySweep, DeflationForgets) {
+  const auto wayAfter = [](bool damped, const std::function<void(RandomBody&, BodySweep&)>& between) {
+    RandomBody body(30, 0.2, {0, 7}, {}, damped);
+    BodySweep sweeps;
+    NodalVectors v = NodalVectors::Zero(3, 30);
+    takeStep(body.system, sweeps, v);
+    body.system.b *= 2.0;
+    between(body, sweeps);
+    return deflated(body.system, sweeps, v).norm();
+  };
+  EXPECT_GT(wayAfter(true, [](RandomBody&, BodySweep&) {}), 0.0);
+  EXPECT_EQ(wayAfter(true, [](RandomBody& body, BodySweep&) { body.system.damping_scale *= 1.5; }), 0.0);
+  EXPECT_EQ(wayAfter(false, [](RandomBody&, BodySweep& sweeps) { sweeps.forget(); }), 0.0);
+  EXPECT_EQ(wayAfter(false, [](RandomBody&, BodySweep& sweeps) { sweeps.rest(); }), 0.0);
+  RandomBody other(30, 0.3, {}, {}, false);
+  EXPECT_EQ(wayAfter(false, [&](RandomBody& body, BodySweep&) { body.system = other.system; }), 0.0);
+}
+
+/// Where more is to be gained than by the first correction of the step, as where u leads away, it is left.
+TEST(BodySweep, DeflationThatGainsMoreEachTimeIsLeft) {
+  RandomBody body(30, 0.2, {0, 7}, {}, false);
+  BodySweep sweeps;
+  NodalVectors v = NodalVectors::Zero(3, 30);
+  takeStep(body.system, sweeps, v);
+  sweeps.prepare(body.system);
+  std::array<double, 2> ways{};
+  for (double& way : ways) {
+    sweeps.sweep(true, {}, v, kHoldsNothing);
+    const NodalVectors before = v;
+    sweeps.deflate(v);
+    way = (v - before).norm();
+    sweeps.sweep(false, {}, v, kHoldsNothing);
+    for (int i = 0; i < 30; ++i) sweeps.addImpulse(i, 100.0 * body.system.b.col(i));
+  }
+  EXPECT_GT(ways[0], 0.0);
+  EXPECT_EQ(ways[1], 0.0);
+}
+
 }  // namespace
 }  // namespace tissue_contact
