@@ -33,7 +33,7 @@ void JointStatePlayer::forgetSamples() {
   epoch_ = 0;
 }
 
-const char* JointStatePlayer::stateTitle() { return "tissue_contact state 3"; }
+const char* JointStatePlayer::stateTitle() { return "tissue_contact state 4"; }
 
 std::string JointStatePlayer::saveState() {
   StateArchive archive(stateTitle());

@@ -132,6 +132,29 @@ void runCarry(const Work& all, int slice) {
   all.body.D != nullptr ? carry<true>(all, slice) : carry<false>(all, slice);
 }
 
+/// Makes lower = L v, with L: A below the diagonal. @return v'D v, with D: the diagonal blocks of A.
+template <bool kDamped>
+TISSUE_CONTACT_INLINE double lowerProduct(const Work& all, const std::vector<unsigned char>& moves) {
+  Lanes total = {0.0, 0.0, 0.0, 0.0};
+  for (int slice = 0; slice < all.body.K->pattern->slices(); ++slice) {
+    if (moves[slice] == 0) continue;
+    carry<kDamped>(all, slice);
+    LaneVectors v;
+    gather(all.v, rowsOf(*all.body.K->pattern, slice), v);
+    LaneVectors own{};
+    addProduct(all.diagonal[slice], v, own);
+    Lanes free;
+    load(all.free[slice].data(), free);
+    total += free * (v[0] * own[0] + v[1] * own[1] + v[2] * own[2]);
+  }
+  return sum(total);
+}
+
+TISSUE_CONTACT_CLONES
+double runLowerProduct(const Work& all, const std::vector<unsigned char>& moves) {
+  return all.body.D != nullptr ? lowerProduct<true>(all, moves) : lowerProduct<false>(all, moves);
+}
+
 /// In closed form: cofactors over the determinant.
 TISSUE_CONTACT_INLINE void invert(const SymmetricBlocks& blocks, const double* free, SymmetricBlocks& inverse) {
   Lanes m[6], by;
@@ -168,7 +191,7 @@ void BodySweep::prepare(const BodySystem& body) {
   lower_.resize(static_cast<std::size_t>(body.K->rows()));
   v_.resize(lower_.size());
   prepareSlices();
-  deflation_.prepare(body);
+  deflation_.beginStep(v_.size());
   invertAll(diagonal_, free_, inverse_);
 }
 
@@ -210,18 +233,49 @@ void BodySweep::addImpulse(int node, const Vector3& impulse_W) {
   for (std::size_t r = 0; r < 3; ++r) right_[place / kLanes].at[r][place % kLanes] += impulse_W.data()[r];
 }
 
-void BodySweep::follow(int node, const Vector3& change) { deflation_.follow(node, change, lower_); }
+void BodySweep::follow(int node, const Vector3& change) {
+  const auto add = [&](const BlockMatrix& matrix, double scale) {
+    const Vector3 scaled = scale * change;
+    matrix.pattern->forRow(node, [&](int j, int place) {
+      if (j <= node) return;
+      const Vector3 added = matrix.block(place).transpose() * scaled;  // A is symmetric
+      vectorOf(lower_[j]) += added;
+      deflation_.follow(j, added);
+    });
+  };
+  add(*body_->K, body_->stiffness_scale);
+  if (body_->D != nullptr) add(*body_->D, body_->damping_scale);
+}
+
+void BodySweep::beginDeflation(const NodalVectors& u, const std::vector<int>& excluded) {
+  if (u.cols() != body_->K->rows()) return;
+  deflation_.beginAlong(u, *body_->fixed);
+  for (const int node : excluded) deflation_.exclude(node);
+  deflation_.measure([this](PaddedVectors& along, PaddedVectors& lower) { return measure(along, lower); });
+}
+
+Deflation::Products BodySweep::measure(PaddedVectors& u, PaddedVectors& lower) const {
+  std::fill(lower.begin(), lower.end(), PaddedVector{});
+  Deflation::Products found;
+  found.energy = runLowerProduct({*body_, diagonal_, inverse_, right_, free_, lower.data(), u.data()}, moves_);
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const Vector3 at = vectorOf(u[i]);
+    found.energy += 2.0 * at.dot(vectorOf(lower[i]));
+    found.inertia += body_->mass[static_cast<Eigen::Index>(i)] * at.squaredNorm();
+  }
+  return found;
+}
 
 void BodySweep::deflate(NodalVectors& v) {
   pad(v, v_);
   deflation_.correct(v_, lower_);
-  unpad(v_, v);
+  if (deflation_.hasAlong()) unpad(v_, v);
 }
 
-void BodySweep::finish(bool forth, const NodalVectors& v) {
-  if (!forth) return deflation_.finish(lower_);
+void BodySweep::finish(bool forth, const NodalVectors& v, NodalVectors& u) {
+  if (!forth) return deflation_.finish(u);
   pad(v, v_);
-  deflation_.finish(v_, lower_);
+  deflation_.finish(v_, u);
 }
 
 DefectsMet BodySweep::forth(int begin, int end) {

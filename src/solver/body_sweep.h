@@ -36,13 +36,7 @@ class BodySweep {
   void prepare(const BodySystem& body);
 
   /// Begins a step in which the body sleeps: none of its nodes moves, and impulses on it are not kept.
-  void rest() {
-    body_ = nullptr;
-    deflation_.forget();
-  }
-
-  /// Forgets what it has learnt in earlier steps.
-  void forget() { deflation_.forget(); }
+  void rest() { body_ = nullptr; }
 
   /// P_i^-1 of a node, 1/kg; 0 if it does not move.
   Matrix3 inverse(int node) const;
@@ -50,17 +44,19 @@ class BodySweep {
   /// Adds to J'lambda of a node, N s.
   void addImpulse(int node, const Vector3& impulse_W);
 
-  /// A node that contacts may move, before any follows: deflation leaves it alone in this step.
-  void exclude(int node) { deflation_.exclude(node); }
+  /// After the first sweep forth of a step, before anything follows: along what to go in deflate(), 3 x nodes, m/s; nothing of another
+  /// size. @param excluded nodes that contacts may move.
+  void beginDeflation(const NodalVectors& u, const std::vector<int>& excluded);
 
   /// A contact has moved a node by `change` (m/s) since the sweep forth.
   void follow(int node, const Vector3& change);
 
-  /// Between a sweep forth and the sweep back, with what contacts moved followed: v goes where earlier steps say it is slow to go (Deflation).
+  /// Between a sweep forth and the sweep back, with what contacts moved followed (Deflation). @param v m/s.
   void deflate(NodalVectors& v);
 
-  /// Ends a step. @param forth the last sweep was one forth, and what contacts moved since is followed.
-  void finish(bool forth, const NodalVectors& v);
+  /// Ends a step. @param forth the last sweep was one forth; what contacts moved since counts as found by it.
+  /// @param u becomes what the step was slow to find, m/s.
+  void finish(bool forth, const NodalVectors& v, NodalVectors& u);
 
   /// @param v 3 x nodes, m/s.
   /// @param held what BlockPattern::lane_of gives for the nodes that a contact may hold, ascending.
@@ -109,6 +105,7 @@ class BodySweep {
 
   const BlockPattern& pattern() const { return *body_->K->pattern; }
   void prepareSlices();
+  Deflation::Products measure(PaddedVectors& u, PaddedVectors& lower) const;
   DefectsMet forth(int begin, int end);
   DefectsMet back(int begin, int end);
   SliceDefects relaxSlice(int slice);

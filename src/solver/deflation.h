@@ -1,77 +1,78 @@
 /// @file
-/// Room `solver`, private: deflation of the sweeps over one body's nodes. What sweeps are slow to find they were slow to find in the step
-/// before: that change of the velocities, u, is kept, and between a sweep forth and the sweep back v goes along it to where the energy
-/// v'A v / 2 - (b + J'lambda)'v is least.
+/// Room `solver`, private: deflation of the sweeps over one body's nodes, a coarse correction on one vector that is kept from step to step.
+/// What sweeps are slow to find they were slow to find in the step before: that change of the velocities, u, is kept, and between a sweep
+/// forth and the sweep back v goes along it to where the energy v'A v / 2 - (b + J'lambda)'v is least.
 ///
 /// Nicolaides, "Deflation of Conjugate Gradients with Applications to Boundary Value Problems", SIAM J. Numer. Anal. 24 (1987) 355-365;
 /// vectors kept from one system to the next: Parks et al., "Recycling Krylov Subspaces for Sequences of Linear Systems", SIAM J. Sci.
 /// Comput. 28 (2006) 1651-1674. Figures, and what was tried: doc/method.md.
 #pragma once
 
-#include <memory>
+#include <vector>
 
 #include "core/padded_vectors.h"
-#include "tissue_contact/solver/contact_problem.h"
 
 namespace tissue_contact {
 
-/// Takes no product with A: a sweep forth makes sum_{j<i} A_ij v_j of every node i (`lower` below), so of u, a difference of two of its
-/// results, L u is known, L being A below the diagonal. A sweep forth from v0 to v leaves the defect -L'(v - v0), since each row was
-/// in balance when its turn came; hence u'(b + J'lambda - A v) = -(L u)'(v - v0).
+/// With L, A below the diagonal: a sweep forth from v0 to v leaves the defect -L'(v - v0), since each row was in balance when its turn
+/// came; so u'(b + J'lambda - A v) = -(L u)'(v - v0), and L u, half a product with A in each step, is all it takes.
 ///
-/// Nodes that contacts may move have no part in it. They stay where contacts have them, so no contact changes its state by it. L u is
-/// that of the A of its step; where A has changed since, v goes a little too far or not far enough, and the next sweeps see to that.
+/// Nodes that contacts may move have no part in it. They stay where contacts have them, so no contact changes its state by it.
 class Deflation {
  public:
-  void forget() { kept_ = false; }
+  /// What is known of u in a step.
+  struct Products {
+    double energy = 0.0;   ///< u'A u, J
+    double inertia = 0.0;  ///< u'M u, J
+  };
 
-  /// Begins a step. Allocates only for a body of another size than before.
-  void prepare(const BodySystem& body);
-
-  /// A node that a contact may move in this step; before the first follow().
-  void exclude(int node);
+  /// Begins a step. Allocates only for another number of nodes than before.
+  void beginStep(std::size_t nodes);
 
   /// A sweep forth begins. @param v m/s.
   void beginForth(const PaddedVectors& v);
 
-  /// A contact has moved a node by `change` (m/s) since the sweep forth: adds to `lower` what that makes of the nodes after it.
-  void follow(int node, const Vector3& change, PaddedVectors& lower);
+  /// Between the first sweep forth of a step and what follows it, where there is a u (m/s).
+  void beginAlong(const NodalVectors& u, const std::vector<bool>& fixed);
+  void exclude(int node) { u_[static_cast<std::size_t>(node)] = {}; }
+  /// @param measure given u, makes L u (N s), and returns its products.
+  template <class Measure>
+  void measure(const Measure& measure) {
+    const Products found = measure(u_, lower_);
+    // What is at rest has no way to go, and what K, which may be indefinite, takes the energy from leads nowhere.
+    along_ = found.inertia > 0.0 && found.energy >= kLeastEnergy * found.inertia;
+    energy_ = found.energy;
+  }
 
-  /// Between a sweep forth, with what contacts moved followed, and the sweep back. Moves v and `lower` (N s) along.
+  /// A contact has moved a node since the sweep forth, which changes L v of node j by `added`, N s.
+  void follow(int j, const Vector3& added) {
+    if (along_) followed_ += added.dot(vectorOf(u_[static_cast<std::size_t>(j)]));
+  }
+
+  /// With what contacts moved followed. Moves v (m/s) and `lower`, L v (N s), along u.
   void correct(PaddedVectors& v, PaddedVectors& lower);
 
-  /// Ends a step: what was found since its first sweep forth is kept.
-  /// @param v as the last sweep forth and what followed it left it, before any sweep back. @param lower of that v.
-  void finish(const PaddedVectors& v, const PaddedVectors& lower);
+  bool isFirst() const { return forths_ == 1; }  ///< sweep forth of this step
+  bool hasAlong() const { return along_; }
+
+  /// Ends a step. @param u becomes what was found since its first sweep forth; left as it is where that was all.
+  /// @param v as the last sweep forth and what followed it left it, before any sweep back.
+  void finish(const PaddedVectors& v, NodalVectors& u) const;
   /// The same where a sweep back came last.
-  void finish(const PaddedVectors& lower) { finish(begun_, lower); }
+  void finish(NodalVectors& u) const { finish(begun_, u); }
 
  private:
-  void goAlong(PaddedVectors& v, PaddedVectors& lower);
-  void rescale();
-  void clear(int node);
-  double dampingScale() const { return body_->D != nullptr ? body_->damping_scale : 0.0; }
-  Matrix3 diagonal(int node) const;
-  template <class Use>
-  void forFollowers(int node, const Use& use) const;
+  /// Of what mass alone has of it; all of it where K has no negative eigenvalues.
+  static constexpr double kLeastEnergy = 0.5;
 
-  const BodySystem* body_ = nullptr;
-  std::shared_ptr<const BlockPattern> pattern_;  ///< of the body that u belongs to
-  double stiffness_scale_ = 0.0;                 ///< of L u
-  double damping_scale_ = 0.0;
-
-  bool kept_ = false;     ///< there is a u
-  PaddedVectors u_;       ///< m/s; 0 at nodes that are excluded or do not move
-  PaddedVectors lower_;   ///< L u, N s
-  double energy_ = 0.0;   ///< u'A u, J
-  double inertia_ = 0.0;  ///< what mass has in it, J
-
-  int forths_ = 0;             ///< sweeps forth in this step
-  PaddedVectors first_;        ///< what the first of them led to
-  PaddedVectors first_lower_;  ///< and its sums
-  PaddedVectors begun_;        ///< where the last one began; from correct() on, where it led
-  double most_gained_ = 0.0;   ///< by the first correction of this step, J
-  double followed_ = 0.0;      ///< u'L of what followed it, J
+  bool along_ = false;     ///< there is a u
+  PaddedVectors u_;        ///< m/s; 0 at nodes that are excluded or do not move
+  PaddedVectors lower_;    ///< L u, N s
+  double energy_ = 0.0;    ///< u'A u, J
+  int forths_ = 0;         ///< sweeps forth in this step
+  PaddedVectors first_;    ///< what the first of them led to
+  PaddedVectors begun_;    ///< where the last one began; from correct() on, where it led
+  double followed_ = 0.0;  ///< u'L of what followed it, J
 };
 
 }  // namespace tissue_contact

@@ -39,16 +39,14 @@ class GaussSeidelRelaxation : public Relaxation {
                        ContactSolution& solution) override;
   void contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
   void finish(const ContactProblem& problem, ContactSolution& solution) override;
-  void reset() override {
-    for (BodySweep& body : bodies_) body.forget();
-  }
 
  private:
   void prepareBodies(const ContactProblem& problem);
   void prepareContacts(const ContactProblem& problem, ContactSolution& solution);
   void findNodeContacts(const ContactProblem& problem);
   void findTouched(const ContactProblem& problem);
-  void deflate(const ContactProblem& problem, int iteration, std::vector<NodalVectors>& v);
+  void beginDeflation(const ContactProblem& problem, ContactSolution& solution);
+  void deflate(const ContactProblem& problem, std::vector<NodalVectors>& v);
   void followTouched(const ContactProblem& problem, const std::vector<NodalVectors>& v);
   bool contactsActOn(int body) const;
   void findHeld(const ContactProblem& problem, int body);
@@ -71,6 +69,7 @@ class GaussSeidelRelaxation : public Relaxation {
   std::vector<Matrix3> W_;                      ///< W_P per contact, contact frame, 1/kg; W(0, 0) = 0: it cannot move
   std::vector<std::vector<int>> node_contact_;  ///< per body and node: the contact that alone holds it, else -1
   bool holding_ = false;                        ///< some node_contact_ is a contact
+  std::vector<int> excluded_;                   ///< scratch: nodes of a body that contacts may move
   std::vector<int> held_;                       ///< scratch: the lanes of a body's nodes with such a contact, ascending
   std::vector<int> partner_;                    ///< per body: one of its group that comes earlier; itself: the first
   std::vector<Mixture> mixtures_;               ///< per body; only the first of a group has bodies
@@ -163,20 +162,26 @@ void GaussSeidelRelaxation::followTouched(const ContactProblem& problem, const s
   }
 }
 
-void GaussSeidelRelaxation::deflate(const ContactProblem& problem, int iteration, std::vector<NodalVectors>& v) {
-  for (const Touched& at : touched_) {
-    if (iteration == 1 && !problem.bodies[at.body].asleep) bodies_[at.body].exclude(at.node);
+void GaussSeidelRelaxation::beginDeflation(const ContactProblem& problem, ContactSolution& solution) {
+  solution.slow_changes.resize(bodies_.size());
+  auto at = touched_.begin();
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    excluded_.clear();
+    for (; at != touched_.end() && at->body == static_cast<int>(k); ++at) excluded_.push_back(at->node);
+    if (!problem.bodies[k].asleep) bodies_[k].beginDeflation(solution.slow_changes[k], excluded_);
   }
-  followTouched(problem, v);
+}
+
+void GaussSeidelRelaxation::deflate(const ContactProblem& problem, std::vector<NodalVectors>& v) {
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     if (!problem.bodies[k].asleep) bodies_[k].deflate(v[k]);
   }
 }
 
 void GaussSeidelRelaxation::finish(const ContactProblem& problem, ContactSolution& solution) {
-  if (forward_) followTouched(problem, solution.v);
+  solution.slow_changes.resize(bodies_.size());
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    if (!problem.bodies[k].asleep) bodies_[k].finish(forward_, solution.v[k]);
+    if (!problem.bodies[k].asleep) bodies_[k].finish(forward_, solution.v[k], solution.slow_changes[k]);
   }
 }
 
@@ -213,7 +218,11 @@ MomentumDefect GaussSeidelRelaxation::relax(const ContactProblem& problem, int i
   const bool forward = iteration % 2 == 0;
   if (iteration == kPlainIterations) beginMixing(problem, solution.v);
   if (forward && iteration > kPlainIterations) mix(solution.v);
-  if (!forward) deflate(problem, iteration, solution.v);
+  if (iteration == 1) beginDeflation(problem, solution);
+  if (!forward) {
+    followTouched(problem, solution.v);
+    deflate(problem, solution.v);
+  }
   forward_ = forward;
   MomentumDefect met;
   double squared = 0.0;

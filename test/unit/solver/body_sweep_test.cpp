@@ -214,24 +214,12 @@ TEST(BodySweep, BeginsAnew) {
 
 const auto kHoldsNothing = [](int /*node*/) { return false; };
 
-/// A step of three pairs of sweeps, without contacts.
-void takeStep(const BodySystem& body, BodySweep& sweeps, NodalVectors& v) {
-  sweeps.prepare(body);
-  for (int pair = 0; pair < 3; ++pair) {
-    sweeps.sweep(true, {}, v, kHoldsNothing);
-    sweeps.deflate(v);
-    sweeps.sweep(false, {}, v, kHoldsNothing);
-  }
-  sweeps.finish(false, v);
-}
-
-/// The first sweep forth of a step after that, whose contacts may move nodes 3 and 20, and move 3.
+/// The first sweep forth of a step whose contacts may move nodes 3 and 20, and move 3; then along u.
 /// @return how deflation moves the nodes; zero at those.
-NodalVectors deflated(const BodySystem& body, BodySweep& sweeps, NodalVectors& v) {
+NodalVectors deflated(const BodySystem& body, const NodalVectors& u, BodySweep& sweeps, NodalVectors& v) {
   sweeps.prepare(body);
   sweeps.sweep(true, {}, v, kHoldsNothing);
-  sweeps.exclude(3);
-  sweeps.exclude(20);
+  sweeps.beginDeflation(u, {3, 20});
   const Vector3 moved(0.01, -0.02, 0.03);
   v.col(3) += moved;
   sweeps.follow(3, moved);
@@ -257,21 +245,20 @@ double workLeft(const BodySystem& body, const NodalVectors& way, const NodalVect
   return work;
 }
 
-/// In a step with other loads, without damping of its own also of another length, and with one more node that does not move.
+NodalVectors randomVectors(RandomBody& body) {
+  NodalVectors u = NodalVectors::Zero(3, body.K.rows());
+  for (int i = 0; i < body.K.rows(); ++i) u.col(i) = body.randomVector();
+  return u;
+}
+
+/// Along any u, of a body with fixed nodes; and the sweep back knows of it.
 TEST(BodySweep, DeflationGoesToWhereTheEnergyIsLeast) {
   for (const bool damped : {false, true}) {
-    RandomBody body(30, 0.2, {0, 7}, {}, damped);
+    RandomBody body(30, 0.2, {0, 7}, {11, 12}, damped);
     BodySweep sweeps;
     NodalVectors v = NodalVectors::Zero(3, 30);
-    takeStep(body.system, sweeps, v);
-    for (int i = 0; i < 30; ++i) {
-      if (!body.fixed[i]) body.system.b.col(i) = body.randomVector();
-    }
-    if (!damped) body.system.stiffness_scale *= 1.7;
-    body.fixed[11] = true;
-    v.col(11).setZero();
-    const NodalVectors way = deflated(body.system, sweeps, v);
-    EXPECT_EQ(Vector3(way.col(11)), Vector3::Zero());
+    const NodalVectors way = deflated(body.system, randomVectors(body), sweeps, v);
+    for (const int node : {0, 7, 11, 12}) EXPECT_EQ(Vector3(way.col(node)), Vector3::Zero());
     ASSERT_GT(way.norm(), 1e-3 * v.norm());
     // Round-off of sums of some hundred terms.
     EXPECT_LE(std::abs(workLeft(body.system, way, v)), 1e-13 * way.norm() * body.system.b.norm()) << damped;
@@ -282,43 +269,72 @@ TEST(BodySweep, DeflationGoesToWhereTheEnergyIsLeast) {
   }
 }
 
-/// What is not known of the step's system moves nothing.
-TEST(BodySweep, DeflationForgets) {
-  const auto wayAfter = [](bool damped, const std::function<void(RandomBody&, BodySweep&)>& between) {
-    RandomBody body(30, 0.2, {0, 7}, {}, damped);
-    BodySweep sweeps;
-    NodalVectors v = NodalVectors::Zero(3, 30);
-    takeStep(body.system, sweeps, v);
-    body.system.b *= 2.0;
-    between(body, sweeps);
-    return deflated(body.system, sweeps, v).norm();
-  };
-  EXPECT_GT(wayAfter(true, [](RandomBody&, BodySweep&) {}), 0.0);
-  EXPECT_EQ(wayAfter(true, [](RandomBody& body, BodySweep&) { body.system.damping_scale *= 1.5; }), 0.0);
-  EXPECT_EQ(wayAfter(false, [](RandomBody&, BodySweep& sweeps) { sweeps.forget(); }), 0.0);
-  EXPECT_EQ(wayAfter(false, [](RandomBody&, BodySweep& sweeps) { sweeps.rest(); }), 0.0);
-  RandomBody other(30, 0.3, {}, {}, false);
-  EXPECT_EQ(wayAfter(false, [&](RandomBody& body, BodySweep&) { body.system = other.system; }), 0.0);
+/// In a later pair of sweeps of the step as well, among nodes that contacts hold.
+TEST(BodySweep, DeflationGoesOnThroughTheStep) {
+  RandomBody body(30, 0.2, {0, 7}, {}, true);
+  BodySweep sweeps;
+  NodalVectors v = NodalVectors::Zero(3, 30);
+  deflated(body.system, randomVectors(body), sweeps, v);
+  sweeps.sweep(false, {}, v, kHoldsNothing);
+  const Vector3 held_at(0.1, -0.2, 0.01);
+  sweeps.sweep(true, {body.K.pattern->lane_of[20]}, v, [&](int node) {
+    v.col(node) = held_at;
+    return true;
+  });
+  const NodalVectors before = v;
+  sweeps.deflate(v);
+  const NodalVectors way = v - before;
+  EXPECT_EQ(Vector3(v.col(20)), held_at);
+  ASSERT_GT(way.norm(), 0.0);
+  EXPECT_LE(std::abs(workLeft(body.system, way, v)), 1e-13 * way.norm() * body.system.b.norm());
 }
 
-/// Where more is to be gained than by the first correction of the step, as where u leads away, it is left.
-TEST(BodySweep, DeflationThatGainsMoreEachTimeIsLeft) {
+/// Nothing known, of another mesh, all nodes where contacts may move them, none that moves, no number: all stay where they are.
+TEST(BodySweep, WithoutAWayDeflationMovesNothing) {
+  RandomBody body(30, 0.2, {0, 7}, {}, false);
+  std::vector<int> all(30);
+  for (int i = 0; i < 30; ++i) all[static_cast<std::size_t>(i)] = i;
+  const NodalVectors u = randomVectors(body);
+  const auto moves = [&](const NodalVectors& along, const std::vector<int>& excluded) {
+    BodySweep sweeps;
+    NodalVectors v = NodalVectors::Zero(3, 30);
+    sweeps.prepare(body.system);
+    sweeps.sweep(true, {}, v, kHoldsNothing);
+    sweeps.beginDeflation(along, excluded);
+    const NodalVectors before = v;
+    sweeps.deflate(v);
+    return v != before;
+  };
+  EXPECT_TRUE(moves(u, {}));
+  EXPECT_FALSE(moves(u, all));
+  EXPECT_FALSE(moves(NodalVectors(3, 0), {}));
+  EXPECT_FALSE(moves(u.leftCols(29), {}));
+  EXPECT_FALSE(moves(0.0 * u, {}));
+  EXPECT_FALSE(moves(std::nan("") * u, {}));
+}
+
+/// What sweeps found after the first one forth, with what moved between; where that is all, what was known stays.
+TEST(BodySweep, WhatIsKeptIsWhatTheFirstSweepForthDidNotFind) {
   RandomBody body(30, 0.2, {0, 7}, {}, false);
   BodySweep sweeps;
   NodalVectors v = NodalVectors::Zero(3, 30);
-  takeStep(body.system, sweeps, v);
+  const NodalVectors u = randomVectors(body);
+  NodalVectors kept = u;
   sweeps.prepare(body.system);
-  std::array<double, 2> ways{};
-  for (double& way : ways) {
-    sweeps.sweep(true, {}, v, kHoldsNothing);
-    const NodalVectors before = v;
-    sweeps.deflate(v);
-    way = (v - before).norm();
-    sweeps.sweep(false, {}, v, kHoldsNothing);
-    for (int i = 0; i < 30; ++i) sweeps.addImpulse(i, 100.0 * body.system.b.col(i));
-  }
-  EXPECT_GT(ways[0], 0.0);
-  EXPECT_EQ(ways[1], 0.0);
+  sweeps.sweep(true, {}, v, kHoldsNothing);
+  const NodalVectors first = v;
+  sweeps.deflate(v);
+  sweeps.finish(true, v, kept);
+  EXPECT_EQ(kept, u);
+  sweeps.sweep(false, {}, v, kHoldsNothing);
+  sweeps.sweep(true, {}, v, kHoldsNothing);
+  sweeps.finish(true, v, kept);
+  EXPECT_EQ(kept, NodalVectors(v - first));
+  const NodalVectors second = v;
+  sweeps.deflate(v);
+  sweeps.sweep(false, {}, v, kHoldsNothing);
+  sweeps.finish(false, v, kept);
+  EXPECT_EQ(kept, NodalVectors(second - first));
 }
 
 }  // namespace
