@@ -273,6 +273,7 @@ void BodySweep::deflate(NodalVectors& v) {
 }
 
 void BodySweep::finish(bool forth, const NodalVectors& v, NodalVectors& u) {
+  if (deflation_.isFirst()) return;  // that was all: nothing was found since
   if (!forth) return deflation_.finish(u);
   pad(v, v_);
   deflation_.finish(v_, u);

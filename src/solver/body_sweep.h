@@ -55,7 +55,7 @@ class BodySweep {
   void deflate(NodalVectors& v);
 
   /// Ends a step. @param forth the last sweep was one forth; what contacts moved since counts as found by it.
-  /// @param u becomes what the step was slow to find, m/s.
+  /// @param u becomes what the step was slow to find, m/s; stays as it is where one sweep forth was all.
   void finish(bool forth, const NodalVectors& v, NodalVectors& u);
 
   /// @param v 3 x nodes, m/s.

@@ -65,7 +65,6 @@ void Deflation::correct(PaddedVectors& v, PaddedVectors& lower) {
 }
 
 void Deflation::finish(const PaddedVectors& v, NodalVectors& u) const {
-  if (forths_ < 2) return;
   u.resize(3, static_cast<Eigen::Index>(v.size()));
   double* to = u.data();
   for (std::size_t i = 0; i < v.size(); ++i) {

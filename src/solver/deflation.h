@@ -55,7 +55,7 @@ class Deflation {
   bool isFirst() const { return forths_ == 1; }  ///< sweep forth of this step
   bool hasAlong() const { return along_; }
 
-  /// Ends a step. @param u becomes what was found since its first sweep forth; left as it is where that was all.
+  /// Ends a step of several sweeps forth. @param u becomes what was found since the first of them, m/s.
   /// @param v as the last sweep forth and what followed it left it, before any sweep back.
   void finish(const PaddedVectors& v, NodalVectors& u) const;
   /// The same where a sweep back came last.

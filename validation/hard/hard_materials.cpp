@@ -1,27 +1,35 @@
 /// Hard cases of the material: nearly incompressible tissue, and stiffness that changes a thousandfold within a mesh.
+#include <algorithm>
+
 #include "validation/hard/hard_cases.h"
 #include "validation/hard/hard_scene.h"
 
 namespace tissue_contact {
 namespace {
 
-/// What a run with the default settings, which are not for this scene, still owes: to stay finite, and to say that the
-/// tolerance was missed. The rest as a note.
+/// What a run with the default settings, which are not for this scene, still owes: to stay finite, and to say when the
+/// tolerance was missed (1919 of 2000 steps without deflation, some 900 with it). The rest as a note.
 void noteDefaults(const std::string& name, PadScene scene, Report& report) {
   scene.solver = "{}";
   Simulator simulator = makePad(scene);
   simulator.placeInstrument(0, PressDrag().at(0.0));
   HardRun run(simulator, 97);
   long missed = 0;
+  double silent = 0.0;  // the worst defect that is not said
   for (int k = 1; k <= 2000; ++k) {
     simulator.advance(scene.step_s, {PressDrag().at(k * scene.step_s)});
-    missed += simulator.report().stop == StopReason::kIterations;
+    if (simulator.report().stop == StopReason::kIterations) {
+      ++missed;
+    } else {
+      silent = std::max(silent, simulator.residuals().momentum_defect);
+    }
   }
   Report found;
   run.report(name, {}, found);
   report.require(name + ": finite, no step discarded", run.finite(), "stability");
   report.atLeast(name + ": steps whose status says 'missed'", "", 500, static_cast<double>(missed),
                  "a wrong answer is not silent");
+  report.atMost(name + ": momentum defect of the others", "", 0.02, silent, "a wrong answer is not silent");
   for (const std::string& note : found.notes()) report.note(note);
   for (const Check& check : found.checks()) {
     if (check.passed()) continue;

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <vector>
 
@@ -70,6 +71,24 @@ int iterationsOfTheSecondStep(bool forgets) {
 
 TEST(MixedSweeps, FindSoonerWhatTheStepBeforeWasSlowToFind) {
   EXPECT_LE(iterationsOfTheSecondStep(false), 0.5 * iterationsOfTheSecondStep(true));
+}
+
+/// Contacts that stick, slide and open come out alike along whatever a step begins with.
+TEST(MixedSweeps, DeflationChangesNoAnswer) {
+  PressedBlock plain(0.5, 0.03), along(0.5, 0.03);
+  const int nodes = along.problem.bodies[0].K->rows();
+  std::srand(3);
+  along.solution.slow_changes = {1e-3 * NodalVectors::Random(3, nodes)};
+  for (PressedBlock* scene : {&plain, &along}) {
+    const SolverReport report =
+        IterativePredictorCorrector(options(2000, 20, 1e-11)).solve(scene->problem, scene->solution);
+    ASSERT_EQ(report.stop, StopReason::kTolerance);
+  }
+  // The tolerance times what sweeps leave of a change, some hundred times as much.
+  EXPECT_LE((along.solution.v[0] - plain.solution.v[0]).norm(), 1e-8 * plain.solution.v[0].norm());
+  EXPECT_EQ(along.solution.states, plain.solution.states);
+  EXPECT_EQ(along.solution.slow_changes[0].cols(), nodes);
+  EXPECT_GT((along.solution.slow_changes[0] - plain.solution.slow_changes[0]).norm(), 0.0);
 }
 
 /// b - A v of a node, block by block.
