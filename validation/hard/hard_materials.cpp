@@ -21,7 +21,7 @@ void noteDefaults(const std::string& name, PadScene scene, Report& report) {
     if (simulator.report().stop == StopReason::kIterations) {
       ++missed;
     } else {
-      silent = std::max(silent, simulator.residuals().momentum_defect);
+      silent = std::max(silent, simulator.residuals().momentum);
     }
   }
   Report found;
