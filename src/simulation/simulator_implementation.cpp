@@ -30,16 +30,6 @@ std::vector<NodalVectors> restPositionsOf(const std::vector<Tissue>& tissues) {
   return positions;
 }
 
-/// Of a tissue: ContactSolution::slow_changes.
-void carrySlowChange(StateArchive& archive, int nodes, NodalVectors& change) {
-  bool known = change.cols() == nodes;
-  archive.carry(known);
-  if (archive.isReading()) change.resize(3, known ? nodes : 0);
-  if (!known) return;
-  archive.carry(change);
-  archive.check(change.allFinite(), "a change of velocity that is not finite");
-}
-
 void add(const Pose& pose, ContentHash& hash) { hash.add(pose.data(), sizeof(double) * 16); }
 
 /// Of where its links are at the start, and of its shapes as far as these are numbers of their own.
@@ -116,6 +106,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
   }
   near_m.resize(tissues.size());
   solution.v.resize(tissues.size());
+  for (const Tissue& tissue : tissues) solution.slow_changes.push_back(NodalVectors::Zero(3, tissue.nodeCount()));
   problem.bodies.resize(tissues.size());
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     moving.emplace_back(scene, tissues[t], x[t], solution.v[t], problem.bodies[t]);
@@ -140,7 +131,7 @@ void Simulator::Implementation::reset() {
   problem.contacts.clear();
   solution.impulses.clear();
   solution.states.clear();
-  solution.slow_changes.clear();
+  for (NodalVectors& change : solution.slow_changes) change.setZero();
   solver->reset();
   wrenches.assign(instruments.size(), Wrench());
   force_errors.reset();
@@ -164,11 +155,11 @@ void Simulator::Implementation::carry(StateArchive& archive) {
     archive.carry(wrenches[i].torque);
     archive.check(wrenches[i].force.allFinite() && wrenches[i].torque.allFinite(), "a force that is not finite");
   }
-  solution.slow_changes.resize(tissues.size());
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     archive.section("tissue '" + tissues[t].name() + "' in motion");
     moving[t].carry(archive);
-    carrySlowChange(archive, tissues[t].nodeCount(), solution.slow_changes[t]);
+    archive.carry(solution.slow_changes[t]);
+    archive.check(solution.slow_changes[t].allFinite(), "a change of velocity that is not finite");
   }
   archive.section("contacts");
   contacts.carry(archive, instruments);
@@ -285,9 +276,7 @@ void Simulator::Implementation::changeMesh(int tissue, ComingMesh& coming) {
   const NodeTransfer& transfer = *coming.next.transfer;
   x[tissue] = transfer.carried(x[tissue]);
   solution.v[tissue] = transfer.carried(solution.v[tissue]);
-  solution.slow_changes.resize(tissues.size());
-  NodalVectors& slow_change = solution.slow_changes[tissue];
-  if (slow_change.size() > 0) slow_change = transfer.carried(slow_change);
+  solution.slow_changes[tissue] = transfer.carried(solution.slow_changes[tissue]);
   takeMesh(tissue, coming, transfer.to_new);
 }
 
@@ -313,7 +302,7 @@ void Simulator::Implementation::restartMesh(int tissue) {
   makeParts(refinements[tissue]->tissue(), usersOf(tissue), coming);
   x[tissue] = coming.tissue->restPositions();
   solution.v[tissue].setZero(3, coming.tissue->nodeCount());
-  solution.slow_changes.clear();
+  solution.slow_changes[tissue].setZero(3, coming.tissue->nodeCount());
   takeMesh(tissue, coming, {});
 }
 
@@ -387,7 +376,7 @@ void Simulator::Implementation::moveTissues(double dt) {
   report.sleeping_nodes = 0;
   report.held_force_n = 0.0;
   for (MovingTissue& tissue : moving) tissue.stop();
-  solution.slow_changes.clear();
+  for (NodalVectors& change : solution.slow_changes) change.setZero();
   solver->reset();
   std::fill(solution.impulses.begin(), solution.impulses.end(), Vector3(0.0, 0.0, 0.0));
   std::fill(solution.states.begin(), solution.states.end(), ContactState::kOpen);

@@ -261,7 +261,9 @@ Deflation::Products BodySweep::measure(PaddedVectors& u, PaddedVectors& lower) c
   for (std::size_t i = 0; i < u.size(); ++i) {
     const Vector3 at = vectorOf(u[i]);
     found.energy += 2.0 * at.dot(vectorOf(lower[i]));
-    found.inertia += body_->mass[static_cast<Eigen::Index>(i)] * at.squaredNorm();
+    const double mass = body_->mass[static_cast<Eigen::Index>(i)];
+    found.inertia += mass * at.squaredNorm();
+    found.mass += mass;
   }
   return found;
 }

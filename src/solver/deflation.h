@@ -24,6 +24,7 @@ class Deflation {
   struct Products {
     double energy = 0.0;   ///< u'A u, J
     double inertia = 0.0;  ///< u'M u, J
+    double mass = 0.0;     ///< of all nodes, kg
   };
 
   /// Begins a step. Allocates only for another number of nodes than before.
@@ -39,8 +40,8 @@ class Deflation {
   template <class Measure>
   void measure(const Measure& measure) {
     const Products found = measure(u_, lower_);
-    // What is at rest has no way to go, and what K, which may be indefinite, takes the energy from leads nowhere.
-    along_ = found.inertia > 0.0 && found.energy >= kLeastEnergy * found.inertia;
+    // What is round-off has no way to go, and what K, which may be indefinite, takes the energy from leads nowhere.
+    along_ = found.inertia > kStill * kStill * found.mass && found.energy >= kLeastEnergy * found.inertia;
     energy_ = found.energy;
   }
 
@@ -62,6 +63,8 @@ class Deflation {
   void finish(NodalVectors& u) const { finish(begun_, u); }
 
  private:
+  static constexpr double kStill = 1e-9;  ///< m/s, as in loadScale()
+
   /// Of what mass alone has of it; all of it where K has no negative eigenvalues.
   static constexpr double kLeastEnergy = 0.5;
 
