@@ -80,6 +80,7 @@ bool TissueSleep::wakeHeld(const NodalVectors& loads, const NodalVectors& v, dou
                            std::vector<int>& woken) {
   woken.clear();
   if (allAsleep()) return false;
+  held_.reserve(still_.size());  // once for all
   held_.resize(sleepers_.size());
   for (std::size_t s = 0; s < sleepers_.size(); ++s) {
     const int node = sleepers_[s];
