@@ -248,7 +248,7 @@ void BodySweep::follow(int node, const Vector3& change) {
 }
 
 void BodySweep::beginDeflation(const NodalVectors& u, const std::vector<int>& excluded) {
-  if (u.cols() != body_->K->rows()) return;
+  if (u.cols() != body_->K->rows() || u.isZero(0.0)) return;
   deflation_.beginAlong(u, *body_->fixed);
   for (const int node : excluded) deflation_.exclude(node);
   deflation_.measure([this](PaddedVectors& along, PaddedVectors& lower) { return measure(along, lower); });

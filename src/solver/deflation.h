@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/padded_vectors.h"
+#include "solver/residual_measures.h"
 
 namespace tissue_contact {
 
@@ -41,7 +42,7 @@ class Deflation {
   void measure(const Measure& measure) {
     const Products found = measure(u_, lower_);
     // What is round-off has no way to go, and what K, which may be indefinite, takes the energy from leads nowhere.
-    along_ = found.inertia > kStill * kStill * found.mass && found.energy >= kLeastEnergy * found.inertia;
+    along_ = found.inertia > kStillSpeed * kStillSpeed * found.mass && found.energy >= kLeastEnergy * found.inertia;
     energy_ = found.energy;
   }
 
@@ -63,8 +64,6 @@ class Deflation {
   void finish(NodalVectors& u) const { finish(begun_, u); }
 
  private:
-  static constexpr double kStill = 1e-9;  ///< m/s, as in loadScale()
-
   /// Of what mass alone has of it; all of it where K has no negative eigenvalues.
   static constexpr double kLeastEnergy = 0.5;
 

@@ -1,5 +1,6 @@
 /// @file
-/// Room `solver`, private: how wrong a contact's impulse is, for the residuals of a step and of a Delassus problem.
+/// Room `solver`, private: how wrong a contact's impulse is, for the residuals of a step and of a Delassus problem, and what counts as
+/// moving.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +9,9 @@
 #include "tissue_contact/friction/friction_law.h"
 
 namespace tissue_contact {
+
+/// What moves no faster moves by round-off, m/s.
+constexpr double kStillSpeed = 1e-9;
 
 /// std::max would drop a NaN: a worst value that is not a number must stay visible.
 inline void worsen(double& worst, double value) {

@@ -99,7 +99,6 @@ double bodyDefect(const BodySystem& body, const NodalVectors& v, const NodalVect
 }
 
 double loadScale(const ContactProblem& problem) {
-  constexpr double kStill = 1e-9;  // m/s
   double load = 0.0;
   double mass = 0.0;
   for (const BodySystem& body : problem.bodies) {
@@ -107,7 +106,7 @@ double loadScale(const ContactProblem& problem) {
     load += body.b.squaredNorm();
     mass += body.mass.squaredNorm();
   }
-  return std::sqrt(load) + kStill * std::sqrt(mass);
+  return std::sqrt(load) + kStillSpeed * std::sqrt(mass);
 }
 
 Residuals computeResiduals(const ContactProblem& problem, const ContactSolution& solution,

@@ -315,6 +315,26 @@ TEST(BodySweep, WithoutAWayDeflationMovesNothing) {
   EXPECT_FALSE(moves(std::nan("") * u, {}));
 }
 
+/// Where K takes nearly all from the energy that mass has, its least is nowhere to go to.
+TEST(BodySweep, DeflationLeavesWhatHasNextToNoEnergy) {
+  for (const double left : {0.9, 0.1}) {
+    RandomBody body(30, 0.0, {}, {}, false);
+    for (int i = 0; i < 30; ++i) {
+      body.K.diagonal[static_cast<std::size_t>(i)] =
+          -(1.0 - left) * body.system.mass[i] / body.system.stiffness_scale * Matrix3::Identity();
+    }
+    BodySweep sweeps;
+    NodalVectors v = NodalVectors::Zero(3, 30);
+    sweeps.prepare(body.system);
+    sweeps.sweep(true, {}, v, kHoldsNothing);
+    sweeps.beginDeflation(randomVectors(body), {});
+    v.col(5) += Vector3::Ones();
+    const NodalVectors before = v;
+    sweeps.deflate(v);
+    EXPECT_EQ(v != before, left > 0.5);
+  }
+}
+
 /// What sweeps found after the first one forth, with what moved between; where that is all, what was known stays.
 TEST(BodySweep, WhatIsKeptIsWhatTheFirstSweepForthDidNotFind) {
   RandomBody body(30, 0.2, {0, 7}, {}, false);
