@@ -318,7 +318,12 @@ TEST(BodySweep, WithoutAWayDeflationMovesNothing) {
 /// Where K takes nearly all from the energy that mass has, its least is nowhere to go to.
 TEST(BodySweep, DeflationLeavesWhatHasNextToNoEnergy) {
   for (const double left : {0.9, 0.1}) {
-    RandomBody body(30, 0.0, {}, {}, false);
+    RandomBody body(30, 0.2, {}, {}, false);
+    for (BlockLanes& entry : body.K.values) {
+      for (auto& lanes : entry.at) {
+        for (double& value : lanes) value *= 1e-3;
+      }
+    }
     for (int i = 0; i < 30; ++i) {
       body.K.diagonal[static_cast<std::size_t>(i)] =
           -(1.0 - left) * body.system.mass[i] / body.system.stiffness_scale * Matrix3::Identity();
@@ -328,10 +333,9 @@ TEST(BodySweep, DeflationLeavesWhatHasNextToNoEnergy) {
     sweeps.prepare(body.system);
     sweeps.sweep(true, {}, v, kHoldsNothing);
     sweeps.beginDeflation(randomVectors(body), {});
-    v.col(5) += Vector3::Ones();
     const NodalVectors before = v;
     sweeps.deflate(v);
-    EXPECT_EQ(v != before, left > 0.5);
+    EXPECT_EQ(v != before, left > 0.5) << left;
   }
 }
 
