@@ -69,6 +69,16 @@ class HelpTest(unittest.TestCase):
         for word in ["~scene", "~tf_timeout_s", "~robot_description", "/wrench", "/diagnostics", "_scene:="]:
             self.assertIn(word, text)
 
+    def test_build_directories_that_rosrun_would_search_are_refused(self):
+        checkout = os.path.realpath(SOURCE)
+        for place in [checkout + "/build.refused", checkout + "-build.refused", checkout + "/../" + os.path.basename(checkout) + ".refused"]:
+            with self.subTest(place=place):
+                done = subprocess.run([os.path.join(SOURCE, "scripts", "build"), "--packages"], stdin=subprocess.DEVNULL, capture_output=True,
+                                      text=True, timeout=60, env=dict(os.environ, TISSUE_CONTACT_BUILD=place, SANITIZE=""))
+                self.assertEqual(done.returncode, 1, done)
+                self.assertIn("TISSUE_CONTACT_BUILD=%s begins like the checkout" % os.path.realpath(place), done.stderr)
+                self.assertFalse(os.path.exists(place))
+
 
 if __name__ == "__main__":
     SOURCE, PROGRAMS = sys.argv[1], sys.argv[2:]
