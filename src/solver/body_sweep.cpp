@@ -132,7 +132,7 @@ void runCarry(const Work& all, int slice) {
   all.body.D != nullptr ? carry<true>(all, slice) : carry<false>(all, slice);
 }
 
-/// Makes lower = L v, with L: A below the diagonal. @return v'D v, with D: the diagonal blocks of A.
+/// Adds L v to lower, with L: A below the diagonal. @return v'D v, with D: the diagonal blocks of A.
 template <bool kDamped>
 TISSUE_CONTACT_INLINE double lowerProduct(const Work& all, const std::vector<unsigned char>& moves) {
   Lanes total = {0.0, 0.0, 0.0, 0.0};

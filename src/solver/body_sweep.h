@@ -44,7 +44,7 @@ class BodySweep {
   /// Adds to J'lambda of a node, N s.
   void addImpulse(int node, const Vector3& impulse_W);
 
-  /// After the first sweep forth of a step, before anything follows: along what to go in deflate(), 3 x nodes, m/s; nothing of another
+  /// After the first sweep forth of a step, before follow(): along what to go in deflate(), 3 x nodes, m/s; nothing of another
   /// size. @param excluded nodes that contacts may move.
   void beginDeflation(const NodalVectors& u, const std::vector<int>& excluded);
 

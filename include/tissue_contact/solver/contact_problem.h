@@ -66,8 +66,8 @@ struct ContactSolution {
   std::vector<NodalVectors> v;       ///< per body, m/s
   std::vector<Vector3> impulses;     ///< per contact, contact frame, N s, acting on the tissue
   std::vector<ContactState> states;  ///< per contact
-  /// Per body: how its velocities changed where the last step was slow to find them, 3 x nodes, m/s. 0, or empty: not known. For solvers that
-  /// begin with it; answers do not depend on it beyond their tolerance.
+  /// Per body: what the last step that took long was slow to find of its velocities, 3 x nodes, m/s. 0, or empty: not known. For solvers
+  /// that begin with it; answers do not depend on it beyond their tolerance.
   std::vector<NodalVectors> slow_changes;
 };
 

@@ -125,6 +125,20 @@ TEST_P(SavedState, SavingChangesNothing) {
   }
 }
 
+/// Steps too short to find anything slowly hand on what those before have found.
+TEST(SavedStateOfAMovedMesh, IsOfThatMesh) {
+  const Variant variant{"refined", "model: corotational, poissons_ratio: 0.45", "    refinement: auto\n",
+                        "solver: {iterations: 2}\n"};
+  Simulator first = make(variant);
+  Simulator second = make(variant);
+  go(first, 0, 230);
+  ASSERT_GT(first.meshRevision(0), 0);
+  second.restoreState(first.saveState());
+  go(first, 230, 235);
+  go(second, 230, 235);
+  expectEqual(first, second, "two iterations a step");
+}
+
 const Variant kPlain{"corotational"};
 
 class RefusedState : public ::testing::Test {

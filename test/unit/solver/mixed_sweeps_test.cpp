@@ -212,6 +212,9 @@ TEST(MixedSweeps, KnowThisProblemAlone) {
     asleep.asleep = true;
     one.problem.bodies.insert(one.problem.bodies.begin(), asleep);
     one.solution.v.insert(one.solution.v.begin(), NodalVectors::Zero(3, asleep.mass.size()));
+    const NodalVectors u = NodalVectors::Constant(3, asleep.mass.size(), 1e-3);
+    same.solution.slow_changes = {u};
+    one.solution.slow_changes = {u, u};
     const auto fixed_node = static_cast<int>(std::find(one.fixed.begin(), one.fixed.end(), true) - one.fixed.begin());
     for (ContactRow& row : one.problem.contacts) {
       for (int a = 0; a < row.node_count; ++a) row.nodes[a].body = 1;
@@ -223,6 +226,8 @@ TEST(MixedSweeps, KnowThisProblemAlone) {
     EXPECT_GT(report.iterations, 10);
     EXPECT_EQ(one.solution.v[1], same.solution.v[0]) << contacts << " contacts";
     EXPECT_EQ(one.solution.v[0], NodalVectors::Zero(3, asleep.mass.size()));
+    EXPECT_EQ(one.solution.slow_changes[1], same.solution.slow_changes[0]);
+    EXPECT_EQ(one.solution.slow_changes[0], u);
     EXPECT_EQ(one.solution.impulses, same.solution.impulses);
   }
 }
