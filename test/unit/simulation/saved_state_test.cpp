@@ -149,7 +149,7 @@ class RefusedState : public ::testing::Test {
     Simulator untouched = make(variant);
     go(simulator, 0, 40);
     go(untouched, 0, 40);
-    const std::string message = refusal([&] { simulator.restoreState(state); });
+    std::string message = refusal([&] { simulator.restoreState(state); });
     go(simulator, 40, 60);
     go(untouched, 40, 60);
     expectEqual(simulator, untouched, message);

@@ -225,7 +225,7 @@ NodalVectors deflated(const BodySystem& body, const NodalVectors& u, BodySweep& 
   sweeps.follow(3, moved);
   const NodalVectors before = v;
   sweeps.deflate(v);
-  const NodalVectors way = v - before;
+  NodalVectors way = v - before;
   EXPECT_EQ(Vector3(way.col(3)), Vector3::Zero());
   EXPECT_EQ(Vector3(way.col(20)), Vector3::Zero());
   return way;
@@ -283,7 +283,7 @@ TEST(BodySweep, DeflationGoesOnThroughTheStep) {
   });
   const NodalVectors before = v;
   sweeps.deflate(v);
-  const NodalVectors way = v - before;
+  NodalVectors way = v - before;
   EXPECT_EQ(Vector3(v.col(20)), held_at);
   ASSERT_GT(way.norm(), 0.0);
   EXPECT_LE(std::abs(workLeft(body.system, way, v)), 1e-13 * way.norm() * body.system.b.norm());
