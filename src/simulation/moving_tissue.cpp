@@ -67,7 +67,6 @@ void MovingTissue::carry(StateArchive& archive) {
   archive.carry(x_);
   archive.carry(v_);
   archive.carry(loads_);
-  constexpr double kMost = 1e9;  // m, m/s: what is farther or faster has long stopped to be tissue
   archive.check(x_.allFinite() && v_.allFinite() && loads_.allFinite() && x_.cwiseAbs().maxCoeff() <= kMost &&
                     v_.cwiseAbs().maxCoeff() <= kMost,
                 "a position, speed or force that no tissue has");

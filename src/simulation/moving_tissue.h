@@ -40,6 +40,9 @@ class MovingTissue {
   /// keep theirs.
   void stop();
 
+  static constexpr double kMost =
+      1e9;  ///< in a saved state, m, m/s: what is farther or faster has long stopped to be tissue
+
   /// @pre on reading: the mesh is that of what was written.
   void carry(StateArchive& archive);
 

@@ -74,9 +74,9 @@ void Simulator::Implementation::carry(StateArchive& archive) {
     archive.section("tissue '" + tissues[t].name() + "' in motion");
     moving[t].carry(archive);
     archive.carry(solution.slow_changes[t]);
-    constexpr double kMost = 1e9;  // m/s, as of velocities
-    archive.check(solution.slow_changes[t].allFinite() && solution.slow_changes[t].cwiseAbs().maxCoeff() <= kMost,
-                  "a change of velocity that no tissue has");
+    archive.check(
+        solution.slow_changes[t].allFinite() && solution.slow_changes[t].cwiseAbs().maxCoeff() <= MovingTissue::kMost,
+        "a change of velocity that no tissue has");
   }
   archive.section("contacts");
   contacts.carry(archive, instruments);

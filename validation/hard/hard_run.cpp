@@ -175,7 +175,12 @@ void HardRun::compareWithExact() {
   let_go_else_ += let_go_else;
   (let_go_else ? squared_error_else_ : squared_error_) += error;
   squared_force_ += force;
+  if (simulator_.report().stop != StopReason::kTolerance) return;
+  squared_error_where_met_ += error;
+  squared_force_where_met_ += force;
 }
+
+double HardRun::errorWhereMet() const { return std::sqrt(squared_error_where_met_ / squared_force_where_met_); }
 
 void HardRun::report(const std::string& name, const HardBands& bands, Report& report) const {
   report.atLeast(name + ": implicit steps", "", 2000, static_cast<double>(steps_), "length of a hard case");

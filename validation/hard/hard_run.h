@@ -45,7 +45,9 @@ class HardRun {
 
   long steps() const { return steps_; }
   bool finite() const { return finite_; }
-  double meanEdge() const { return edge_; }            ///< of the tissues' surfaces at rest, m
+  double meanEdge() const { return edge_; }  ///< of the tissues' surfaces at rest, m
+  /// Force error as HardBands::force, over the steps that say they met the tolerance, whatever sticks; not a number: none did.
+  double errorWhereMet() const;
   int mostContacts() const { return most_contacts_; }  ///< that carry force, at once
 
  private:
@@ -79,7 +81,9 @@ class HardRun {
   int let_go_else_ = 0;  ///< of references_met_: steps in which a contact sticks here and slides there, or the reverse
   double squared_error_ = 0.0;  ///< of the others, N^2
   double squared_force_ = 0.0;
-  double squared_error_else_ = 0.0;  ///< of those, N^2
+  double squared_error_else_ = 0.0;       ///< of those, N^2
+  double squared_error_where_met_ = 0.0;  ///< of all that say so, N^2
+  double squared_force_where_met_ = 0.0;
 };
 
 }  // namespace tissue_contact
