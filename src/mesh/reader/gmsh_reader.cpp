@@ -1,7 +1,7 @@
 /// @file
-/// Room `mesh`: Gmsh MSH files, ASCII and binary (Gmsh reference manual, "Gmsh file formats"): sections $Nodes and
-/// $Elements in, nodes and tetrahedra out, and where asked physical groups ($PhysicalNames, $Entities). All other sections are
-/// skipped, as the manual asks.
+/// Room `mesh`: Gmsh MSH files, ASCII and binary (Gmsh reference manual, "Gmsh file formats" and "Legacy formats"): sections
+/// $Nodes and $Elements in, $NOD and $ELM of MSH 1, nodes and tetrahedra out, and where asked physical groups ($PhysicalNames,
+/// $Entities). All other sections are skipped, as the manual asks.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -13,12 +13,13 @@
 #include <vector>
 
 #include "mesh/reader/mesh_file.h"
+#include "mesh/reader/node_tags.h"
 
 namespace tissue_contact {
 namespace {
 
 constexpr int kDouble = 8;       // bytes
-constexpr int kInt = 4;          // bytes
+constexpr int kGmshInt = 4;      // bytes
 constexpr int kCount = 8;        // bytes of `unsigned long` (4.0) and `size_t` (4.1)
 constexpr int kTetrahedron = 4;  // element types
 constexpr int kLine = 1;
@@ -28,40 +29,7 @@ constexpr std::size_t kMostGroups = 16;
 
 constexpr ItemSize kBlockHeader = {4, 20};  // three ints and a count
 
-enum class Version { k2, k40, k41 };
-
-/// From the node tags of a file (sparse, in any order) to node indices in file order. Sorted pairs, not a table by tag: memory
-/// follows the number of nodes, whatever the largest tag.
-class NodeTags {
- public:
-  void reserve(std::size_t count) { indices_.reserve(count); }
-
-  /// The next node in file order has this tag.
-  void add(std::int64_t tag, const MeshFileCursor& in) {
-    if (tag < 0) in.fail("node tag " + std::to_string(tag) + " is negative; tags must be >= 0: export the mesh again");
-    indices_.emplace_back(tag, static_cast<int>(indices_.size()));
-  }
-
-  /// To be called once all tags are added.
-  void finish(const MeshFileCursor& in) {
-    if (!std::is_sorted(indices_.begin(), indices_.end())) std::sort(indices_.begin(), indices_.end());
-    const auto same = std::adjacent_find(indices_.begin(), indices_.end(),
-                                         [](const auto& a, const auto& b) { return a.first == b.first; });
-    if (same == indices_.end()) return;
-    in.fail("nodes " + std::to_string(same->second) + " and " + std::to_string((same + 1)->second) +
-            " (0-based, in file order) both have the tag " + std::to_string(same->first) +
-            "; tags must be unique: export the mesh again");
-  }
-
-  /// Index of the node with this tag, or -1.
-  int find(std::int64_t tag) const {
-    const auto found = std::lower_bound(indices_.begin(), indices_.end(), std::make_pair(tag, -1));
-    return found != indices_.end() && found->first == tag ? found->second : -1;
-  }
-
- private:
-  std::vector<std::pair<std::int64_t, int>> indices_;
-};
+enum class Version { k1, k2, k40, k41 };
 
 class GmshReader {
  public:
@@ -74,6 +42,7 @@ class GmshReader {
   void readNodes2();
   void readNodes4();
   void readNodeBlock4(std::size_t count, std::int64_t parameters);
+  void readElements1();
   void readElements2();
   void readBinaryElements2(std::size_t count);
   void readElements4();
@@ -87,10 +56,12 @@ class GmshReader {
   int nodeCount(std::int64_t type, std::int64_t tag) const;
   std::size_t blockCount(std::int64_t count, std::size_t left, ItemSize item, const char* what) const;
   void readSection(const std::string& name);
-  int tagBytes() const { return version_ == Version::k41 ? kCount : kInt; }
+  std::string nameOfNodes() const { return version_ == Version::k1 ? "$NOD" : "$Nodes"; }
+  std::string nameOfElements() const { return version_ == Version::k1 ? "$ELM" : "$Elements"; }
+  int tagBytes() const { return version_ == Version::k41 ? kCount : kGmshInt; }
   ItemSize nodeSize() const { return {4, static_cast<std::size_t>(tagBytes()) + 3 * sizeof(double)}; }
   ItemSize elementSize() const {  // of the smallest, a point: in binary its tag and its node
-    const std::size_t values = version_ == Version::k2 ? 4 : 2;
+    const std::size_t values = version_ == Version::k1 ? 6 : version_ == Version::k2 ? 4 : 2;
     return {values, 2 * static_cast<std::size_t>(tagBytes())};
   }
 
@@ -111,47 +82,57 @@ MeshFileContents GmshReader::read() {
   while (!in_.atEnd()) {
     const std::string name(in_.word("a section"));
     if (name.size() < 2 || name[0] != '$') {
-      in_.fail("expected a section such as $Nodes, found " + quoted(name) +
+      in_.fail("expected a section such as $Nodes, found " + excerpt(name) +
                "; the section before is longer than its count says, or the file is damaged: export it again");
     }
     readSection(name);
   }
-  if (!have_elements_) in_.fail("the file ends without a $Elements section: it is truncated; export or copy it again");
+  if (!have_elements_) {
+    in_.fail("the file ends without a " + nameOfElements() + " section: it is truncated; export or copy it again");
+  }
   return std::move(contents_);
 }
 
 void GmshReader::readSection(const std::string& name) {
-  const std::string end = "$End" + name.substr(1);
+  const std::string end = (version_ == Version::k1 ? "$END" : "$End") + name.substr(1);
   if (name == "$ParametricNodes") in_.fail("$ParametricNodes is not read; save without Mesh.SaveParametric");
   if (with_labels_ && name == "$PhysicalNames") readPhysicalNames();
-  if (with_labels_ && name == "$Entities" && version_ != Version::k2) readEntities();
-  if (name != "$Nodes" && name != "$Elements") return in_.skipPast(end);
-  bool& seen = name == "$Nodes" ? have_nodes_ : have_elements_;
+  if (with_labels_ && name == "$Entities" && (version_ == Version::k40 || version_ == Version::k41)) readEntities();
+  const bool is_nodes = name == nameOfNodes();
+  if (!is_nodes && name != nameOfElements()) return in_.skipPast(end);
+  bool& seen = is_nodes ? have_nodes_ : have_elements_;
   if (seen) in_.fail("a second section " + name + "; there must be one: export the mesh again");
-  if (name == "$Elements" && !have_nodes_) in_.fail("$Elements comes before any $Nodes; export the mesh again");
+  if (!is_nodes && !have_nodes_) in_.fail(name + " comes before any " + nameOfNodes() + "; export the mesh again");
   seen = true;
   in_.endLine();
-  if (name == "$Nodes") {
-    version_ == Version::k2 ? readNodes2() : readNodes4();
+  if (is_nodes) {
+    version_ == Version::k1 || version_ == Version::k2 ? readNodes2() : readNodes4();
     tags_.finish(in_);
+  } else if (version_ == Version::k1) {
+    readElements1();
   } else {
     version_ == Version::k2 ? readElements2() : readElements4();
   }
   const std::string found(in_.word(end.c_str()));
   if (found != end) {
-    in_.fail("expected " + end + ", found " + quoted(found) +
+    in_.fail("expected " + end + ", found " + excerpt(found) +
              "; the section holds more than its count says: export it again");
   }
 }
 
 void GmshReader::readFormat() {
+  const std::size_t begin = in_.offset();
   std::string start(in_.word("$MeshFormat"));
+  if (start == "$NOD") {  // MSH 1 is text, and has nothing else before its nodes
+    version_ = Version::k1;
+    return in_.seek(begin);
+  }
   while (start == "$Comments") {
     in_.skipPast("$EndComments");
     start = in_.word("$MeshFormat");
   }
   if (start != "$MeshFormat") {
-    in_.fail("expected $MeshFormat, found " + quoted(start) + (start == "$NOD" ? " (MSH 1.0, which is not read)" : "") +
+    in_.fail("expected $MeshFormat, or $NOD of MSH 1, found " + excerpt(start) +
              "; convert the file with gmsh -save -format msh41");
   }
   const std::string version(in_.word("the format version"));
@@ -160,8 +141,8 @@ void GmshReader::readFormat() {
   } else if (version == "4" || version == "4.0") {
     version_ = Version::k40;
   } else if (version != "2" && version != "2.0" && version != "2.1" && version != "2.2") {
-    in_.fail("MSH version " + quoted(version) +
-             " is not read (2.x, 4.0 and 4.1 are); convert the file with gmsh -save -format msh41");
+    in_.fail("MSH version " + excerpt(version) +
+             " is not read (1, 2.x, 4.0 and 4.1 are); convert the file with gmsh -save -format msh41");
   }
   const std::int64_t file_type = in_.textInteger("the file type");
   if (file_type != 0 && file_type != 1) {
@@ -175,22 +156,23 @@ void GmshReader::readFormat() {
   in_.endLine();
   if (file_type == 1) setBinaryOrder();
   const std::string end(in_.word("$EndMeshFormat"));
-  if (end != "$EndMeshFormat") in_.fail("expected $EndMeshFormat, found " + quoted(end) + "; export the mesh again");
+  if (end != "$EndMeshFormat") in_.fail("expected $EndMeshFormat, found " + excerpt(end) + "; export the mesh again");
 }
 
 void GmshReader::setBinaryOrder() {
   in_.setEncoding(MeshFileCursor::Encoding::kLittleEndian);
   const std::size_t start = in_.offset();
-  if (in_.integer(kInt, "the number one that tells the byte order") == 1) return;
+  if (in_.integer(kGmshInt, "the number one that tells the byte order") == 1) return;
   in_.seek(start);
   in_.setEncoding(MeshFileCursor::Encoding::kBigEndian);
-  if (in_.integer(kInt, "the number one that tells the byte order") != 1) {
+  if (in_.integer(kGmshInt, "the number one that tells the byte order") != 1) {
     in_.fail(
         "the four bytes after the format line must be the number 1 in either byte order: "
         "the file was changed by a text-mode transfer or is damaged; copy it again");
   }
 }
 
+/// Of MSH 1 as well.
 void GmshReader::readNodes2() {
   const std::int64_t stated = in_.textInteger("the number of nodes");
   if (in_.binary()) in_.endLine();
@@ -198,7 +180,7 @@ void GmshReader::readNodes2() {
   contents_.nodes.reserve(count);
   tags_.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    tags_.add(in_.integer(kInt, "a node tag"), in_);
+    tags_.add(in_.integer(kGmshInt, "a node tag"), in_);
     contents_.nodes.push_back(readNode(in_, kDouble, i));
   }
 }
@@ -223,13 +205,13 @@ void GmshReader::readNodes4() {
     in_.integer(kCount, "the largest node tag");
   }
   for (std::size_t b = in_.checkedCount(blocks, kBlockHeader, "entity blocks"); b > 0; --b) {
-    const std::int64_t first = in_.integer(kInt, "an entity");
-    const std::int64_t second = in_.integer(kInt, "an entity");
+    const std::int64_t first = in_.integer(kGmshInt, "an entity");
+    const std::int64_t second = in_.integer(kGmshInt, "an entity");
     const std::int64_t dimension = version_ == Version::k41 ? first : second;
     if (dimension < 0 || dimension > 3) {
       in_.fail("entity dimension " + std::to_string(dimension) + "; it must be 0 to 3: export the mesh again");
     }
-    const std::int64_t parameters = in_.integer(kInt, "the parametric flag") != 0 ? dimension : 0;
+    const std::int64_t parameters = in_.integer(kGmshInt, "the parametric flag") != 0 ? dimension : 0;
     const std::int64_t block = in_.integer(kCount, "the number of nodes of a block");
     const std::size_t count = blockCount(block, left, nodeSize(), "nodes");
     left -= count;
@@ -245,9 +227,27 @@ void GmshReader::readNodeBlock4(std::size_t count, std::int64_t parameters) {
   const bool tags_first = version_ == Version::k41;  // 4.0 has each tag with its coordinates
   for (std::size_t i = 0; tags_first && i < count; ++i) tags_.add(in_.integer(kCount, "a node tag"), in_);
   for (std::size_t i = 0; i < count; ++i) {
-    if (!tags_first) tags_.add(in_.integer(kInt, "a node tag"), in_);
+    if (!tags_first) tags_.add(in_.integer(kGmshInt, "a node tag"), in_);
     contents_.nodes.push_back(readNode(in_, kDouble, contents_.nodes.size()));
     for (std::int64_t p = 0; p < parameters; ++p) in_.real(kDouble, "a parametric coordinate");
+  }
+}
+
+void GmshReader::readElements1() {
+  const std::int64_t stated = in_.textInteger("the number of elements");
+  for (std::size_t i = in_.checkedCount(stated, elementSize(), "elements"); i > 0; --i) {
+    const std::int64_t tag = in_.integer(kGmshInt, "an element tag");
+    const std::int64_t type = in_.integer(kGmshInt, "an element type");
+    const std::int64_t group_number = in_.integer(kGmshInt, "an element's physical group");
+    in_.integer(kGmshInt, "an element's elementary entity");
+    const std::int64_t stated_nodes = in_.integer(kGmshInt, "an element's number of nodes");
+    if (stated_nodes != nodeCount(type, tag)) {
+      in_.fail("element " + std::to_string(tag) + " has " + std::to_string(stated_nodes) + " nodes; its type " +
+               std::to_string(type) + " must have " + std::to_string(nodeCount(type, tag)) + ": export the mesh again");
+    }
+    numbers_.clear();
+    if (group_number != 0) numbers_.push_back(group_number);
+    readElement(tag, type, kGmshInt);
   }
 }
 
@@ -257,11 +257,11 @@ void GmshReader::readElements2() {
   const std::size_t count = in_.checkedCount(stated, elementSize(), "elements");
   if (in_.binary()) return readBinaryElements2(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::int64_t tag = in_.integer(kInt, "an element tag");
-    const std::int64_t type = in_.integer(kInt, "an element type");
-    const std::int64_t stated_tags = in_.integer(kInt, "the number of an element's tags");
-    readTags2(in_.checkedCount(stated_tags, {1, kInt}, "an element's tags"));
-    readElement(tag, type, kInt);
+    const std::int64_t tag = in_.integer(kGmshInt, "an element tag");
+    const std::int64_t type = in_.integer(kGmshInt, "an element type");
+    const std::int64_t stated_tags = in_.integer(kGmshInt, "the number of an element's tags");
+    readTags2(in_.checkedCount(stated_tags, {1, kGmshInt}, "an element's tags"));
+    readElement(tag, type, kGmshInt);
   }
 }
 
@@ -269,23 +269,23 @@ void GmshReader::readElements2() {
 void GmshReader::readTags2(std::size_t count) {
   numbers_.clear();
   for (std::size_t t = 0; t < count; ++t) {
-    const std::int64_t tag = in_.integer(kInt, "an element's tag");
+    const std::int64_t tag = in_.integer(kGmshInt, "an element's tag");
     if (t == 0 && tag != 0) numbers_.push_back(tag);
   }
 }
 
 void GmshReader::readBinaryElements2(std::size_t count) {
   while (count > 0) {
-    const std::int64_t type = in_.integer(kInt, "an element type");
-    const std::int64_t following = in_.integer(kInt, "the number of elements of a block");
+    const std::int64_t type = in_.integer(kGmshInt, "an element type");
+    const std::int64_t following = in_.integer(kGmshInt, "the number of elements of a block");
     const std::size_t block = blockCount(following, count, elementSize(), "elements");
     if (block == 0) in_.fail("a block has 0 elements; it must have at least 1: export the mesh again");
-    const std::int64_t stated_tags = in_.integer(kInt, "the number of an element's tags");
-    const std::size_t tags = in_.checkedCount(stated_tags, {1, kInt}, "an element's tags");
+    const std::int64_t stated_tags = in_.integer(kGmshInt, "the number of an element's tags");
+    const std::size_t tags = in_.checkedCount(stated_tags, {1, kGmshInt}, "an element's tags");
     for (std::size_t i = 0; i < block; ++i) {
-      const std::int64_t tag = in_.integer(kInt, "an element tag");
+      const std::int64_t tag = in_.integer(kGmshInt, "an element tag");
       readTags2(tags);
-      readElement(tag, type, kInt);
+      readElement(tag, type, kGmshInt);
     }
     count -= block;
   }
@@ -300,12 +300,12 @@ void GmshReader::readElements4() {
     in_.integer(kCount, "the largest element tag");
   }
   for (std::size_t b = in_.checkedCount(blocks, kBlockHeader, "entity blocks"); b > 0; --b) {
-    const std::int64_t first = in_.integer(kInt, "an entity");
-    const std::int64_t second = in_.integer(kInt, "an entity");
+    const std::int64_t first = in_.integer(kGmshInt, "an entity");
+    const std::int64_t second = in_.integer(kGmshInt, "an entity");
     const auto entity = version_ == Version::k41 ? std::make_pair(first, second) : std::make_pair(second, first);
     const auto known = numbers_of_.find({static_cast<int>(entity.first), entity.second});
     numbers_ = known == numbers_of_.end() ? std::vector<std::int64_t>() : known->second;
-    const std::int64_t type = in_.integer(kInt, "an element type");
+    const std::int64_t type = in_.integer(kGmshInt, "an element type");
     const std::size_t count =
         blockCount(in_.integer(kCount, "the number of elements of a block"), left, elementSize(), "elements");
     left -= count;
@@ -352,8 +352,8 @@ void GmshReader::readElement(std::int64_t tag, std::int64_t type, int tag_bytes)
     const std::int64_t node_tag = in_.integer(tag_bytes, "a node tag of an element");
     node = tags_.find(node_tag);
     if (node < 0) {
-      in_.fail("element " + std::to_string(tag) + " refers to node tag " + std::to_string(node_tag) +
-               ", which $Nodes does not define; export the mesh again with all its nodes");
+      in_.fail("element " + std::to_string(tag) + " refers to node tag " + std::to_string(node_tag) + ", which " +
+               nameOfNodes() + " does not define; export the mesh again with all its nodes");
     }
   }
   contents_.tetrahedra.push_back(tet);
@@ -399,11 +399,11 @@ void GmshReader::readEntities() {
 }
 
 void GmshReader::readEntity(int dimension) {
-  const std::int64_t tag = in_.integer(kInt, "an entity");
+  const std::int64_t tag = in_.integer(kGmshInt, "an entity");
   const int corners = dimension == 0 && version_ == Version::k41 ? 3 : 6;
   for (int i = 0; i < corners; ++i) in_.real(kDouble, "a coordinate of an entity");
   const std::int64_t stated = in_.integer(kCount, "the number of an entity's physical groups");
-  const std::size_t count = in_.checkedCount(stated, {1, kInt}, "physical groups");
+  const std::size_t count = in_.checkedCount(stated, {1, kGmshInt}, "physical groups");
   // Each element of the entity is noted for each of them.
   if (count > kMostGroups) {
     in_.fail("an entity belongs to " + std::to_string(count) + " physical groups; at most " +
@@ -412,11 +412,12 @@ void GmshReader::readEntity(int dimension) {
   if (numbers_of_.count({dimension, tag}) > 0) in_.fail("an entity is given twice");
   for (std::size_t i = 0; i < count; ++i) {
     // Gmsh writes the number of a group that is oriented the other way with a minus.
-    numbers_of_[{dimension, tag}].push_back(std::abs(in_.integer(kInt, "a physical group")));
+    numbers_of_[{dimension, tag}].push_back(std::abs(in_.integer(kGmshInt, "a physical group")));
   }
   if (dimension == 0) return;
   const std::int64_t bounding = in_.integer(kCount, "the number of an entity's boundaries");
-  for (std::size_t i = in_.checkedCount(bounding, {1, kInt}, "boundaries"); i > 0; --i) in_.integer(kInt, "a boundary");
+  for (std::size_t i = in_.checkedCount(bounding, {1, kGmshInt}, "boundaries"); i > 0; --i)
+    in_.integer(kGmshInt, "a boundary");
 }
 
 }  // namespace

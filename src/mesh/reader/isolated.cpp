@@ -22,7 +22,7 @@ namespace {
 // First byte of what the child sends, and last byte: a host that ignores SIGCHLD gets no exit status, only the bytes.
 constexpr char kResult = '+';
 constexpr char kRefusal = '-';
-constexpr char kEnd = '.';
+constexpr char kLastByte = '.';
 
 /// Limits of the calling (child) process. Its address space now is the base, because sanitizers reserve terabytes.
 void limitSelf(unsigned seconds, std::size_t bytes) {
@@ -45,11 +45,11 @@ void limitSelf(unsigned seconds, std::size_t bytes) {
 
 std::string answerOf(const std::function<std::string()>& work) {
   try {
-    return kResult + work() + kEnd;
+    return kResult + work() + kLastByte;
   } catch (const std::bad_alloc&) {
-    return kRefusal + std::string("it needs too much memory") + kEnd;
+    return kRefusal + std::string("it needs too much memory") + kLastByte;
   } catch (const std::exception& error) {
-    return kRefusal + std::string(error.what()) + kEnd;
+    return kRefusal + std::string(error.what()) + kLastByte;
   }
 }
 
@@ -65,7 +65,7 @@ std::string answerOf(const std::function<std::string()>& work) {
   _exit(0);  // no destructors, no flushing: the buffers belong to the parent
 }
 
-std::string receive(int pipe) {
+std::string receiveAnswer(int pipe) {
   std::string answer;
   char buffer[1 << 16];
   while (true) {
@@ -102,12 +102,12 @@ std::string runIsolated(const std::function<std::string()>& work, unsigned secon
     close(ends[0]);
     throw std::system_error(fork_error, std::generic_category(), "no child process");
   }
-  std::string answer = receive(ends[0]);
+  std::string answer = receiveAnswer(ends[0]);
   close(ends[0]);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.size() < 2 || answer.back() != kEnd) {
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.size() < 2 || answer.back() != kLastByte) {
     throw std::invalid_argument(describeEnd(status, seconds));
   }
   answer.pop_back();

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uintmax_t kMaxMeshBytes = 64u << 20;  // 1.3 million triangles of binary STL
 
-[[noreturn]] void refuse(const std::string& file, const std::string& what) {
+[[noreturn]] void refuseFile(const std::string& file, const std::string& what) {
   throw std::invalid_argument("mesh file '" + file + "' " + what);
 }
 
@@ -27,13 +27,13 @@ void checkExtension(const std::string& file) {
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (lower != ".stl" && lower != ".obj" && lower != ".dae") {
-    refuse(file, "has the extension '" + extension + "'; use .stl, .obj or .dae");
+    refuseFile(file, "has the extension '" + extension + "'; use .stl, .obj or .dae");
   }
 }
 
 void applyScale(const Vector3& scale, const std::string& file, TriangleMesh& mesh) {
   mesh.vertices = scale.asDiagonal() * mesh.vertices;
-  if (!mesh.vertices.allFinite()) refuse(file, "has vertices that are not finite after scaling");
+  if (!mesh.vertices.allFinite()) refuseFile(file, "has vertices that are not finite after scaling");
   if (scale.prod() < 0.0) {  // a mirror turns the triangles inside out
     for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   }
@@ -45,15 +45,15 @@ TriangleMesh loadTriangleMesh(const std::string& file, const Vector3& scale) {
   requireRegularFile(file, "mesh file", kMaxMeshBytes);
   checkExtension(file);
   if (!scale.allFinite() || !(scale.array() != 0.0).all()) {
-    refuse(file, "has a scale that is zero or not finite; use e.g. 0.001 0.001 0.001 for a file in millimetres");
+    refuseFile(file, "has a scale that is zero or not finite; use e.g. 0.001 0.001 0.001 for a file in millimetres");
   }
   const TriangleSoup soup = readTriangleSoup(file);
-  if (soup.triangles.empty()) refuse(file, "has no triangles");
+  if (soup.triangles.empty()) refuseFile(file, "has no triangles");
   TriangleMesh mesh = mergeVertices(soup.vertices, soup.triangles);
   orientOutward(mesh);
   dropFlatTriangles(mesh);
   dropUnusedNodes(mesh.vertices, mesh.triangles);
-  if (mesh.triangles.empty()) refuse(file, "has degenerate triangles only");
+  if (mesh.triangles.empty()) refuseFile(file, "has degenerate triangles only");
   applyScale(scale, file, mesh);
   return mesh;
 }

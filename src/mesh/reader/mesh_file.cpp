@@ -31,7 +31,7 @@ MeshFileContents readContents(const std::string& file, bool with_labels) {
   const bool gmsh = !bytes.empty() && bytes[0] == '$';
   const bool vtk = bytes.rfind("# vtk ", 0) == 0;
   const bool xml = !bytes.empty() && bytes[0] == '<';
-  const std::string start = quoted(std::string_view(bytes).substr(0, bytes.find_first_of("\r\n")));
+  const std::string start = excerpt(std::string_view(bytes).substr(0, bytes.find_first_of("\r\n")));
   MeshFileCursor in(file, std::move(bytes));
   if (gmsh) return readGmsh(in, with_labels);
   if (vtk) return readVtk(in, with_labels);

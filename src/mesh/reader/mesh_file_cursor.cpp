@@ -18,7 +18,7 @@ bool isSpace(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 }  // namespace
 
-std::string quoted(std::string_view text) {
+std::string excerpt(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   std::string out = "'";
   for (const char c : text.substr(0, kLongest)) out += (c >= ' ' && c <= '~') ? c : '?';
@@ -64,11 +64,11 @@ std::string_view MeshFileCursor::line() {
 void MeshFileCursor::endLine() {
   const std::string_view rest = line();
   const bool blank = std::all_of(rest.begin(), rest.end(), isSpace);
-  if (!blank) fail("unexpected " + quoted(rest) + " at the end of the line; export the file again");
+  if (!blank) fail("unexpected " + excerpt(rest) + " at the end of the line; export the file again");
 }
 
 void MeshFileCursor::failNumber(std::string_view text, const char* what, const char* kind) const {
-  fail(std::string("expected ") + what + " (" + kind + "), found " + quoted(text) +
+  fail(std::string("expected ") + what + " (" + kind + "), found " + excerpt(text) +
        "; the section before is shorter than its count says, or the file is damaged: export it again");
 }
 

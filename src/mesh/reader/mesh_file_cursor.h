@@ -82,6 +82,6 @@ class MeshFileCursor {
 };
 
 /// `text` in quotes, shortened and with bytes that do not print replaced, fit for a message.
-std::string quoted(std::string_view text);
+std::string excerpt(std::string_view text);
 
 }  // namespace tissue_contact

@@ -15,7 +15,7 @@
 namespace tissue_contact {
 namespace {
 
-constexpr int kInt = 4;  // bytes of `int` and `vtkIdType` in a binary file
+constexpr int kVtkInt = 4;  // bytes of `int` and `vtkIdType` in a binary file
 constexpr std::int64_t kTetra = 10;
 
 std::string upperCase(std::string_view text) {
@@ -32,17 +32,28 @@ struct ValueType {
 
 // `long` has 8 bytes: it was written on a 64-bit Unix, or the checks that follow will find it out.
 constexpr ValueType kValueTypes[] = {
-    {"FLOAT", 4, true},           {"DOUBLE", 8, true},         {"INT", 4, false},          {"UNSIGNED_INT", 4, false},
-    {"LONG", 8, false},           {"UNSIGNED_LONG", 8, false}, {"VTKTYPEINT64", 8, false}, {"VTKTYPEUINT64", 8, false},
-    {"VTKTYPEINT32", 4, false},   {"VTKTYPEUINT32", 4, false}, {"VTKIDTYPE", kInt, false}, {"SHORT", 2, false},
-    {"UNSIGNED_SHORT", 2, false}, {"UNSIGNED_CHAR", 1, false}, {"CHAR", 1, false},
+    {"FLOAT", 4, true},
+    {"DOUBLE", 8, true},
+    {"INT", 4, false},
+    {"UNSIGNED_INT", 4, false},
+    {"LONG", 8, false},
+    {"UNSIGNED_LONG", 8, false},
+    {"VTKTYPEINT64", 8, false},
+    {"VTKTYPEUINT64", 8, false},
+    {"VTKTYPEINT32", 4, false},
+    {"VTKTYPEUINT32", 4, false},
+    {"VTKIDTYPE", kVtkInt, false},
+    {"SHORT", 2, false},
+    {"UNSIGNED_SHORT", 2, false},
+    {"UNSIGNED_CHAR", 1, false},
+    {"CHAR", 1, false},
 };
 
 /// Values with where they stand, so that a message about one of them can say where.
 struct IntegerArray {
   std::vector<std::int64_t> values;
   std::size_t start = 0;  ///< offset in the file
-  int bytes = kInt;
+  int bytes = kVtkInt;
 };
 
 struct Cell {
@@ -113,7 +124,7 @@ void VtkReader::readBlock(const std::string& keyword) {
   const bool points = keyword == "POINTS";
   const bool cells = keyword == "CELLS";
   if (!points && !cells && keyword != "CELL_TYPES") {
-    in_.fail("expected POINTS, CELLS or CELL_TYPES, found " + quoted(keyword) +
+    in_.fail("expected POINTS, CELLS or CELL_TYPES, found " + excerpt(keyword) +
              "; the block before is longer than its count says, or one is missing: export the file again");
   }
   if ((points && have_points_) || (cells && have_cells_)) {
@@ -133,21 +144,21 @@ void VtkReader::readHeader() {
     std::from_chars(version.data(), version.data() + version.size(), major_version_);
   }
   if (major_version_ < 1 || major_version_ > 5) {
-    in_.fail("the first line is " + quoted(first) + "; it must be '" + std::string(kStart) +
+    in_.fail("the first line is " + excerpt(first) + "; it must be '" + std::string(kStart) +
              "x.y' with a version from 1.0 to 5.x: export the file as legacy VTK");
   }
   in_.line();  // the title: any text
   const std::string encoding = upperCase(in_.word("ASCII or BINARY"));
   if (encoding != "ASCII" && encoding != "BINARY") {
-    in_.fail("expected ASCII or BINARY, found " + quoted(encoding) + "; export the file as legacy VTK");
+    in_.fail("expected ASCII or BINARY, found " + excerpt(encoding) + "; export the file as legacy VTK");
   }
   binary_ = encoding == "BINARY";
   if (binary_) in_.setEncoding(MeshFileCursor::Encoding::kBigEndian);
   const std::string dataset = upperCase(in_.word("DATASET"));
-  if (dataset != "DATASET") in_.fail("expected DATASET, found " + quoted(dataset) + "; export the file again");
+  if (dataset != "DATASET") in_.fail("expected DATASET, found " + excerpt(dataset) + "; export the file again");
   const std::string kind = upperCase(in_.word("the kind of data set"));
   if (kind != "UNSTRUCTURED_GRID") {
-    in_.fail("the data set is " + quoted(kind) +
+    in_.fail("the data set is " + excerpt(kind) +
              "; only UNSTRUCTURED_GRID holds tetrahedra: mesh the volume and save it as one");
   }
 }
@@ -164,7 +175,7 @@ ValueType VtkReader::readType(bool real, const char* what) {
     if (type.real == real && name == type.name) return type;
   }
   in_.fail(std::string("expected ") + what + (real ? " (float or double)" : " (int, long, vtktypeint64, ...)") +
-           ", found " + quoted(name) + "; export the file again");
+           ", found " + excerpt(name) + "; export the file again");
 }
 
 void VtkReader::readPoints() {
@@ -189,9 +200,9 @@ IntegerArray VtkReader::readIntegers(std::size_t count, int bytes, const char* w
 }
 
 void VtkReader::readCellsBySize() {
-  const auto count = static_cast<std::size_t>(readTotal("cells", {1, kInt}));
-  const auto size = static_cast<std::size_t>(readTotal("values of CELLS", {1, kInt}));
-  connectivity_ = readIntegers(size, kInt, "values of CELLS");
+  const auto count = static_cast<std::size_t>(readTotal("cells", {1, kVtkInt}));
+  const auto size = static_cast<std::size_t>(readTotal("values of CELLS", {1, kVtkInt}));
+  connectivity_ = readIntegers(size, kVtkInt, "values of CELLS");
   cells_.reserve(count);
   std::size_t next = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -216,7 +227,8 @@ void VtkReader::readCellsBySize() {
 
 IntegerArray VtkReader::readNamedIntegers(const char* name, std::size_t count) {
   const std::string found = upperCase(in_.word(name));
-  if (found != name) in_.fail(std::string("expected ") + name + ", found " + quoted(found) + "; export the file again");
+  if (found != name)
+    in_.fail(std::string("expected ") + name + ", found " + excerpt(found) + "; export the file again");
   const ValueType type = readType(false, "the type of the array");
   return readIntegers(count, type.bytes, name);
 }
@@ -252,12 +264,12 @@ void VtkReader::readCellsByOffset() {
 }
 
 void VtkReader::readCellTypes() {
-  const auto count = static_cast<std::size_t>(readTotal("cell types", {1, kInt}));
+  const auto count = static_cast<std::size_t>(readTotal("cell types", {1, kVtkInt}));
   if (count != cells_.size()) {
     in_.fail("there are " + std::to_string(count) + " cell types for " + std::to_string(cells_.size()) +
              " cells; export the file again");
   }
-  const IntegerArray types = readIntegers(count, kInt, "cell types");
+  const IntegerArray types = readIntegers(count, kVtkInt, "cell types");
   for (std::size_t i = 0; i < count; ++i) {
     const std::int64_t type = types.values[i];
     const bool high_order =
@@ -325,7 +337,7 @@ ValueType VtkReader::readAnyType(const std::string& name) {
   const auto* type = std::find_if(std::begin(kValueTypes), std::end(kValueTypes),
                                   [&](const ValueType& known) { return type_name == known.name; });
   if (type == std::end(kValueTypes)) {
-    in_.fail("the array " + quoted(name) + " has the type " + quoted(type_name) +
+    in_.fail("the array " + excerpt(name) + " has the type " + excerpt(type_name) +
              ", which is not read; export the file without field data of this kind");
   }
   return *type;
@@ -357,7 +369,7 @@ void VtkReader::readAttribute(const std::string& keyword) {
   }
   const bool is_vector = keyword == "VECTORS" || keyword == "NORMALS";
   if (!is_vector && keyword != "TENSORS") {
-    in_.fail("data of the kind " + quoted(keyword) +
+    in_.fail("data of the kind " + excerpt(keyword) +
              " are not read (SCALARS, FIELD, VECTORS, NORMALS and TENSORS are); export the file without them");
   }
   const std::string name(in_.word("the name of the data"));
@@ -377,7 +389,7 @@ void VtkReader::readScalars() {
     components = static_cast<std::size_t>(rest[digit] - '0');
   }
   if (upperCase(in_.word("LOOKUP_TABLE")) != "LOOKUP_TABLE") {
-    in_.fail("the scalars " + quoted(name) + " must be followed by LOOKUP_TABLE; export the file again");
+    in_.fail("the scalars " + excerpt(name) + " must be followed by LOOKUP_TABLE; export the file again");
   }
   in_.word("the name of the lookup table");
   readValues(name, components, tuples_, type);

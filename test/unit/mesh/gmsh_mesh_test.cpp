@@ -10,6 +10,11 @@ namespace tissue_contact {
 namespace {
 
 /// Six nodes with sparse, unordered tags; a point, a triangle and two tetrahedra. Lines are counted in the tests below.
+const char* const kText1 =
+    "$NOD\n5\n70 0 0 0\n2000000000 1 0 0\n3 0 1 0\n41 0 0 1\n5 1. +1.0 1e0\n$ENDNOD\n"   // 1 to 8
+    "$ELM\n4\n1 15 0 1 1 70\n2 2 0 1 3 70 2000000000 3\n9 4 7 1 4 70 2000000000 3 41\n"  // 9 to 13
+    "8 4 7 1 4 2000000000 3 41 5\n$ENDELM\n";                                            // 14 to 15
+
 const char* const kText22 =
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"                                                  // 1 to 3
     "$Comments\nanything $Nodes\n$EndComments\n"                                              // 4 to 6
@@ -30,7 +35,7 @@ const char* const kText41 =
     "8 9000000000000000001 3 41 5\n$EndElements\n";                                                // 25 to 26
 
 TEST(GmshMesh, TextOfEveryVersionWithSparseTags) {
-  for (const char* text : {kText22, kText40, kText41}) expectSameMesh(loadBytes(text), twoTetrahedra());
+  for (const char* text : {kText1, kText22, kText40, kText41}) expectSameMesh(loadBytes(text), twoTetrahedra());
 }
 
 TEST(GmshMesh, LineEndsAndSpacesDoNotMatterInText) {
@@ -49,7 +54,7 @@ TEST(GmshMesh, GmshFilesOfEveryVersionAndEncodingAgree) {
   EXPECT_TRUE(mesh.positions.rowwise().maxCoeff() == Vector3(2, 1, 1));
   EXPECT_TRUE(mesh.positions.rowwise().minCoeff() == Vector3(0, 0, 0));
   for (const char* name :
-       {"box_v22_binary.msh", "box_v40_parametric.msh", "box_v41.msh", "box_v41_binary_parametric.msh"}) {
+       {"box_v1.msh", "box_v22_binary.msh", "box_v40_parametric.msh", "box_v41.msh", "box_v41_binary_parametric.msh"}) {
     SCOPED_TRACE(name);
     const TetMesh other = loadTetMesh(meshFile(fixturePath(name)));
     ASSERT_EQ(other.positions.cols(), mesh.positions.cols());
@@ -77,7 +82,7 @@ TEST(GmshMesh, HigherOrderIsRefusedInWords) {
 TEST(GmshMesh, EveryPrefixOfAFileIsRefused) {
   const TetMesh mesh = twoTetrahedra();
   for (const std::string& whole :
-       {std::string(kText22), std::string(kText40), std::string(kText41), msh22Binary(mesh, false),
+       {std::string(kText1), std::string(kText22), std::string(kText40), std::string(kText41), msh22Binary(mesh, false),
         msh4Binary(mesh, false, false), msh4Binary(mesh, true, true)}) {
     const FileOfBytes file(whole);  // one for all: thousands of folders of their own make some file systems wait
     const auto load = [&] { loadTetMesh(meshFile(file.path())); };
@@ -91,7 +96,7 @@ TEST(GmshMesh, EveryPrefixOfAFileIsRefused) {
 }
 
 TEST(GmshMesh, NamesTheFormatThatIsNotRead) {
-  expectRefused("$NOD\n1\n", {":1: ", "MSH 1.0", "gmsh -save -format msh41"});
+  expectRefused("$NODES\n1\n", {":1: ", "$NOD of MSH 1", "'$NODES'", "gmsh -save -format msh41"});
   for (const char* version : {"1", "2.3", "3", "4.2", "5", "x", "-2.2", "nan"}) {
     expectRefused(replaced(kText22, "2.2 0", std::string(version) + " 0"), {":2: MSH version '", version, "msh41"});
   }
@@ -111,6 +116,23 @@ TEST(GmshMesh, NamesSectionsThatAreWrong) {
   expectRefused(std::string(kText22) + "garbage", {":22: expected a section", "'garbage'"});
   expectRefused(std::string(kText22) + "$NodeData\n1\n", {":22: no $EndNodeData follows"});
   expectRefused(replaced(kText22, "$EndNodes", "$EndNode"), {":14: expected $EndNodes, found '$EndNode'"});
+}
+
+TEST(GmshMesh, NamesWhatIsWrongInTheFirstFormat) {
+  const std::string text(kText1);
+  expectRefused(replaced(text, "$NOD\n5", "$NOD\n4000000000"), {":2: the number of nodes is 4000000000", "truncated"});
+  expectRefused(replaced(text, "$ENDNOD", "$EndNodes"), {":8: expected $ENDNOD, found '$EndNodes'"});
+  expectRefused(text + "$NOD\n0\n$ENDNOD\n", {":16: a second section $NOD"});
+  expectRefused(text.substr(0, text.find("$ELM")), {"without a $ELM section", "truncated"});
+  expectRefused(text.substr(text.find("$ELM")), {":1: ", "$NOD of MSH 1", "'$ELM'"});
+  expectRefused("$NOD\n0\n$ENDNOD\n$NOD2\n", {":4: no $ENDNOD2 follows"});
+  expectRefused(replaced(text, "$ELM\n4", "$ELM\n999999999"), {":10: the number of elements is 999999999"});
+  expectRefused(replaced(text, "9 4 7 1 4", "9 4 7 1 3"),
+                {":13: element 9 has 3 nodes; its type 4 must have 4", "export the mesh again"});
+  expectRefused(replaced(text, "9 4 7 1 4", "9 4 7 1 -4"), {":13: element 9 has -4 nodes"});
+  expectRefused(replaced(text, "9 4 7 1 4", "9 11 7 1 4"), {":13: element 9 is a tetrahedron of higher order"});
+  expectRefused(replaced(text, "3 41 5\n$ENDELM", "3 41 6\n$ENDELM"),
+                {":14: element 8 refers to node tag 6, which $NOD does not define"});
 }
 
 TEST(GmshMesh, NamesCountsThatDoNotFit) {

@@ -65,6 +65,19 @@ std::vector<bool> heldElements(const Loaded& loaded, const Region& region) {
   return heldPoints(centroids, regions, "where", "centroid", "tissue");
 }
 
+/// MSH 1 has numbers only.
+const char* const kGroups1 =
+    "$NOD\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n$ENDNOD\n"
+    "$ELM\n4\n1 15 4 1 1 1\n2 2 9 1 3 3 4 5\n3 4 6 1 4 1 2 3 4\n4 4 7 1 4 2 3 4 5\n$ENDELM\n";
+
+TEST(MeshLabels, PhysicalGroupsOfTheFirstFormat) {
+  const Loaded loaded = load(kGroups1);
+  expectSameMesh(loaded.mesh, twoTetrahedra());
+  EXPECT_EQ(heldElements(loaded, GroupRegion{"7"}), (std::vector<bool>{false, true}));
+  EXPECT_EQ(heldNodes(loaded, GroupRegion{"9"}), (std::vector<bool>{false, false, true, true, true}));
+  EXPECT_EQ(heldNodes(loaded, GroupRegion{"4"}), (std::vector<bool>{true, false, false, false, false}));
+}
+
 TEST(MeshLabels, PhysicalGroupsOfEveryVersion) {
   for (const char* text : {kGroups22, kGroups41}) {
     SCOPED_TRACE(text);
