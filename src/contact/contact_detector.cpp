@@ -19,11 +19,6 @@
 #include "tissue_contact/core/entry_error.h"
 
 namespace tissue_contact {
-namespace {
-
-/// Of the smaller half extent of two shapes: the radius of the ball that fills the groove between them. Jaws keep their
-/// outline, and the groove of two parallel cylinders its walls at 48 degrees and more, which no friction below 1.1 locks.
-constexpr double kGrooveRadius = 0.5;
 
 /// One shape of one instrument's touching link.
 struct TouchingShape {
@@ -35,6 +30,12 @@ struct TouchingShape {
   std::unique_ptr<ShapeDistance> distance;
   double half_extent;  ///< smallest, m
 };
+
+namespace {
+
+/// Of the smaller half extent of two shapes: the radius of the ball that fills the groove between them. Jaws keep their
+/// outline, and the groove of two parallel cylinders its walls at 48 degrees and more, which no friction below 1.1 locks.
+constexpr double kGrooveRadius = 0.5;
 
 std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instruments,
                                           const MeshPreparation& preparation) {

@@ -22,7 +22,7 @@ std::optional<double> givenNumber(const ros::NodeHandle& node, const std::string
   double value = 0.0;
   if (!node.getParam(name, value)) {
     std::ostringstream text;
-    text << given;
+    given.write(text);
     throw std::invalid_argument(what + " is " + inQuotes(text.str()) + "; it must be a number " + range.text() + "; " +
                                 fix);
   }
@@ -48,7 +48,7 @@ std::string textParameter(const ros::NodeHandle& node, const std::string& name, 
   XmlRpc::XmlRpcValue given;
   if (!node.getParam(name, given) || node.getParam(name, value)) return value;
   std::ostringstream text;
-  text << given;
+  given.write(text);
   return text.str();
 }
 
@@ -65,7 +65,7 @@ std::vector<std::string> textsParameter(const ros::NodeHandle& node, const std::
   }
   if (node.getParam(name, texts)) return texts;
   std::ostringstream text;
-  text << given;
+  given.write(text);
   throw std::invalid_argument(what + " is " + inQuotes(text.str()) +
                               "; it must be a list of texts KEY=VALUE, or one of them; default: none");
 }

@@ -107,7 +107,7 @@ MeshGeometry parseMeshGeometry(const YamlCursor& cursor, const PathContext& path
   return mesh;
 }
 
-ShapeGeometry parseGeometry(const YamlMap& map, const PathContext& paths) {
+ShapeGeometry parseShapeGeometry(const YamlMap& map, const PathContext& paths) {
   const std::string kind = map.exactlyOne({"sphere", "box", "cylinder", "mesh"});
   const YamlCursor& value = map.get(kind);
   if (kind == "sphere") {
@@ -123,7 +123,7 @@ ShapeGeometry parseGeometry(const YamlMap& map, const PathContext& paths) {
 ShapeDescription parseShape(const YamlCursor& cursor, const PathContext& paths) {
   const YamlMap map = cursor.map();
   ShapeDescription shape;
-  shape.geometry = parseGeometry(map, paths);
+  shape.geometry = parseShapeGeometry(map, paths);
   if (const YamlCursor* value = map.find("pose")) shape.X_LS = parsePose(*value).X;
   return shape;
 }

@@ -105,7 +105,7 @@ ShellDescription parseShell(const YamlCursor& cursor, const PathContext& paths) 
   return shell;
 }
 
-decltype(TissueDescription::geometry) parseGeometry(const YamlMap& map, const PathContext& paths) {
+decltype(TissueDescription::geometry) parseTissueGeometry(const YamlMap& map, const PathContext& paths) {
   const std::string kind = map.exactlyOne({"block", "mesh", "sheet", "shell"});
   const YamlCursor& value = map.get(kind);
   if (kind == "block") return parseBlock(value);
@@ -158,7 +158,7 @@ TissueDescription parseTissue(const YamlCursor& cursor, const PathContext& paths
   const YamlMap map = cursor.map();
   TissueDescription tissue;
   tissue.name = parseName(map.get("name"));
-  tissue.geometry = parseGeometry(map, paths);
+  tissue.geometry = parseTissueGeometry(map, paths);
   if (const YamlCursor* value = map.find("refinement")) tissue.refinement = parseRefinement(*value);
   if (const YamlCursor* value = map.find("pose")) tissue.pose = parsePose(*value);
   tissue.material = parseMaterial(map.get("material"), isMembrane(tissue));

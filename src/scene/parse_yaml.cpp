@@ -13,14 +13,14 @@
 namespace tissue_contact {
 namespace {
 
-constexpr int kMaxDepth = 32;       // the deepest place of a scene is 10 levels down
+constexpr int kMaxYamlDepth = 32;   // the deepest place of a scene is 10 levels down
 constexpr int kMaxValues = 100000;  // a big scene has some thousand
 
 /// Walks the tree as the loader will, following each use of an alias: a small file of aliases of aliases may unfold
 /// into billions of values, and an alias inside its own anchor never ends.
 void checkSize(const YAML::Node& node, int depth, int& values_left, const YamlCursor& place) {
-  if (depth > kMaxDepth) {
-    place.fail("is nested more than " + std::to_string(kMaxDepth) + " levels deep or holds an alias of itself");
+  if (depth > kMaxYamlDepth) {
+    place.fail("is nested more than " + std::to_string(kMaxYamlDepth) + " levels deep or holds an alias of itself");
   }
   if (--values_left < 0) {
     place.fail("holds more than " + std::to_string(kMaxValues) +
@@ -97,7 +97,7 @@ YAML::Node parseDocument(const std::string& yaml, const LinePlace& place) {
   } catch (const YAML::DeepRecursion& error) {
     throw std::invalid_argument(place(error.mark.line + 1) +
                                 ": (YAML syntax): lists or maps are nested too deeply; at most " +
-                                std::to_string(kMaxDepth) + " levels are allowed");
+                                std::to_string(kMaxYamlDepth) + " levels are allowed");
   } catch (const YAML::Exception& error) {
     throw std::invalid_argument(place(error.mark.line + 1) + ": (YAML syntax): " + error.msg + " (column " +
                                 std::to_string(error.mark.column + 1) +

@@ -25,7 +25,7 @@ struct Mixture {
   std::vector<double> reached;  ///< and where it led
 };
 
-void gather(const Mixture& mixture, const std::vector<NodalVectors>& v, std::vector<double>& all) {
+void gatherBodies(const Mixture& mixture, const std::vector<NodalVectors>& v, std::vector<double>& all) {
   all.clear();
   for (const int k : mixture.bodies) all.insert(all.end(), v[k].data(), v[k].data() + v[k].size());
 }
@@ -122,7 +122,7 @@ void GaussSeidelRelaxation::prepareContacts(const ContactProblem& problem, Conta
 
 /// Nodes with one contact, which acts on no other node: those the sweep can hold.
 void GaussSeidelRelaxation::findNodeContacts(const ContactProblem& problem) {
-  constexpr int kNone = -1;
+  constexpr int kNoContact = -1;
   constexpr int kShared = -2;
   const auto single = [&](std::size_t c) {
     const ContactRow& row = problem.contacts[c];
@@ -132,12 +132,13 @@ void GaussSeidelRelaxation::findNodeContacts(const ContactProblem& problem) {
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) holding_ = holding_ || single(c);
   if (!holding_) return;
   node_contact_.resize(problem.bodies.size());
-  for (std::size_t k = 0; k < problem.bodies.size(); ++k) node_contact_[k].assign(problem.bodies[k].K->rows(), kNone);
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k)
+    node_contact_[k].assign(problem.bodies[k].K->rows(), kNoContact);
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     const ContactRow& row = problem.contacts[c];
     for (int a = 0; a < row.node_count; ++a) {
       int& holder = node_contact_[row.nodes[a].body][row.nodes[a].node];
-      holder = holder == kNone && single(c) ? static_cast<int>(c) : kShared;
+      holder = holder == kNoContact && single(c) ? static_cast<int>(c) : kShared;
     }
   }
 }
@@ -270,7 +271,7 @@ void GaussSeidelRelaxation::beginMixing(const ContactProblem& problem, const std
   }
   for (Mixture& mixture : mixtures_) {
     mixture.mixing.restart();
-    gather(mixture, v, mixture.begun);
+    gatherBodies(mixture, v, mixture.begun);
   }
 }
 
@@ -280,7 +281,7 @@ void GaussSeidelRelaxation::beginMixing(const ContactProblem& problem, const std
 void GaussSeidelRelaxation::mix(std::vector<NodalVectors>& v) {
   for (Mixture& mixture : mixtures_) {
     if (mixture.bodies.empty()) continue;
-    gather(mixture, v, mixture.reached);
+    gatherBodies(mixture, v, mixture.reached);
     viewOf(mixture.begun) = mixture.mixing.next(viewOf(mixture.begun), viewOf(mixture.reached));
     const double* from = mixture.begun.data();
     for (const int k : mixture.bodies) {

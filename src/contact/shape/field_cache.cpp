@@ -13,7 +13,7 @@ namespace tissue_contact {
 namespace {
 
 constexpr std::uint64_t kFormat = 2;  // raise it when the samples or this file change
-constexpr std::uintmax_t kMostBytes = 256u << 20;
+constexpr std::uintmax_t kMostFieldBytes = 256u << 20;
 constexpr const char* kExtension = ".field";
 
 /// What stands before the samples. Plain numbers without gaps, so that its bytes are its value.
@@ -96,7 +96,7 @@ bool readField(const std::string& directory, const std::string& key, MeshField& 
   if (!std::equal(header.key.begin(), header.key.end(), key.begin(), key.end())) return false;
   std::uintmax_t count = 1;
   for (const std::int64_t size : header.size) {
-    if (size < 4 || size > 1 << 20 || count > kMostBytes) return false;
+    if (size < 4 || size > 1 << 20 || count > kMostFieldBytes) return false;
     count *= static_cast<std::uintmax_t>(size);
   }
   if (content.size() != sizeof header + count * sizeof(float)) return false;

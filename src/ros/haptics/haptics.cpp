@@ -34,7 +34,7 @@
 namespace tissue_contact {
 namespace {
 
-constexpr const char* kUsage =
+constexpr const char* kHapticsUsage =
     R"(usage: rosrun tissue_contact tissue_contact_haptics wrench:=TOPIC servo_cf:=TOPIC [_parameter:=value]
 
 Drives a haptic device: the wrench on an instrument, scaled and bounded, at a fixed rate; zero when none comes. Needs a ROS master.
@@ -59,7 +59,7 @@ const std::vector<std::string> kNames = {"force_scale", "frame_id", "max_force_n
                                          "rate_hz",     "roll_rad", "stale_after_s", "torque_scale",  "yaw_rad"};
 
 // Far beyond any device; the bounds on force and torque are what protects the hand.
-constexpr Range kRate{1.0, 10000.0, "Hz"};
+constexpr Range kDeviceRate{1.0, 10000.0, "Hz"};
 constexpr Range kScale{-1000.0, 1000.0};
 constexpr Range kForce{0.0, 100.0, "N", "", true};
 constexpr Range kTorque{0.0, 10.0, "N m", "", true};
@@ -118,7 +118,7 @@ class Haptics {
   Haptics()
       : private_node_("~"),
         output_(readOptions(private_node_)),
-        rate_hz_(numberParameter(private_node_, "rate_hz", 1000.0, kRate)),
+        rate_hz_(numberParameter(private_node_, "rate_hz", 1000.0, kDeviceRate)),
         frame_(textParameter(private_node_, "frame_id", "")) {
     refuseUnknown(private_node_);
   }
@@ -189,7 +189,7 @@ class Haptics {
 int runHaptics(int argc, char** argv) {
   try {
     if (asksForHelp(argc, argv)) {
-      std::cout << kUsage;
+      std::cout << kHapticsUsage;
       requireWritten(std::cout);
       return 0;
     }

@@ -30,7 +30,7 @@
 namespace tissue_contact {
 namespace {
 
-constexpr const char* kUsage =
+constexpr const char* kNodeUsage =
     R"(usage: rosrun tissue_contact tissue_contact_node _scene:=SCENE.yaml [_parameter:=value] [from:=to] [__name:=name]
 
 Contact forces between instruments and soft tissue: joint states in, wrenches and deformed tissue out. Needs a ROS master
@@ -220,7 +220,7 @@ int runNode(int argc, char** argv) {
   // Before anything of ROS, which would wait for a master.
   try {
     if (asksForHelp(argc, argv)) {
-      std::cout << kUsage;
+      std::cout << kNodeUsage;
       requireWritten(std::cout);
       return 0;
     }

@@ -16,7 +16,7 @@ namespace tissue_contact {
 namespace {
 
 const std::string kBecomes = ":=";
-constexpr std::size_t kMaxName = 256;  // printed of a name that anybody may have set
+constexpr std::size_t kMaxPrintedName = 256;  // printed of a name that anybody may have set
 
 bool contains(const std::vector<std::string>& all, const std::string& one) {
   return std::find(all.begin(), all.end(), one) != all.end();
@@ -55,14 +55,14 @@ std::string refusalText(const std::string& refused, const std::string& own, cons
                         const std::vector<std::string>& arguments) {
   const std::string relative = refused.substr(own.size() + 1);
   const std::string nearest = nearestWord(relative, names);
-  return "parameter '" + printable(refused, kMaxName) + "' is none that this node reads; " +
+  return "parameter '" + printable(refused, kMaxPrintedName) + "' is none that this node reads; " +
          (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") +
          (relative == kRobotDescription ? "No instrument of the scene takes its URDF from it. " : "") + "It reads " +
          joined(names) + ". " +
          (contains(arguments, relative)
-              ? "It was given as _" + printable(relative, kMaxName) + ":=..."
+              ? "It was given as _" + printable(relative, kMaxPrintedName) + ":=..."
               : "Correct it where it is set (a launch file?), or remove it: rosparam delete " +
-                    printable(refused, kMaxName));
+                    printable(refused, kMaxPrintedName));
 }
 
 }  // namespace
