@@ -12,7 +12,7 @@
 #include "tissue_contact/friction/friction_law.h"
 
 namespace tissue_contact {
-namespace {
+namespace contact_problem_file_test {
 
 class ContactProblemFile : public ::testing::Test {
  protected:
@@ -178,5 +178,5 @@ TEST_F(ContactProblemFile, GarbledFilesAreReadOrRefusedButNothingElse) {
   EXPECT_LT(refused, 1000);
 }
 
-}  // namespace
+}  // namespace contact_problem_file_test
 }  // namespace tissue_contact

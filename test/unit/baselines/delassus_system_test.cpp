@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace tissue_contact {
-namespace {
+namespace delassus_system_test {
 
 /// Two free masses joined by a spring, touched at both by contacts; one more node fixed.
 struct TwoMasses {
@@ -96,5 +96,5 @@ TEST(DelassusSystem, RefusesAnIndefiniteBody) {
   EXPECT_THROW(makeDelassusProblem(scene.contacts), std::runtime_error);
 }
 
-}  // namespace
+}  // namespace delassus_system_test
 }  // namespace tissue_contact

@@ -12,7 +12,7 @@
 #include "tissue_contact/friction/friction_law.h"
 
 namespace tissue_contact {
-namespace {
+namespace delassus_test {
 
 constexpr SolverMethod kAllMethods[] = {SolverMethod::kPredictorCorrector, SolverMethod::kReference,
                                         SolverMethod::kCone4, SolverMethod::kPolyhedral, SolverMethod::kCondensedLcp};
@@ -310,5 +310,5 @@ TEST(SolveDelassus, RefusesBadInput) {
   refused(bad, solver(SolverMethod::kCondensedLcp));
 }
 
-}  // namespace
+}  // namespace delassus_test
 }  // namespace tissue_contact

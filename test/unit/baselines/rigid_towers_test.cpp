@@ -6,7 +6,7 @@
 #include "support/tower_problem.h"
 
 namespace tissue_contact {
-namespace {
+namespace rigid_towers_test {
 
 constexpr int kSeeds = 60;
 
@@ -30,5 +30,5 @@ TEST(RigidTowers, PredictorCorrectorSolvesThem) {
   }
 }
 
-}  // namespace
+}  // namespace rigid_towers_test
 }  // namespace tissue_contact

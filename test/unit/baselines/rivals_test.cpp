@@ -9,7 +9,7 @@
 #include "baselines/rival_contact.h"
 
 namespace tissue_contact {
-namespace {
+namespace rivals_test {
 
 Matrix3 randomCompliance(std::mt19937& random) {
   std::normal_distribution<double> normal;
@@ -217,5 +217,5 @@ TEST(Rivals, MoreSidesComeCloserToTheTrueCone) {
   EXPECT_LT(fine, 300 * 0.03);
 }
 
-}  // namespace
+}  // namespace rivals_test
 }  // namespace tissue_contact

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 namespace tissue_contact {
-namespace {
+namespace measures_test {
 
 using RunRecord = Run;  // Run alone is a member of testing::Test
 
@@ -110,5 +110,5 @@ TEST(RichardsonTest, FindsTheErrorOfThePowerLawItAssumes) {
   EXPECT_THROW(richardsonError(1.0, 2.0, kNan), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace measures_test
 }  // namespace tissue_contact

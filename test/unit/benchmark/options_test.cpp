@@ -7,7 +7,7 @@
 #include "support/comma_locale.h"
 
 namespace tissue_contact {
-namespace {
+namespace options_test {
 
 TEST(BenchmarkOptionsTest, ShippedScenes) {
   const BenchmarkOptions options =
@@ -52,5 +52,5 @@ TEST(BenchmarkOptionsTest, RefusesWhatMakesNoSense) {
   }
 }
 
-}  // namespace
+}  // namespace options_test
 }  // namespace tissue_contact

@@ -14,7 +14,7 @@
 #include "support/temporary_directory.h"
 
 namespace tissue_contact {
-namespace {
+namespace truth_table_test {
 
 using RunRecord = Run;  // Run alone is a member of testing::Test
 
@@ -159,5 +159,5 @@ TEST(StoredTruthTest, TheSimulatorKnowsItsErrorOfPressAndDrag) {
   EXPECT_GT(refined.within, 0.3);
 }
 
-}  // namespace
+}  // namespace truth_table_test
 }  // namespace tissue_contact

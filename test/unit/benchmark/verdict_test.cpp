@@ -8,7 +8,7 @@
 #include <variant>
 
 namespace tissue_contact {
-namespace {
+namespace verdict_test {
 
 Scene blockScene() {
   Scene scene;
@@ -72,5 +72,5 @@ TEST(RefinedSceneTest, NothingToRefineOrTooManyNodes) {
   EXPECT_EQ(cellsText(scene), "");
 }
 
-}  // namespace
+}  // namespace verdict_test
 }  // namespace tissue_contact

@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace tissue_contact {
-namespace {
+namespace conforming_gap_test {
 
 /// A right triangle with legs `edge` in the plane z = 0; a sphere of radius R above the point with weights w, its lowest
 /// point at height `gap`.
@@ -58,5 +58,5 @@ TEST(ConformingGap, ChangesWithoutAJumpFromSmoothToSharp) {
   EXPECT_EQ(before, 0.0);
 }
 
-}  // namespace
+}  // namespace conforming_gap_test
 }  // namespace tissue_contact

@@ -10,7 +10,7 @@
 #include "contact_test_utilities.h"
 
 namespace tissue_contact::contact_test {
-namespace {
+namespace contact_detector_test {
 
 ShapeDescription sphere(double radius, const Vector3& p) { return {SphereGeometry{radius}, at(p)}; }
 
@@ -411,5 +411,5 @@ TEST(SmallestHalfExtent, OfEveryShape) {
   EXPECT_DOUBLE_EQ(smallestHalfExtent(shape), 0.002);
 }
 
-}  // namespace
+}  // namespace contact_detector_test
 }  // namespace tissue_contact::contact_test

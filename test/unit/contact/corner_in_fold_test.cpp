@@ -4,7 +4,7 @@
 #include "contact_test_utilities.h"
 
 namespace tissue_contact::contact_test {
-namespace {
+namespace corner_in_fold_test {
 
 /// Pyramid with its point down at the origin, four sides, half angle of 14 degrees: its flanks alone give no direction
 /// that pushes down. Only its corner and, as far as vertices of the tissue ask, its flanks.
@@ -85,5 +85,5 @@ TEST(CornerInFold, TipNextToARimIsNotInside) {
   EXPECT_EQ(cornerContact(contacts), nullptr);
 }
 
-}  // namespace
+}  // namespace corner_in_fold_test
 }  // namespace tissue_contact::contact_test

@@ -14,7 +14,7 @@
 #include "support/temporary_directory.h"
 
 namespace tissue_contact::contact_test {
-namespace {
+namespace field_cache_test {
 
 namespace fs = std::filesystem;
 
@@ -153,5 +153,5 @@ TEST_F(FieldCache, TwoAtOnceLeaveOneWholeFile) {
   EXPECT_TRUE(fromCache());
 }
 
-}  // namespace
+}  // namespace field_cache_test
 }  // namespace tissue_contact::contact_test

@@ -6,7 +6,7 @@
 #include "contact_test_utilities.h"
 
 namespace tissue_contact::contact_test {
-namespace {
+namespace leaving_face_test {
 
 constexpr double kEdge = 0.002;  // m, of the cells
 constexpr double kAbove = 1e-4;  // m, of the point above the lower face
@@ -108,5 +108,5 @@ TEST(LeavingFace, WhatIsRoundHasNoEdges) {
   }
 }
 
-}  // namespace
+}  // namespace leaving_face_test
 }  // namespace tissue_contact::contact_test

@@ -13,7 +13,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact::contact_test {
-namespace {
+namespace mesh_field_test {
 
 std::shared_ptr<const MeshField> fieldOf(const TriangleMesh& mesh) {
   MeshPreparation silent;
@@ -334,5 +334,5 @@ TEST(MeshField, SameBitsEveryTime) {
   EXPECT_EQ(one->grid.samples, other->grid.samples);
 }
 
-}  // namespace
+}  // namespace mesh_field_test
 }  // namespace tissue_contact::contact_test

@@ -7,7 +7,7 @@
 #include "contact_test_utilities.h"
 
 namespace tissue_contact::contact_test {
-namespace {
+namespace narrow_phase_robustness_test {
 
 const Vector3 kBlock(0.1, 0.1, 0.03);
 constexpr double kPi = 3.14159265358979323846;
@@ -307,5 +307,5 @@ TEST(NarrowPhase, NotConvexMeshTouchesWhereItShould) {
   }
 }
 
-}  // namespace
+}  // namespace narrow_phase_robustness_test
 }  // namespace tissue_contact::contact_test

@@ -6,7 +6,7 @@
 #include "contact_test_utilities.h"
 
 namespace tissue_contact::contact_test {
-namespace {
+namespace narrow_phase_test {
 
 const Vector3 kBlock(0.1, 0.1, 0.03);
 constexpr double kPi = 3.14159265358979323846;
@@ -297,5 +297,5 @@ TEST(NarrowPhase, MeshBoxMakesTheContactsOfTheBox) {
   EXPECT_GT(both, 30);
 }
 
-}  // namespace
+}  // namespace narrow_phase_test
 }  // namespace tissue_contact::contact_test

@@ -9,7 +9,7 @@
 #include "contact_test_utilities.h"
 
 namespace tissue_contact::contact_test {
-namespace {
+namespace nodal_normal_test {
 
 constexpr double kRadius = 0.005;
 constexpr int kSectors = 6;
@@ -150,5 +150,5 @@ TEST(NodalNormal, ChangesWithoutAJumpFromSmoothToSharp) {
   }
 }
 
-}  // namespace
+}  // namespace nodal_normal_test
 }  // namespace tissue_contact::contact_test

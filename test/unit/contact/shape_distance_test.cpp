@@ -7,7 +7,7 @@
 #include "contact_test_utilities.h"
 
 namespace tissue_contact::contact_test {
-namespace {
+namespace shape_distance_test {
 
 struct NamedShape {
   std::string name;
@@ -204,5 +204,5 @@ TEST(ShapeDistance, WorldBoxIsTight) {
   }
 }
 
-}  // namespace
+}  // namespace shape_distance_test
 }  // namespace tissue_contact::contact_test

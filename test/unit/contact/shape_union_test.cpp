@@ -9,7 +9,7 @@
 #include "contact_test_utilities.h"
 
 namespace tissue_contact::contact_test {
-namespace {
+namespace shape_union_test {
 
 constexpr double kR = 1.5e-3;  // two cylinders side by side along y, like a closed pair of jaws
 constexpr double kRho = 0.75e-3;
@@ -144,5 +144,5 @@ TEST(ShapeUnion, ATipWithoutRoomIsLetGoAndCounted) {
   EXPECT_LT(normals[0] * normals[1], -0.9);
 }
 
-}  // namespace
+}  // namespace shape_union_test
 }  // namespace tissue_contact::contact_test

@@ -7,7 +7,7 @@
 #include "tissue_pair_test_utilities.h"
 
 namespace tissue_contact {
-namespace {
+namespace sheet_contact_test {
 
 using namespace contact_test;
 
@@ -190,5 +190,5 @@ TEST(SheetContact, RefusesABadThickness) {
   }
 }
 
-}  // namespace
+}  // namespace sheet_contact_test
 }  // namespace tissue_contact

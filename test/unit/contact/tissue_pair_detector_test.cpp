@@ -9,7 +9,7 @@
 #include "tissue_pair_test_utilities.h"
 
 namespace tissue_contact {
-namespace {
+namespace tissue_pair_detector_test {
 
 using namespace contact_test;
 
@@ -323,5 +323,5 @@ TEST(TissuePairDetector, RefusesWhatDoesNotFit) {
   EXPECT_THROW(detector.detect({block.nodes, NodalVectors::Zero(3, 2)}, 1e-3, contacts), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace tissue_pair_detector_test
 }  // namespace tissue_contact

@@ -4,7 +4,7 @@
 #include "tissue_pair_test_utilities.h"
 
 namespace tissue_contact {
-namespace {
+namespace tissue_pair_robustness_test {
 
 using namespace contact_test;
 
@@ -258,5 +258,5 @@ TEST(TissuePairs, DegenerateTrianglesGiveSoundContactsOrNone) {
   }
 }
 
-}  // namespace
+}  // namespace tissue_pair_robustness_test
 }  // namespace tissue_contact

@@ -4,7 +4,7 @@
 #include "tissue_pair_test_utilities.h"
 
 namespace tissue_contact {
-namespace {
+namespace tissue_pair_sheet_test {
 
 using namespace contact_test;
 
@@ -209,5 +209,5 @@ TEST(SheetPairs, VolumesDoNotTouchThemselves) {
   }
 }
 
-}  // namespace
+}  // namespace tissue_pair_sheet_test
 }  // namespace tissue_contact

@@ -15,7 +15,7 @@
 #include <vector>
 
 namespace tissue_contact {
-namespace {
+namespace background_worker_test {
 
 void takeTime() { std::this_thread::sleep_for(std::chrono::milliseconds(50)); }
 
@@ -102,5 +102,5 @@ TEST(BackgroundWorker, RefusesInAForkedProcess) {
 
 TEST(BackgroundWorker, EndsWithoutAnyJob) { const BackgroundWorker worker; }
 
-}  // namespace
+}  // namespace background_worker_test
 }  // namespace tissue_contact

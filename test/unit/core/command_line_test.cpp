@@ -9,7 +9,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace command_line_test {
 
 using Words = std::vector<std::string>;
 
@@ -92,5 +92,5 @@ TEST(CommandLine, NumbersAreRefusedWithTheirRange) {
   }
 }
 
-}  // namespace
+}  // namespace command_line_test
 }  // namespace tissue_contact

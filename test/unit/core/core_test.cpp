@@ -15,7 +15,7 @@
 #include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
-namespace {
+namespace core_test {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -119,5 +119,5 @@ TEST(BlockPattern, SlicesKeepTheOrderOfNeighbours) {
   EXPECT_LE(pattern->slices(), pattern->nodes / 3);  // most are full
 }
 
-}  // namespace
+}  // namespace core_test
 }  // namespace tissue_contact

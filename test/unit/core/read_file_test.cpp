@@ -17,7 +17,7 @@
 #include "support/temporary_directory.h"
 
 namespace tissue_contact {
-namespace {
+namespace read_file_test {
 
 namespace fs = std::filesystem;
 
@@ -99,5 +99,5 @@ TEST_F(ReadFile, UnreadableFilesGiveTheReason) {
   EXPECT_NE(refusal(path("secret")).find("Permission denied"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace read_file_test
 }  // namespace tissue_contact

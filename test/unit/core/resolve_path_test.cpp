@@ -8,7 +8,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace resolve_path_test {
 
 std::string packageDirectory(const std::string& package) { return package == "known" ? "/opt/known" : ""; }
 
@@ -40,5 +40,5 @@ TEST(ResolvePath, NeedsAPackageLookUpOnlyForPackages) {
   EXPECT_EQ(resolvePath("a", "/base", nullptr), "/base/a");
 }
 
-}  // namespace
+}  // namespace resolve_path_test
 }  // namespace tissue_contact

@@ -13,7 +13,7 @@
 #include "support/comma_locale.h"
 
 namespace tissue_contact {
-namespace {
+namespace text_test {
 
 void expectNumbers() {
   EXPECT_EQ(toDouble("0.5"), 0.5);
@@ -59,5 +59,5 @@ TEST(TwoDigits, HaveNoExponentWherePeopleRead) {
   EXPECT_EQ(twoDigits(std::numeric_limits<double>::infinity()), "inf");
 }
 
-}  // namespace
+}  // namespace text_test
 }  // namespace tissue_contact

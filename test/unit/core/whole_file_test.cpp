@@ -20,7 +20,7 @@
 #include "support/temporary_directory.h"
 
 namespace tissue_contact {
-namespace {
+namespace whole_file_test {
 
 namespace fs = std::filesystem;
 
@@ -267,5 +267,5 @@ TEST_F(WholeFileTest, OutputsAreNoInputsAndNotEachOther) {
   EXPECT_EQ(names(), (std::vector<std::string>{"a", "hard", "in", "soft"}));
 }
 
-}  // namespace
+}  // namespace whole_file_test
 }  // namespace tissue_contact

@@ -8,7 +8,7 @@
 #include "tissue_contact/friction/friction_law.h"
 
 namespace tissue_contact {
-namespace {
+namespace anisotropic_contact_test {
 
 using Kind = FrictionLawDescription::Kind;
 using LawPointer = std::unique_ptr<const AnisotropicFriction>;
@@ -207,5 +207,5 @@ TEST(SolveAnisotropicContact, EqualCoefficientsAreIsotropic) {
   EXPECT_GT(slid, 1000);
 }
 
-}  // namespace
+}  // namespace anisotropic_contact_test
 }  // namespace tissue_contact

@@ -7,7 +7,7 @@
 #include <random>
 
 namespace tissue_contact {
-namespace {
+namespace coulomb_test {
 
 /// Round-off of a handful of operations on numbers of order 1.
 constexpr double kRoundOff = 1e-14;
@@ -104,5 +104,5 @@ TEST(SolveCoulombContact, HardContactsAreSolvedAsWell) {
   EXPECT_GT(slid, 5000);
 }
 
-}  // namespace
+}  // namespace coulomb_test
 }  // namespace tissue_contact

@@ -10,7 +10,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace friction_law_test {
 
 using Kind = FrictionLawDescription::Kind;
 
@@ -311,5 +311,5 @@ const BadLaw kBadLaws[] = {
 INSTANTIATE_TEST_SUITE_P(All, BadFrictionLaw, testing::ValuesIn(kBadLaws),
                          [](const testing::TestParamInfo<BadLaw>& bad) { return bad.param.name; });
 
-}  // namespace
+}  // namespace friction_law_test
 }  // namespace tissue_contact

@@ -10,7 +10,7 @@
 #include "unit/mesh/mesh_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace collision_shape_test {
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 const double kInfinity = std::numeric_limits<double>::infinity();
@@ -72,5 +72,5 @@ TEST(MakeCollisionShape, RefusesOpenSheets) {
                  {"sheet.obj", "open sheet", "4 of its 6", "closed solid"});
 }
 
-}  // namespace
+}  // namespace collision_shape_test
 }  // namespace tissue_contact

@@ -11,7 +11,7 @@
 #include "unit/mesh/mesh_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace instrument_test {
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -214,5 +214,5 @@ TEST(ContactLinks, MeshesOfTheUrdfAreReadOnlyWhereTheyTouch) {
                   directory.path("missing.stl"), "does not exist"});
 }
 
-}  // namespace
+}  // namespace instrument_test
 }  // namespace tissue_contact

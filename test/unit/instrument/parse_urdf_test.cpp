@@ -8,7 +8,7 @@
 #include "instrument_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace parse_urdf_test {
 
 const std::string kTwoLinks =
     "<link name=\"a\"/><link name=\"b\"/>";  // NOLINT(bugprone-throwing-static-initialization)
@@ -261,5 +261,5 @@ TEST(LoadUrdf, UnreadableFiles) {
   expectContains(refusal([&] { loadUrdf(bad, nullptr); }), {bad + ":2:", "</robot>"});
 }
 
-}  // namespace
+}  // namespace parse_urdf_test
 }  // namespace tissue_contact

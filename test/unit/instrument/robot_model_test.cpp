@@ -9,7 +9,7 @@
 #include "instrument_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace robot_model_test {
 
 using Link = RobotModel::Link;
 
@@ -196,5 +196,5 @@ TEST(RobotModel, RefusesNumbersThatAreNotFinite) {
   expectContains(refusal([&] { build(bad); }), {"'child'", "offset", "not finite"});
 }
 
-}  // namespace
+}  // namespace robot_model_test
 }  // namespace tissue_contact

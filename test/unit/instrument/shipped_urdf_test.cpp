@@ -21,7 +21,7 @@
 #include "unit/mesh/mesh_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace shipped_urdf_test {
 
 const Vector3 kX = Vector3::UnitX();
 const Vector3 kY = Vector3::UnitY();
@@ -271,5 +271,5 @@ TEST(OrganSurface, LargeClosedMeshIsConnectedAndOutward) {
   EXPECT_GT(enclosedVolume(mesh), 0.0);
 }
 
-}  // namespace
+}  // namespace shipped_urdf_test
 }  // namespace tissue_contact

@@ -19,7 +19,7 @@
 #include "tissue/element_patches.h"
 
 namespace tissue_contact {
-namespace {
+namespace bisection_test {
 
 using Place = std::array<double, 3>;
 
@@ -244,5 +244,5 @@ TEST(Bisection, OfOrgansThatOthersMeshedIsWholeAndNotMuchWorse) {
   }
 }
 
-}  // namespace
+}  // namespace bisection_test
 }  // namespace tissue_contact

@@ -15,7 +15,7 @@
 #include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
-namespace {
+namespace block_mesh_test {
 
 using FineAt = AxisGrading::FineAt;
 
@@ -198,5 +198,5 @@ TEST(BlockMesh, OfSixTetrahedraPerCellFillsTheBlockAndMirrorsNeighbours) {
   EXPECT_NEAR(volumeByDivergenceTheorem(mesh.positions, surface), 0.006, 1e-15);
 }
 
-}  // namespace
+}  // namespace block_mesh_test
 }  // namespace tissue_contact

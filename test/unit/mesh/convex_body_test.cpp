@@ -9,7 +9,7 @@
 #include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
-namespace {
+namespace convex_body_test {
 
 TetMesh makeBlock() {
   BlockDescription block;
@@ -87,5 +87,5 @@ TEST(ConvexBody, TellsWhetherTheLargestStrainIsBelowTheLimit) {
   EXPECT_LT(below, 900);
 }
 
-}  // namespace
+}  // namespace convex_body_test
 }  // namespace tissue_contact

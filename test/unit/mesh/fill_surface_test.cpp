@@ -16,7 +16,7 @@
 #include "tissue_contact/mesh/triangle_mesh.h"
 
 namespace tissue_contact {
-namespace {
+namespace fill_surface_test {
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -355,5 +355,5 @@ TEST(MeshQuality, OfARegularTetrahedron) {
   EXPECT_NEAR(qualityOf(mesh).volume, 1.0 / 3.0, 1e-12);
 }
 
-}  // namespace
+}  // namespace fill_surface_test
 }  // namespace tissue_contact

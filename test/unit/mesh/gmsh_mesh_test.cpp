@@ -7,7 +7,7 @@
 #include "mesh_writers.h"
 
 namespace tissue_contact {
-namespace {
+namespace gmsh_mesh_test {
 
 /// Six nodes with sparse, unordered tags; a point, a triangle and two tetrahedra. Lines are counted in the tests below.
 const char* const kText1 =
@@ -214,5 +214,5 @@ TEST(GmshMesh, SkipsEveryOtherElementByItsNumberOfNodes) {
   }
 }
 
-}  // namespace
+}  // namespace gmsh_mesh_test
 }  // namespace tissue_contact

@@ -13,7 +13,7 @@
 #include "mesh_writers.h"
 
 namespace tissue_contact {
-namespace {
+namespace labels_test {
 
 /// Two tetrahedra, the second one's outer face, and one node, in groups; by version of the format.
 const char* const kGroups22 =
@@ -148,5 +148,5 @@ TEST(MeshLabels, DamagedOnesAreRefused) {
                 {"17 physical groups", "16"});
 }
 
-}  // namespace
+}  // namespace labels_test
 }  // namespace tissue_contact

@@ -11,7 +11,7 @@
 #include "mesh_writers.h"
 
 namespace tissue_contact {
-namespace {
+namespace mesh_file_test {
 
 /// One tetrahedron on nodes 1, 2, 4 and 5 of six: 0 and 3 belong to none.
 const char* const kUnreferenced =
@@ -158,5 +158,5 @@ TEST(MeshFile, TheGallbladdersLooseNodeIsNamedWithTheFix) {
       {"tissue 'gallbladder': node 314 belongs to no tetrahedron (1 such", "`remove_unreferenced_nodes: true`"});
 }
 
-}  // namespace
+}  // namespace mesh_file_test
 }  // namespace tissue_contact

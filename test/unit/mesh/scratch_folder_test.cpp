@@ -17,7 +17,7 @@
 #include "mesh/fill/run_program.h"
 
 namespace tissue_contact {
-namespace {
+namespace scratch_folder_test {
 
 namespace fs = std::filesystem;
 
@@ -136,5 +136,5 @@ TEST(ScratchFolder, GoesWhereEveryProcessIsToldToEnd) {
   EXPECT_FALSE(fs::exists(path));
 }
 
-}  // namespace
+}  // namespace scratch_folder_test
 }  // namespace tissue_contact

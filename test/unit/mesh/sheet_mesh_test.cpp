@@ -10,7 +10,7 @@
 #include "tissue_contact/mesh/triangle_mesh.h"
 
 namespace tissue_contact {
-namespace {
+namespace sheet_mesh_test {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -133,5 +133,5 @@ TEST_F(ShellFile, BadScaleAndMissingFileAreNamed) {
   EXPECT_THROW(loadShellMesh({path + ".gone", 1.0, 1e-3}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace sheet_mesh_test
 }  // namespace tissue_contact

@@ -7,7 +7,7 @@
 #include "unit/contact/contact_test_utilities.h"
 
 namespace tissue_contact::contact_test {
-namespace {
+namespace surface_test {
 
 TEST(EdgeTable, NamesBothTrianglesOfAnEdgeAndTheWayTheyRunIt) {
   const EdgeTable table({{0, 1, 2}, {2, 1, 3}});
@@ -117,5 +117,5 @@ TEST(MovingSurface, IsWhereItWasPlacedLastWhateverCameBefore) {
   EXPECT_THROW(placeAll(*shared, {}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace surface_test
 }  // namespace tissue_contact::contact_test

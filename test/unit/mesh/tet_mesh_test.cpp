@@ -11,7 +11,7 @@
 #include "mesh_writers.h"
 
 namespace tissue_contact {
-namespace {
+namespace tet_mesh_test {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -189,5 +189,5 @@ TEST(FixedNodes, RefusesRegionsThatAreNotNumbersOrHaveNoDirection) {
   expectRefusal([&] { fixedNodes(NodalVectors(3, 0), {SphereRegion{{0, 0, 0}, 1}}, "m"); }, {"no nodes"});
 }
 
-}  // namespace
+}  // namespace tet_mesh_test
 }  // namespace tissue_contact

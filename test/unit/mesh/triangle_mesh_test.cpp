@@ -10,7 +10,7 @@
 #include "unit/instrument/instrument_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace triangle_mesh_test {
 
 const Vector3 kNoScale = Vector3::Ones();
 
@@ -260,5 +260,5 @@ TEST_F(LoadTriangleMesh, OtherFilesNamedInAMeshAreNotOpened) {
   expectTetrahedron(load("a.obj", "mtllib /dev/zero\n" + obj()));
 }
 
-}  // namespace
+}  // namespace triangle_mesh_test
 }  // namespace tissue_contact

@@ -8,7 +8,7 @@
 #include "mesh_writers.h"
 
 namespace tissue_contact {
-namespace {
+namespace vtk_mesh_test {
 
 /// A triangle and two tetrahedra on five points. Lines are counted in the tests below.
 const char* const kText3 =
@@ -159,5 +159,5 @@ TEST(VtkMesh, FieldDataThatCannotBeSkippedIsNamed) {
   expectRefused(with_field("FIELD FieldData 99999\n"), {":5: the number of field arrays is 99999"});
 }
 
-}  // namespace
+}  // namespace vtk_mesh_test
 }  // namespace tissue_contact

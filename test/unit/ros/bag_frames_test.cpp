@@ -12,7 +12,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace bag_frames_test {
 
 tf2_msgs::TFMessage transform(const std::string& parent, const std::string& child, double z_m, unsigned stamp_s) {
   tf2_msgs::TFMessage message;
@@ -94,5 +94,5 @@ TEST_F(BagFramesTest, LongNamesOfFramesAreLeftOutAndCounted) {
                 {"1001 transforms with names of frames longer than 256 bytes"});
 }
 
-}  // namespace
+}  // namespace bag_frames_test
 }  // namespace tissue_contact

@@ -10,7 +10,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace bag_reader_test {
 
 using rosbag::compression::BZ2;
 using rosbag::compression::LZ4;
@@ -152,5 +152,5 @@ TEST_F(BagReaderTest, CompressedDataThatAreDamaged) {
   }
 }
 
-}  // namespace
+}  // namespace bag_reader_test
 }  // namespace tissue_contact

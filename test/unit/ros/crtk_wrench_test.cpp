@@ -7,7 +7,7 @@
 #include <cmath>
 
 namespace tissue_contact {
-namespace {
+namespace crtk_wrench_test {
 
 const double kQuarter = std::acos(0.0);
 
@@ -54,5 +54,5 @@ TEST(CrtkWrench, BothGiveTheSamePower) {
               spatial.force.dot(velocity_B) + spatial.torque.dot(turning_B), 1e-15);
 }
 
-}  // namespace
+}  // namespace crtk_wrench_test
 }  // namespace tissue_contact

@@ -22,7 +22,7 @@
 #include "tissue_contact/instrument/parse_urdf.h"
 
 namespace tissue_contact {
-namespace {
+namespace fk_bag_test {
 
 const char kBag[] = TISSUE_CONTACT_SHARED_DATA "/dvrk/psm2_classic_motion.bag";
 
@@ -124,5 +124,5 @@ TEST(ForwardKinematicsOfARealRobot, AgreesWithTheRecordedTipPose) {
   EXPECT_LE(angle_max, 1e-3);
 }
 
-}  // namespace
+}  // namespace fk_bag_test
 }  // namespace tissue_contact

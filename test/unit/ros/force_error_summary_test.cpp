@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace tissue_contact {
-namespace {
+namespace force_error_summary_test {
 
 ForceErrorEstimate estimate(double mesh_n, double step_n, double solver_n, bool knows_mesh = true) {
   return {knows_mesh, mesh_n, step_n, solver_n};
@@ -45,5 +45,5 @@ TEST(ForceErrorSummary, AdvisesNothingAboutAMeshThatIsNotKnown) {
   EXPECT_NE(summary.text().find("not known, step 10 %, solver 0 %); for less take shorter steps"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace force_error_summary_test
 }  // namespace tissue_contact

@@ -8,7 +8,7 @@
 #include <limits>
 
 namespace tissue_contact {
-namespace {
+namespace haptic_output_test {
 
 constexpr std::int64_t kMs = 1000000;  // ns
 
@@ -61,5 +61,5 @@ TEST(HapticOutput, IsZeroForWhatIsNotFinite) {
   EXPECT_EQ(output.notFinite(), 3);
 }
 
-}  // namespace
+}  // namespace haptic_output_test
 }  // namespace tissue_contact

@@ -11,7 +11,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace instrument_messages_test {
 
 /// A scene with the block and these instruments, all of a parameter's URDF, {name: parameter}.
 Simulator sceneOf(const std::map<std::string, std::string>& instruments, const std::string& world_frame = "world") {
@@ -61,5 +61,5 @@ TEST(FrameNames, AreRefusedWhereALinkIsCalledAsTheFrameOfAnother) {
   expectRefusal([&] { frameNames(simulator); }, {"two links", "'a/tip'", "rename one in its URDF"});
 }
 
-}  // namespace
+}  // namespace instrument_messages_test
 }  // namespace tissue_contact

@@ -6,7 +6,7 @@
 #include <csignal>
 
 namespace tissue_contact {
-namespace {
+namespace interruption_test {
 
 TEST(SignalWatch, NotesTheFirst) {
   for (const int number : {SIGINT, SIGTERM}) {
@@ -31,5 +31,5 @@ TEST(SignalWatch, TheSecondEndsTheProcess) {
   }
 }
 
-}  // namespace
+}  // namespace interruption_test
 }  // namespace tissue_contact

@@ -18,7 +18,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace joint_state_bag_test {
 
 using rosbag::compression::BZ2;
 using rosbag::compression::LZ4;
@@ -382,5 +382,5 @@ TEST_P(CompressedBag, EveryByteSpoilt) {
   EXPECT_GT(refused, 1000 / kBytesApart);  // lengths, kinds, names; what is left are values
 }
 
-}  // namespace
+}  // namespace joint_state_bag_test
 }  // namespace tissue_contact

@@ -12,7 +12,7 @@
 #include "ros/node/sequence_gaps.h"
 
 namespace tissue_contact {
-namespace {
+namespace joint_state_inbox_test {
 
 ReceivedState stateAt(std::int64_t stamp_ns, double received_s = 0.0) {
   ReceivedState state;
@@ -162,5 +162,5 @@ TEST(SequenceGaps, CountWhatAPublisherNumberedAndNeverCame) {
   EXPECT_EQ(gaps.missing(), 11);
 }
 
-}  // namespace
+}  // namespace joint_state_inbox_test
 }  // namespace tissue_contact

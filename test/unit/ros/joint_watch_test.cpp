@@ -11,7 +11,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace joint_watch_test {
 
 /// A slide x of 0 to 0.2 m, a hinge y without limits worth the name, and a continuous joint z.
 const char kRobot[] =
@@ -79,5 +79,5 @@ TEST_F(JointWatchOfOneArm, AJawThatWasNotRecordedIsNoFinding) {
   EXPECT_EQ(watch.findings(), std::vector<std::string>());
 }
 
-}  // namespace
+}  // namespace joint_watch_test
 }  // namespace tissue_contact

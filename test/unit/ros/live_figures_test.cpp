@@ -11,7 +11,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace live_figures_test {
 
 TEST(JointStatePolicy, TheSceneHasTheLastWord) {
   for (const bool simulated_time : {false, true}) {
@@ -154,5 +154,5 @@ TEST(CountsLine, NamesEveryCount) {
       "8 waiting; 59 wrenches published, 0 resets, largest lag 0.0123 s");
 }
 
-}  // namespace
+}  // namespace live_figures_test
 }  // namespace tissue_contact

@@ -14,7 +14,7 @@
 #include "tissue_contact/simulation/joint_state_player.h"
 
 namespace tissue_contact {
-namespace {
+namespace live_pacing_test {
 
 constexpr double kBound = 0.02;  // s
 constexpr double kTiny = 1e-9;   // s: round-off of sums of seconds
@@ -247,5 +247,5 @@ TEST(LivePacing, WhereStepsFillTheTimeOnlyTheBoundCounts) {
   EXPECT_TRUE(std::isinf(pacing.promptDeadline(now_s)));
 }
 
-}  // namespace
+}  // namespace live_pacing_test
 }  // namespace tissue_contact

@@ -12,7 +12,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace lock_step_test {
 
 const char* const kTopic = "/probe/joint_states";
 const char* const kScene = TISSUE_CONTACT_SOURCE_DIR "/doc/controller_test/config/scene.yaml";
@@ -80,5 +80,5 @@ TEST(LockStep, RefusesUnknownNamesAndRates) {
   }
 }
 
-}  // namespace
+}  // namespace lock_step_test
 }  // namespace tissue_contact

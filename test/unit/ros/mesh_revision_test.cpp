@@ -17,7 +17,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace mesh_revision_test {
 
 constexpr std::int64_t kSecond = 1000000000;
 
@@ -216,5 +216,5 @@ TEST(MeshMessages, DroppedSnapshotsMixNothing) {
   EXPECT_EQ(subscriber.told, (Told{"block 5", "block 12"}));
 }
 
-}  // namespace
+}  // namespace mesh_revision_test
 }  // namespace tissue_contact

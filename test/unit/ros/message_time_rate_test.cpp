@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace tissue_contact {
-namespace {
+namespace message_time_rate_test {
 
 constexpr std::int64_t kSecond = 1000000000;
 
@@ -50,5 +50,5 @@ TEST(MessageTimeRate, ResetMakesAnyStampDue) {
   EXPECT_FALSE(rate.due(kSecond + kSecond / 20));
 }
 
-}  // namespace
+}  // namespace message_time_rate_test
 }  // namespace tissue_contact

@@ -8,7 +8,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace private_parameters_test {
 
 using Names = std::vector<std::string>;
 
@@ -47,5 +47,5 @@ TEST(PrivateParameters, MisspeltIsWhatCanMeanNothingElse) {
   }
 }
 
-}  // namespace
+}  // namespace private_parameters_test
 }  // namespace tissue_contact

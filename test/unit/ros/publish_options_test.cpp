@@ -6,7 +6,7 @@
 #include "unit/scene/scene_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace publish_options_test {
 
 class PublishTest : public SceneTest {
  protected:
@@ -66,5 +66,5 @@ TEST(PublishedMesh, IsOneOfTwoWords) {
   }
 }
 
-}  // namespace
+}  // namespace publish_options_test
 }  // namespace tissue_contact

@@ -10,7 +10,7 @@
 #include "tissue_contact/Changes.h"
 
 namespace tissue_contact {
-namespace {
+namespace recorded_changes_test {
 
 const std::string kYoung = "tissues/block/youngs_modulus_pa";
 constexpr std::int64_t kSecond = 1'000'000'000;
@@ -134,5 +134,5 @@ TEST_F(RecordedChangesTest, NoByteThatIsSpoiltCrashesOrTakesMemory) {
   EXPECT_GT(refused, static_cast<int>(message.size) / 2);
 }
 
-}  // namespace
+}  // namespace recorded_changes_test
 }  // namespace tissue_contact

@@ -9,7 +9,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace registration_test {
 
 Pose pose(const Vector3& p, const Vector3& axis, double angle) {
   Pose X = Pose::Identity();
@@ -95,5 +95,5 @@ TEST(PairPoses, AreInterpolatedInTime) {
   EXPECT_TRUE(pairPoses(tips, {}).empty());
 }
 
-}  // namespace
+}  // namespace registration_test
 }  // namespace tissue_contact

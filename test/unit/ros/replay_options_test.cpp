@@ -6,7 +6,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace replay_options_test {
 
 void expectMissing(const std::vector<std::string>& arguments, const char* missing) {
   expectRefusal([&] { parseReplayOptions(arguments); }, {missing});
@@ -58,5 +58,5 @@ TEST(ReplayOptions, WhatIsMissingIsNamed) {
   }
 }
 
-}  // namespace
+}  // namespace replay_options_test
 }  // namespace tissue_contact

@@ -7,7 +7,7 @@
 #include <sstream>
 
 namespace tissue_contact {
-namespace {
+namespace replay_progress_test {
 
 TEST(ReplayProgress, LogHasWholeLinesEveryTenSeconds) {
   std::ostringstream out;
@@ -55,5 +55,5 @@ TEST(ReplayProgress, NothingForShortRunsAndBagsWithoutLength) {
   EXPECT_EQ(out.str(), "0.0 % of 10 s, 0 times real time\n");
 }
 
-}  // namespace
+}  // namespace replay_progress_test
 }  // namespace tissue_contact

@@ -7,7 +7,7 @@
 #include <thread>
 
 namespace tissue_contact {
-namespace {
+namespace request_queue_test {
 
 constexpr double kLong_s = 60.0;
 
@@ -56,5 +56,5 @@ TEST(RequestQueue, OnceClosedEverythingIsRefused) {
   EXPECT_FALSE(queue.ask([] { return Answer{true, ""}; }, kLong_s).success);
 }
 
-}  // namespace
+}  // namespace request_queue_test
 }  // namespace tissue_contact

@@ -17,7 +17,7 @@
 #include "support/temporary_directory.h"
 
 namespace tissue_contact {
-namespace {
+namespace robot_meshes_test {
 
 namespace fs = std::filesystem;
 
@@ -194,5 +194,5 @@ TEST_F(RobotMeshes, AToolThatGoesThroughTheBaseIsFlagged) {
   EXPECT_GT(outcome.implausible, 500);
 }
 
-}  // namespace
+}  // namespace robot_meshes_test
 }  // namespace tissue_contact

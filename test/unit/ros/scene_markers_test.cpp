@@ -19,7 +19,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace scene_markers_test {
 
 using visualization_msgs::Marker;
 
@@ -446,5 +446,5 @@ TEST(Conversions, PosesGoThereAndBack) {
   EXPECT_THROW(toPose(zero), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace scene_markers_test
 }  // namespace tissue_contact

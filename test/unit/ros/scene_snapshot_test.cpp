@@ -9,7 +9,7 @@
 #include <utility>
 
 namespace tissue_contact {
-namespace {
+namespace scene_snapshot_test {
 
 void put(SnapshotQueue& queue, std::int64_t stamp_ns) {
   std::unique_ptr<SceneSnapshot> snapshot = queue.buffer();
@@ -91,5 +91,5 @@ TEST(SnapshotQueue, LosesNothingBetweenThreadsThatKeepUp) {
   EXPECT_EQ(queue.dropped(), 0);
 }
 
-}  // namespace
+}  // namespace scene_snapshot_test
 }  // namespace tissue_contact

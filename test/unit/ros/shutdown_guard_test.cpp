@@ -12,7 +12,7 @@
 #include <thread>
 
 namespace tissue_contact {
-namespace {
+namespace shutdown_guard_test {
 
 void waitFor(const ShutdownGuard& guard) {
   while (!guard.asked()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -79,5 +79,5 @@ TEST_F(ShutdownGuardTest, RepeatedSignalsDoNotCutTheTimeShort) {
   EXPECT_EXIT(ends_by_itself(), testing::ExitedWithCode(7), "");
 }
 
-}  // namespace
+}  // namespace shutdown_guard_test
 }  // namespace tissue_contact

@@ -13,7 +13,7 @@
 #include <thread>
 
 namespace tissue_contact {
-namespace {
+namespace xml_rpc_call_test {
 
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
@@ -77,5 +77,5 @@ TEST_F(XmlRpcCallTest, StopEndsACallWhoseEndIsFar) {
   stopper.join();
 }
 
-}  // namespace
+}  // namespace xml_rpc_call_test
 }  // namespace tissue_contact

@@ -2,7 +2,7 @@
 #include "scene_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace advisor_section_test {
 
 const std::string kScene = std::string(kSmallestScene) + R"(advisor:
   sleep: never
@@ -46,5 +46,5 @@ const BadScene kBadAdvisors[] = {
 
 TEST_F(SceneTest, NamesBadAdvisorValues) { expectAllRefused(kScene, kBadAdvisors); }
 
-}  // namespace
+}  // namespace advisor_section_test
 }  // namespace tissue_contact

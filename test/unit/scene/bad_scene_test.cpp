@@ -5,7 +5,7 @@
 #include "scene_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace bad_scene_test {
 
 class BadSceneTest : public SceneTest, public testing::WithParamInterface<BadScene> {};
 
@@ -239,5 +239,5 @@ TEST_F(SceneTest, BoundsWhatAFileCanCost) {
 
 TEST_F(SceneTest, SurvivesDamagedText) { EXPECT_GT(refusedWhenDamaged(kFullScene), 1000); }
 
-}  // namespace
+}  // namespace bad_scene_test
 }  // namespace tissue_contact

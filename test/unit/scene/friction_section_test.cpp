@@ -2,7 +2,7 @@
 #include "scene_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace friction_section_test {
 
 using Law = FrictionLawDescription;
 
@@ -246,7 +246,7 @@ TEST_F(SceneTest, BoundsTheLengthOfATable) {
   EXPECT_NE(refusal(withTable(1001)).find("has 1001 elements; at most 1000 are allowed"), std::string::npos);
 }
 
-TEST_F(SceneTest, SurvivesDamagedText) { EXPECT_GT(refusedWhenDamaged(kContacts), 1000); }
+TEST_F(SceneTest, SurvivesDamagedFriction) { EXPECT_GT(refusedWhenDamaged(kContacts), 1000); }
 
-}  // namespace
+}  // namespace friction_section_test
 }  // namespace tissue_contact

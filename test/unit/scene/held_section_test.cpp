@@ -2,7 +2,7 @@
 #include "scene_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace held_section_test {
 
 const char* const kHeld = R"(tissues:
   - name: organ
@@ -68,5 +68,5 @@ const BadScene kBadHolds[] = {
 
 TEST_F(SceneTest, RefusesBadHoldsWithTheirPlace) { expectAllRefused(kHeld, kBadHolds); }
 
-}  // namespace
+}  // namespace held_section_test
 }  // namespace tissue_contact

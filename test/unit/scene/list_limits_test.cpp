@@ -4,7 +4,7 @@
 #include "scene_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace list_limits_test {
 
 /// `entry` so many times, # replaced by a number, commas in between.
 std::string listOf(const std::string& entry, int times) {
@@ -105,5 +105,5 @@ TEST_F(ListLimitsTest, OfStepsInAGapLeaveRoomForRoundOff) {
   expectRefusedAt(steps("1e-6", "0.10001"), "9: step.max_gap_s", "more than 100000 times max_step_s");
 }
 
-}  // namespace
+}  // namespace list_limits_test
 }  // namespace tissue_contact

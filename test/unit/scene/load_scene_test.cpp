@@ -2,7 +2,7 @@
 #include "scene_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace load_scene_test {
 
 TEST_F(SceneTest, FillsTheTopLevel) {
   const Scene scene = parse(kFullScene);
@@ -242,5 +242,5 @@ TEST(ShippedScene, EachLoads) {
   EXPECT_GE(scenes, 3);
 }
 
-}  // namespace
+}  // namespace load_scene_test
 }  // namespace tissue_contact

@@ -7,7 +7,7 @@
 #include "tissue_contact/core/read_file.h"
 
 namespace tissue_contact {
-namespace {
+namespace material_preset_test {
 
 const char* const kOrgan = R"(tissues:
   - name: organ
@@ -117,5 +117,5 @@ TEST_F(SceneTest, PlacesMayBeGroupsAndCellData) {
   EXPECT_EQ(std::get<CellDataRegion>(organ.fixed.at(2)).value, 2.0);
 }
 
-}  // namespace
+}  // namespace material_preset_test
 }  // namespace tissue_contact

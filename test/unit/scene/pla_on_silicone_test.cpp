@@ -15,7 +15,7 @@
 #include "tissue_contact/friction/friction_law.h"
 
 namespace tissue_contact {
-namespace {
+namespace pla_on_silicone_test {
 
 std::string sceneText() {
   return readFile(TISSUE_CONTACT_SOURCE_DIR "/config/pla_on_silicone.yaml", "scene", std::uintmax_t{1} << 20U);
@@ -125,5 +125,5 @@ TEST(PlaOnSilicone, EveryContactSlidesByTheTableAtItsPressure) {
   EXPECT_LT(hard, 0.7 * light);
 }
 
-}  // namespace
+}  // namespace pla_on_silicone_test
 }  // namespace tissue_contact

@@ -2,7 +2,7 @@
 #include "scene_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace refinement_section_test {
 
 const char* const kRefined = R"(tissues:
   - name: organ
@@ -52,5 +52,5 @@ const BadScene kBadRefinements[] = {
 
 TEST_F(SceneTest, RefusesBadRefinementsWithTheirPlace) { expectAllRefused(kRefined, kBadRefinements); }
 
-}  // namespace
+}  // namespace refinement_section_test
 }  // namespace tissue_contact

@@ -7,7 +7,7 @@
 #include "tissue_contact/core/read_file.h"
 
 namespace tissue_contact {
-namespace {
+namespace scene_doc_test {
 
 std::string documentText() {
   return readFile(TISSUE_CONTACT_SOURCE_DIR "/doc/scene.md", "document", std::uintmax_t{1} << 20U);
@@ -62,5 +62,5 @@ TEST_F(SceneTest, ExampleOfTheDocumentLoadsAndUsesEveryKey) {
   }
 }
 
-}  // namespace
+}  // namespace scene_doc_test
 }  // namespace tissue_contact

@@ -4,7 +4,7 @@
 #include "scene_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace settings_test {
 
 using Settings = std::vector<std::string>;
 
@@ -164,5 +164,5 @@ TEST_F(SettingsTest, AreBounded) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
-}  // namespace
+}  // namespace settings_test
 }  // namespace tissue_contact

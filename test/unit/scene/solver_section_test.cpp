@@ -2,7 +2,7 @@
 #include "scene_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace solver_section_test {
 
 constexpr std::pair<const char*, SolverMethod> kMethods[] = {{"predictor_corrector", SolverMethod::kPredictorCorrector},
                                                              {"reference", SolverMethod::kReference},
@@ -80,5 +80,5 @@ const BadScene kBadSolvers[] = {
 
 TEST_F(SceneTest, RefusesBadSolversWithTheirPlace) { expectAllRefused(kScene, kBadSolvers); }
 
-}  // namespace
+}  // namespace solver_section_test
 }  // namespace tissue_contact

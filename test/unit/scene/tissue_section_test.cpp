@@ -2,7 +2,7 @@
 #include "scene_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace tissue_section_test {
 
 const char* const kTissues = R"(tissues:
   - name: flap
@@ -178,7 +178,7 @@ TEST_F(SceneTest, BoundsTheNumberOfRegions) {
   EXPECT_NE(refusal(withRegions(1001)).find("has 1001 elements; at most 1000 are allowed"), std::string::npos);
 }
 
-TEST_F(SceneTest, SurvivesDamagedText) { EXPECT_GT(refusedWhenDamaged(kTissues), 1000); }
+TEST_F(SceneTest, SurvivesDamagedTissues) { EXPECT_GT(refusedWhenDamaged(kTissues), 1000); }
 
-}  // namespace
+}  // namespace tissue_section_test
 }  // namespace tissue_contact

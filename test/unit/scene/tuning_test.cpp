@@ -10,7 +10,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace tuning_test {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -125,5 +125,5 @@ TEST(Tuning, RefusesNumbersThatDoNotGoTogetherUnlessAllComeAtOnce) {
       {"tissues[0].pressure_pa", "may collapse"});
 }
 
-}  // namespace
+}  // namespace tuning_test
 }  // namespace tissue_contact

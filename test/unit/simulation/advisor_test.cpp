@@ -12,7 +12,7 @@
 #include "tissue_contact/tissue/material_preset.h"
 
 namespace tissue_contact {
-namespace {
+namespace advisor_test {
 
 /// A soft slab, its folds looked for, under a ball of 5 mm; the left end is held.
 std::string slabYaml(const std::string& advisor, const std::string& friction = "static: 0.5, kinetic: 0.4") {
@@ -227,5 +227,5 @@ TEST(Advisor, RefusesWhatDoesNotGoTogether) {
   EXPECT_THROW(Simulator(scene, ownEnvironment({{"probe", probeUrdf(0.005)}})), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace advisor_test
 }  // namespace tissue_contact

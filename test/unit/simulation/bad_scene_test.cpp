@@ -16,7 +16,7 @@
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
-namespace {
+namespace bad_scene_test {
 
 /// Line numbers matter to the cases: keep them in step.
 const char* const kScene = R"(tissues:
@@ -210,5 +210,5 @@ TEST(BadSceneWithoutFile, HasNoTopic) {
   EXPECT_EQ(message.find("scene.yaml:5: instruments: no instrument has a joint-state topic"), 0U) << message;
 }
 
-}  // namespace
+}  // namespace bad_scene_test
 }  // namespace tissue_contact

@@ -7,7 +7,7 @@
 #include "tissue_contact/instrument/parse_urdf.h"
 
 namespace tissue_contact {
-namespace {
+namespace contact_memory_test {
 
 Contact makeContact(int shape, std::array<int, 3> feature, const Vector3& p_W) {
   Contact contact;
@@ -246,5 +246,5 @@ TEST(KeptRidgePoint, DoesNotDependOnTriangleOrder) {
   }
 }
 
-}  // namespace
+}  // namespace contact_memory_test
 }  // namespace tissue_contact

@@ -12,7 +12,7 @@
 #include "tissue_contact/mesh/triangle_mesh.h"
 
 namespace tissue_contact {
-namespace {
+namespace contact_pressure_test {
 
 constexpr double kPressure = 1250.0;  // Pa
 
@@ -148,5 +148,5 @@ TEST(ContactPressure, BetweenTissuesTheSmallerFaceCounts) {
   EXPECT_NEAR(both.pressure.at(contacts[0].contact, both.x), kPressure, 1e-9);
 }
 
-}  // namespace
+}  // namespace contact_pressure_test
 }  // namespace tissue_contact

@@ -10,7 +10,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace dependent_contacts_test {
 
 struct Press {
   std::vector<double> forces_n;
@@ -80,5 +80,5 @@ TEST(DependentContacts, OfTwoInstrumentsGiveEachItsForce) {
   for (std::size_t k = 150; k < exact.size(); ++k) EXPECT_NEAR(forces[k], exact[k], 0.01 * largest) << "step " << k;
 }
 
-}  // namespace
+}  // namespace dependent_contacts_test
 }  // namespace tissue_contact

@@ -11,7 +11,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace detection_margins_test {
 
 /// Coarse blocks of 20 mm cells, the upper one 74.5 mm above the lower; `fine`: 60 mm beside them lies a block of 1.5 mm cells.
 Simulator makeFallingBlock(bool fine) {
@@ -110,5 +110,5 @@ TEST(DetectionMargins, WhatIsStruckHandsTheSpeedOn) {
   EXPECT_GE(joined.ofTissues()[2], 0.0015);
 }
 
-}  // namespace
+}  // namespace detection_margins_test
 }  // namespace tissue_contact

@@ -10,7 +10,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace flat_tool_test {
 
 constexpr double kMu = 0.4;
 constexpr double kStep = 0.01;  // s
@@ -96,5 +96,5 @@ INSTANTIATE_TEST_SUITE_P(Shapes, FlatTool,
                          testing::Values("cylinder: {radius_m: 0.006, length_m: 0.004}",
                                          "box: {size_m: [0.012, 0.008, 0.004]}"));
 
-}  // namespace
+}  // namespace flat_tool_test
 }  // namespace tissue_contact

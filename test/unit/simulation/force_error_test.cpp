@@ -12,7 +12,7 @@
 #include "validation/press_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace force_error_test {
 
 std::string scene(const std::string& more, const std::string& geometry = "", double mu = 0.0) {
   const std::string tissue =
@@ -244,5 +244,5 @@ TEST(ExpectedMeshError, IsWithinAFactorOfTwoOfWhatIsMet) {
   EXPECT_NEAR(std::log(expectedMeshError(0.0017, 0.005, kByElement) / 0.04), 0.0, std::log(2.0));
 }
 
-}  // namespace
+}  // namespace force_error_test
 }  // namespace tissue_contact

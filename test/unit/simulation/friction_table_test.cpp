@@ -14,7 +14,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace friction_table_test {
 
 /// Two blocks side by side, `pad` with a hard half (region `scar`, x > 0) and fibres along y.
 const char* const kTissues = R"(
@@ -176,5 +176,5 @@ TEST(FrictionTable, RefusesALawThatWouldDriveSliding) {
                std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace friction_table_test
 }  // namespace tissue_contact

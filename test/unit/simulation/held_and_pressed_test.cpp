@@ -10,7 +10,7 @@
 #include "support/held_block.h"
 
 namespace tissue_contact {
-namespace {
+namespace held_and_pressed_test {
 
 const std::string kBed =
     "    attachments: [{where: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}], stiffness_pa_per_m: 1e5}]\n";
@@ -175,5 +175,5 @@ TEST(Pressure, ATissueUnderItSleepsWhereItRests) {
   EXPECT_LE((sleeping.positions(0) - awake.positions(0)).colwise().norm().maxCoeff(), 1e-3 * 0.01);
 }
 
-}  // namespace
+}  // namespace held_and_pressed_test
 }  // namespace tissue_contact

@@ -10,7 +10,7 @@
 #include "unit/instrument/instrument_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace instrument_motion_test {
 
 constexpr double kRadius = 0.004;   // m, of the ball
 constexpr double kMaxStep = 0.001;  // s
@@ -99,5 +99,5 @@ TEST(InstrumentMotion, CutsIntoABillionStepsAtOnce) {
   EXPECT_TRUE(motion.jumped());
 }
 
-}  // namespace
+}  // namespace instrument_motion_test
 }  // namespace tissue_contact

@@ -6,7 +6,7 @@
 #include "joint_state_player_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace joint_state_clocks_test {
 
 /// Plays all, and says how many joint states in a row went without a moment at most.
 struct Outcome {
@@ -224,5 +224,5 @@ TEST(JointStateClocks, AnyMixtureOfClocksIsCountedAndBounded) {
   }
 }
 
-}  // namespace
+}  // namespace joint_state_clocks_test
 }  // namespace tissue_contact

@@ -7,7 +7,7 @@
 #include "joint_state_player_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace joint_state_moments_test {
 
 /// x and y on the arm's topic, z on the jaw's.
 std::unique_ptr<Simulator> armAndJaw() { return blockTouchedBy(probe("a", "/a/measured_js, /a/jaw/measured_js", 0.0)); }
@@ -237,5 +237,5 @@ TEST(JointStateMoments, NoOrderOfArrivalMattersWithinMaxGap) {
   }
 }
 
-}  // namespace
+}  // namespace joint_state_moments_test
 }  // namespace tissue_contact

@@ -5,7 +5,7 @@
 #include "joint_state_player_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace joint_state_order_test {
 
 TEST_F(TwoProbes, WaitsForTheOtherTopic) {
   player.push(0, sample(kSecond, 0.0));
@@ -168,5 +168,5 @@ TEST_F(TwoProbes, AClockSetBackFarOnOneTopicKeepsTheOtherOneOnceItFits) {
   EXPECT_EQ(player.waiting(), 0);
 }
 
-}  // namespace
+}  // namespace joint_state_order_test
 }  // namespace tissue_contact

@@ -7,7 +7,7 @@
 #include "joint_state_player_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace joint_state_player_test {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -190,5 +190,5 @@ TEST(JointStatePlayer, EveryVerdictHasItsOwnText) {
   EXPECT_EQ(texts.count("unknown"), 0U);
 }
 
-}  // namespace
+}  // namespace joint_state_player_test
 }  // namespace tissue_contact

@@ -8,7 +8,7 @@
 #include "joint_state_player_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace joint_state_policy_test {
 
 /// A press of one probe, `batch` samples at a time.
 Trace pressInBatches(StatePolicy policy, std::size_t batch, std::int64_t& merged) {
@@ -211,5 +211,5 @@ TEST(JointStatePolicy, CountsAddUpToWhatWasPushed) {
   }
 }
 
-}  // namespace
+}  // namespace joint_state_policy_test
 }  // namespace tissue_contact

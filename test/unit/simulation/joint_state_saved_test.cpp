@@ -6,7 +6,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace joint_state_saved_test {
 
 /// The samples from `from` on; afterwards what was published for them.
 Trace goOn(Simulator& simulator, JointStatePlayer& player, const std::vector<JointStateSample>& samples,
@@ -125,5 +125,5 @@ TEST_F(JointStateSaved, RefusesTheStateOfASimulatorAlone) {
   expectRefusal([&] { restored.restoreState(""); }, {"saved state"});
 }
 
-}  // namespace
+}  // namespace joint_state_saved_test
 }  // namespace tissue_contact

@@ -6,7 +6,7 @@
 #include "joint_state_player_fixture.h"
 
 namespace tissue_contact {
-namespace {
+namespace joint_state_time_test {
 
 Trace traceOf(const std::vector<JointStateSample>& samples, std::int64_t late) {
   const auto simulator = oneProbe();
@@ -233,5 +233,5 @@ TEST_F(TwoProbes, ATopicJoinsTheLoopThatAnotherHasBegun) {
   EXPECT_EQ(player.count(Verdict::kAccepted), 20);
 }
 
-}  // namespace
+}  // namespace joint_state_time_test
 }  // namespace tissue_contact

@@ -8,7 +8,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace landing_test {
 
 constexpr double kAngle = 0.35;  // rad, of gravity from the vertical
 /// Three steps of 10 ms fall 6 g dt^2; the fourth covers what is left in 0.72 of what it moves by the speed it starts with.
@@ -146,5 +146,5 @@ TEST(LandingSpeed, FrictionThatDependsOnSpeedSeesTheSpeedAfterTheTouch) {
   EXPECT_NEAR(mu / counted, 0.1 * (1.0 - speed), 0.1 * 0.1 * speed);
 }
 
-}  // namespace
+}  // namespace landing_test
 }  // namespace tissue_contact

@@ -12,7 +12,7 @@
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
-namespace {
+namespace load_watch_test {
 
 constexpr double kModulus = 5000.0;
 
@@ -231,5 +231,5 @@ TEST(LoadWatch, APressIsPlausibleAndAToolThroughTheBaseIsNot) {
   EXPECT_TRUE(flagged);
 }
 
-}  // namespace
+}  // namespace load_watch_test
 }  // namespace tissue_contact

@@ -20,7 +20,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace mesh_follower_test {
 
 TissueDescription block() {
   TissueDescription description;
@@ -298,5 +298,5 @@ TEST(MeshFollower, ThrowsWhatTheWorkerThrewAndGoesOn) {
   EXPECT_EQ(followed.refinement.revision(), 2);
 }
 
-}  // namespace
+}  // namespace mesh_follower_test
 }  // namespace tissue_contact

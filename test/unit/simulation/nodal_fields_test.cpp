@@ -11,7 +11,7 @@
 #include "tissue_contact/simulation/law_error.h"
 
 namespace tissue_contact {
-namespace {
+namespace nodal_fields_test {
 
 Tissue blockTissue() {
   const Simulator simulator = makeSimulator(blockScene());
@@ -98,5 +98,5 @@ TEST(NodalPressure, IsNotNegativeAndOverlooksNodesThatAreNotThere) {
   EXPECT_EQ(pressure.minCoeff(), 0.0);
 }
 
-}  // namespace
+}  // namespace nodal_fields_test
 }  // namespace tissue_contact

@@ -15,7 +15,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace prepared_meshes_test {
 
 constexpr double kStep = 0.001;
 
@@ -194,5 +194,5 @@ TEST(PreparedMeshes, ResetAndEndWhileTheyArePrepared) {
   }
 }
 
-}  // namespace
+}  // namespace prepared_meshes_test
 }  // namespace tissue_contact

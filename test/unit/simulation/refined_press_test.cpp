@@ -18,7 +18,7 @@
 #include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
-namespace {
+namespace refined_press_test {
 
 /// The press and drag of the benchmark: a block of 100 x 100 x 40 mm with 10 mm cells, a ball of 5 mm, 0.2 mm above it.
 std::string scene(const std::string& refinement, const std::string& more = "", const std::string& at = "-0.01, 0") {
@@ -353,5 +353,5 @@ TEST(RefinedPress, AdviceSaysWhatWasChosen) {
   }
 }
 
-}  // namespace
+}  // namespace refined_press_test
 }  // namespace tissue_contact

@@ -11,7 +11,7 @@
 #include "tissue_contact/scene/tuning.h"
 
 namespace tissue_contact {
-namespace {
+namespace retune_test {
 
 const std::string kYoung = "tissues/block/youngs_modulus_pa";
 const std::string kStatic = "friction/probe/block/static";
@@ -214,5 +214,5 @@ TEST(Retune, RefusesAnotherSceneAndChangesNothing) {
   EXPECT_EQ(simulator.scene().tissues[0].material.youngs_modulus_pa, 5000.0);
 }
 
-}  // namespace
+}  // namespace retune_test
 }  // namespace tissue_contact

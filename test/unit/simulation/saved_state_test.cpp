@@ -14,7 +14,7 @@
 #include "tissue_contact/core/content_hash.h"
 
 namespace tissue_contact {
-namespace {
+namespace saved_state_test {
 
 struct Variant {
   std::string name;
@@ -262,5 +262,5 @@ TEST_F(RefusedState, WhateverStandsInItNothingBreaks) {
   EXPECT_GT(refused, 0);  // most places are numbers, which may have any value
 }
 
-}  // namespace
+}  // namespace saved_state_test
 }  // namespace tissue_contact

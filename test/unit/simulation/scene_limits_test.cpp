@@ -14,7 +14,7 @@
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
-namespace {
+namespace scene_limits_test {
 
 const char* const kMaterial = "    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.3, density_kg_per_m3: 1000}\n";
 
@@ -95,5 +95,5 @@ TEST(BuildProgress, IsToldForLargeTissuesOnly) {
   EXPECT_EQ(said[1], "tissues are built; preparing their surfaces and first stiffness");
 }
 
-}  // namespace
+}  // namespace scene_limits_test
 }  // namespace tissue_contact

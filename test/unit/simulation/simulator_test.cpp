@@ -12,7 +12,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace simulator_test {
 
 /// A 5 mm sphere over a block of 60 x 60 x 20 mm, 1 mm above its middle at joints 0.
 Simulator makeScene(double max_step_s = 0.001, double height_m = 0.026, const std::string& poissons_ratio = "0.45") {
@@ -268,5 +268,5 @@ TEST(Simulator, FrictionDragsAgainstTheMotion) {
   }
 }
 
-}  // namespace
+}  // namespace simulator_test
 }  // namespace tissue_contact

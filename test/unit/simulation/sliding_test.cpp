@@ -9,7 +9,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace sliding_test {
 
 const std::string kRough = "friction: [{instrument: probe, tissue: block, static: 0.4}]\n";
 
@@ -127,5 +127,5 @@ TEST(Sliding, ABallThatSpinsInPlaceIsAtRestForTheTissue) {
   }
 }
 
-}  // namespace
+}  // namespace sliding_test
 }  // namespace tissue_contact

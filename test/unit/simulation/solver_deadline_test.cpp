@@ -11,7 +11,7 @@
 #include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
-namespace {
+namespace solver_deadline_test {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -110,5 +110,5 @@ TEST_F(SolverDeadline, WantsAClockAndANumber) {
   EXPECT_THROW(simulator.setSolverDeadline(kNever, kNan), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace solver_deadline_test
 }  // namespace tissue_contact

@@ -10,7 +10,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace solvers_by_name_test {
 
 Simulator makeScene(const std::string& solver, const std::string& friction = "static: 0.4, kinetic: 0.4") {
   return makeSimulator(blockScene("[0.06, 0.06, 0.03]", "[6, 6, 3]", "poissons_ratio: 0.45") +
@@ -84,5 +84,5 @@ TEST(SolversByName, AStepWithoutAnAnswerIsDiscardedByAll) {
 
 TEST(SolversByName, ATimeBudgetNeedsAClock) { EXPECT_THROW(makeScene("time_budget_s: 0.001"), std::invalid_argument); }
 
-}  // namespace
+}  // namespace solvers_by_name_test
 }  // namespace tissue_contact

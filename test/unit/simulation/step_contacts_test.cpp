@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace tissue_contact {
-namespace {
+namespace step_contacts_test {
 
 /// Normal along z: the impulse is on `tissue`.
 SolvedContact between(int tissue, int other_tissue, int instrument = -1) {
@@ -45,5 +45,5 @@ TEST(SumImpulsesOn, KeepsPartnersApartAndLeavesOutFoldsAndWhatDoesNothing) {
   EXPECT_EQ(net[1].impulse_W.z(), -1.0);
 }
 
-}  // namespace
+}  // namespace step_contacts_test
 }  // namespace tissue_contact

@@ -9,7 +9,7 @@
 #include "tissue_contact/baselines/delassus.h"
 
 namespace tissue_contact {
-namespace {
+namespace tissue_pairs_test {
 
 /// A soft block lying on a fixed-base one of another grid, under gravity tilted by `angle` about y.
 Simulator makeStack(double friction, double angle, const std::string& friction_keys = "") {
@@ -105,5 +105,5 @@ TEST(ContactProblemFile, HoldsTheProblemOfTheLastStep) {
   EXPECT_LE(computeResiduals(problem, r).scaled_natural_map, 1e-3);
 }
 
-}  // namespace
+}  // namespace tissue_pairs_test
 }  // namespace tissue_contact

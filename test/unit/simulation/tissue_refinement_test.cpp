@@ -19,7 +19,7 @@
 #include "tissue_contact/mesh/triangle_mesh.h"
 
 namespace tissue_contact {
-namespace {
+namespace tissue_refinement_test {
 
 TissueDescription block(const RefinementDescription& refinement = {RefinementDescription::Mode::kAuto, 0.0, 0.0, 0}) {
   TissueDescription description;
@@ -340,5 +340,5 @@ TEST(TissueRefinement, IsRefusedWhereMeshesCannotChange) {
   expectContains(refused(attached), {"stiffness_n_per_m", "give stiffness_pa_per_m"});
 }
 
-}  // namespace
+}  // namespace tissue_refinement_test
 }  // namespace tissue_contact

@@ -10,7 +10,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace tissue_sleep_test {
 
 constexpr double kSleepError = 0.001;
 
@@ -182,5 +182,5 @@ TEST(TissueSleep, ZeroErrorLetsNothingSleepThatIsHeld) {
   EXPECT_EQ(simulator.report().sleeping_nodes, 0);
 }
 
-}  // namespace
+}  // namespace tissue_sleep_test
 }  // namespace tissue_contact

@@ -8,7 +8,7 @@
 #include "support/text_scene.h"
 
 namespace tissue_contact {
-namespace {
+namespace viscoelastic_press_test {
 
 constexpr double kYoung = 6000.0;
 constexpr double kPoisson = 0.4;
@@ -134,5 +134,5 @@ TEST(Viscoelastic, ADiscardedStepDoesNotStartItsMemoryAnew) {
   EXPECT_LT((system.b - relaxed).norm(), 1e-12 * relaxed.norm());
 }
 
-}  // namespace
+}  // namespace viscoelastic_press_test
 }  // namespace tissue_contact

@@ -8,7 +8,7 @@
 #include <limits>
 
 namespace tissue_contact {
-namespace {
+namespace anderson_test {
 
 /// x -> A x + b in three dimensions.
 struct LinearMap {
@@ -64,5 +64,5 @@ TEST(AndersonMixing, ForgetsAtARestartAndTakesAnotherSize) {
   }
 }
 
-}  // namespace
+}  // namespace anderson_test
 }  // namespace tissue_contact

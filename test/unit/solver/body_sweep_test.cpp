@@ -12,7 +12,7 @@
 #include <vector>
 
 namespace tissue_contact {
-namespace {
+namespace body_sweep_test {
 
 /// A body with blocks of no symmetry of their own in K and in D, which is no multiple of K.
 struct RandomBody {
@@ -363,5 +363,5 @@ TEST(BodySweep, WhatIsKeptIsWhatTheFirstSweepForthDidNotFind) {
   EXPECT_EQ(kept, NodalVectors(second - first));
 }
 
-}  // namespace
+}  // namespace body_sweep_test
 }  // namespace tissue_contact

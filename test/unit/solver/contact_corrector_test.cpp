@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace tissue_contact {
-namespace {
+namespace contact_corrector_test {
 
 const Matrix3 kW = 0.5 * Matrix3::Identity();
 const Vector2 kNoSliding = Vector2::Zero();
@@ -48,5 +48,5 @@ TEST(ContactCorrector, ARivalIsToldHowTheContactSlidBefore) {
   EXPECT_EQ(told, Vector2(1.0, 1.0));
 }
 
-}  // namespace
+}  // namespace contact_corrector_test
 }  // namespace tissue_contact

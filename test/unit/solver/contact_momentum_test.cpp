@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace tissue_contact {
-namespace {
+namespace contact_momentum_test {
 
 /// A contact along `normal`, with equal weights of that sum on some nodes.
 ContactRow contactOn(const std::vector<int>& nodes, const Vector3& normal, double sum = 1.0) {
@@ -130,5 +130,5 @@ TEST(ContactMomentum, KnowsThisStepAlone) {
   EXPECT_EQ(first.fromNone({}), 0.0);
 }
 
-}  // namespace
+}  // namespace contact_momentum_test
 }  // namespace tissue_contact

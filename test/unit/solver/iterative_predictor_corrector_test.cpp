@@ -11,7 +11,7 @@
 #include "support/pressed_block.h"
 
 namespace tissue_contact {
-namespace {
+namespace iterative_predictor_corrector_test {
 
 /// One free node of 2 kg without elasticity, touched by one contact: W = I/2 exactly as in form A.
 struct OneNode {
@@ -327,5 +327,5 @@ INSTANTIATE_TEST_SUITE_P(Relaxations, PassesOverContacts,
                          testing::Values(RelaxationKind::kGaussSeidel, RelaxationKind::kCholesky),
                          [](const auto& relaxation) { return std::string(relaxationName(relaxation.param)); });
 
-}  // namespace
+}  // namespace iterative_predictor_corrector_test
 }  // namespace tissue_contact

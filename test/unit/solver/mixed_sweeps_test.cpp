@@ -14,7 +14,7 @@
 #include "support/pressed_block.h"
 
 namespace tissue_contact {
-namespace {
+namespace mixed_sweeps_test {
 
 /// Without contact, under a load along x that bends it as a whole.
 struct BentBlock : PressedBlock {
@@ -343,5 +343,5 @@ TEST(MixedSweeps, RoundOffIsNotSolved) {
   EXPECT_LT(residualsOf(scene).momentum, 1e-3);
 }
 
-}  // namespace
+}  // namespace mixed_sweeps_test
 }  // namespace tissue_contact

@@ -11,7 +11,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace temporary_directory_test {
 
 namespace fs = std::filesystem;
 
@@ -40,5 +40,5 @@ TEST(TemporaryDirectory, WhatCannotBeWrittenIsNamed) {
   expectRefusal<std::runtime_error>([&] { directory.write("cone.stl", ""); }, {"cone.stl"});
 }
 
-}  // namespace
+}  // namespace temporary_directory_test
 }  // namespace tissue_contact

@@ -11,7 +11,7 @@
 #include "validation/elasticity_helpers.h"
 
 namespace tissue_contact {
-namespace {
+namespace attachment_test {
 
 constexpr double kPressure = 1600.0;
 
@@ -236,5 +236,5 @@ TEST(Pressure, OnAFreeLinearBodyIsRefused) {
   EXPECT_NO_THROW(checkTissue(description));
 }
 
-}  // namespace
+}  // namespace attachment_test
 }  // namespace tissue_contact

@@ -11,7 +11,7 @@
 #include "validation/elasticity_helpers.h"
 
 namespace tissue_contact {
-namespace {
+namespace hold_still_test {
 
 struct Body {
   TetMesh mesh;
@@ -149,5 +149,5 @@ INSTANTIATE_TEST_SUITE_P(MassSpring, HoldStill, testing::Values(Model{ElasticMod
                          nameOf);
 INSTANTIATE_TEST_SUITE_P(FiniteElements, HoldStillSaves, testing::ValuesIn(kFiniteElements), nameOf);
 
-}  // namespace
+}  // namespace hold_still_test
 }  // namespace tissue_contact

@@ -6,7 +6,7 @@
 #include <ostream>
 
 namespace tissue_contact {
-namespace {
+namespace make_elasticity_test {
 
 struct Case {
   double poissons_ratio;
@@ -58,5 +58,5 @@ TEST_P(Averages, AreWhatIsAskedForOrFits) {
 
 INSTANTIATE_TEST_SUITE_P(, Averages, testing::ValuesIn(kCases));
 
-}  // namespace
+}  // namespace make_elasticity_test
 }  // namespace tissue_contact

@@ -13,7 +13,7 @@
 #include "validation/elasticity_helpers.h"
 
 namespace tissue_contact {
-namespace {
+namespace mean_strain_test {
 
 TetMesh block(const Vector3& size_m, const std::array<int, 3>& cells) { return makeBlockMesh({size_m, cells, {}}); }
 
@@ -184,5 +184,5 @@ TEST(MeanStrain, CellsBendExactlyWithSixTenths) {
   }
 }
 
-}  // namespace
+}  // namespace mean_strain_test
 }  // namespace tissue_contact

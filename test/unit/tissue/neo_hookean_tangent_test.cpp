@@ -12,7 +12,7 @@
 #include <vector>
 
 namespace tissue_contact {
-namespace {
+namespace neo_hookean_tangent_test {
 
 constexpr double kMu = 2300.0;  // of E = 5000 Pa
 constexpr double kVolume = 1e-9;
@@ -210,5 +210,5 @@ TEST(NeoHookeanTangent, WhatIsFarFromStableIsStiff) {
               1e-9);
 }
 
-}  // namespace
+}  // namespace neo_hookean_tangent_test
 }  // namespace tissue_contact

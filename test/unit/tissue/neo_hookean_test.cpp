@@ -16,7 +16,7 @@
 #include "validation/elasticity_helpers.h"
 
 namespace tissue_contact {
-namespace {
+namespace neo_hookean_test {
 
 TetMesh smallBlock() { return makeBlockMesh({Vector3(0.02, 0.02, 0.02), {2, 2, 2}, {}}); }
 
@@ -207,5 +207,5 @@ TEST(MassSpring, NodesInOnePlaceGiveNoNan) {
   EXPECT_TRUE(dense(state->stiffness).allFinite());
 }
 
-}  // namespace
+}  // namespace neo_hookean_test
 }  // namespace tissue_contact

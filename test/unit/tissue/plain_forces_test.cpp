@@ -15,7 +15,7 @@
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 namespace tissue_contact {
-namespace {
+namespace plain_forces_test {
 
 struct Case {
   const char* name;
@@ -231,5 +231,5 @@ INSTANTIATE_TEST_SUITE_P(, PlainOverstress,
                                          Case{"AveragedNeoHookean", ElasticModel::kNeoHookean, Dilatation::kPatch}),
                          [](const auto& one) { return std::string(one.param.name); });
 
-}  // namespace
+}  // namespace plain_forces_test
 }  // namespace tissue_contact

@@ -10,7 +10,7 @@
 #include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
-namespace {
+namespace shape_table_test {
 
 ShapeBatch<3> numbers(double scale) {
   return {{{scale, -0.3 * scale, 0.0, 1e-9 * scale},
@@ -79,5 +79,5 @@ TEST(ShapeTable, EachCellOfAGradedBlockHasItsOwn) {
   EXPECT_EQ(shapesOf(mesh), mesh.tetrahedra.size() / kLanes);
 }
 
-}  // namespace
+}  // namespace shape_table_test
 }  // namespace tissue_contact

@@ -6,7 +6,7 @@
 #include <limits>
 
 namespace tissue_contact {
-namespace {
+namespace strain_recovery_test {
 
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 const Vector3 kMiddle(0.0, 0.0, 0.02);
@@ -98,5 +98,5 @@ TEST(StrainRecovery, LooksWithinTheRadiusAlone) {
   EXPECT_GT(errorOf(tissue, moved(tissue, bent_above)), 0.0);
 }
 
-}  // namespace
+}  // namespace strain_recovery_test
 }  // namespace tissue_contact

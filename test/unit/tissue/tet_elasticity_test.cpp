@@ -12,7 +12,7 @@
 #include "validation/elasticity_helpers.h"
 
 namespace tissue_contact {
-namespace {
+namespace tet_elasticity_test {
 
 TEST(Corotational, TangentFollowsRotationAndLagsByItsThreshold) {
   const TetMesh mesh = makeBlockMesh({Vector3(0.03, 0.02, 0.02), {2, 2, 2}, {}});
@@ -198,5 +198,5 @@ TEST(NearestRotation, IsThePolarFactorForAnyGuess) {
   }
 }
 
-}  // namespace
+}  // namespace tet_elasticity_test
 }  // namespace tissue_contact

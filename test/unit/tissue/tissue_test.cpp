@@ -11,7 +11,7 @@
 #include "support/refusal.h"
 
 namespace tissue_contact {
-namespace {
+namespace tissue_test {
 
 TissueDescription blockDescription() {
   TissueDescription description;
@@ -268,5 +268,5 @@ INSTANTIATE_TEST_SUITE_P(Organs, OrganTest,
                            return file.substr(0, file.find('.'));
                          });
 
-}  // namespace
+}  // namespace tissue_test
 }  // namespace tissue_contact

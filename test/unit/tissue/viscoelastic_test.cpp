@@ -11,7 +11,7 @@
 #include "tissue_contact/tissue/tissue.h"
 
 namespace tissue_contact {
-namespace {
+namespace viscoelastic_test {
 
 constexpr double kYoung = 9e3;
 constexpr double kPoisson = 0.45;
@@ -165,5 +165,5 @@ TEST(Viscoelastic, OtherModelsAreRefused) {
   EXPECT_THROW(checkTissue(description), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace viscoelastic_test
 }  // namespace tissue_contact
