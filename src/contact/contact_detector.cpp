@@ -20,7 +20,7 @@
 
 namespace tissue_contact {
 
-/// One shape of one instrument's touching link.
+/// One shape of one instrument's touching link. With linkage, as GCC asks of a member's type in a file that another includes (unity builds).
 struct TouchingShape {
   int instrument;
   int contact_link;  // index into Instrument::contactLinks()

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMostCached = std::uintmax_t{256} << 20U;
+constexpr std::uintmax_t kMostCacheBytes = std::uintmax_t{256} << 20U;
 
 /// Only the last one is private to us; those above it belong to all programs.
 void makeDirectory(const std::string& directory) {
@@ -58,7 +58,7 @@ std::string CacheFolder::path(const std::string& key) const {
 std::string CacheFolder::read(const std::string& key) const {
   if (directory_.empty() || !distrust(directory_).empty()) return "";
   try {
-    return readFile(path(key), "prepared mesh", kMostCached);
+    return readFile(path(key), "prepared mesh", kMostCacheBytes);
   } catch (const std::exception&) {
     return "";
   }
@@ -107,7 +107,7 @@ void CacheFolder::removeOldest() const {
   }
   std::sort(files.begin(), files.end());
   for (const auto& [time, path] : files) {
-    if (bytes <= kMostCached) return;
+    if (bytes <= kMostCacheBytes) return;
     const std::uintmax_t size = fs::file_size(path, error);
     if (!error && fs::remove(path, error)) bytes -= std::min(bytes, size);
   }

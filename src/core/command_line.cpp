@@ -11,7 +11,7 @@ namespace tissue_contact {
 namespace {
 
 // A path must stay readable to its end.
-constexpr std::size_t kMostShown = 200;
+constexpr std::size_t kMostShownBytes = 200;
 
 bool contains(const std::vector<std::string>& all, const std::string& one) {
   return std::find(all.begin(), all.end(), one) != all.end();
@@ -22,12 +22,12 @@ bool contains(const std::vector<std::string>& all, const std::string& one) {
   known.insert(known.end(), keys.repeatable.begin(), keys.repeatable.end());
   known.insert(known.end(), keys.switches.begin(), keys.switches.end());
   known.emplace_back("--help");
-  throw std::invalid_argument("unknown argument '" + printable(argument, kMostShown) + "'; " +
+  throw std::invalid_argument("unknown argument '" + printable(argument, kMostShownBytes) + "'; " +
                               (key[0] == '-' ? suggestion(key, known) : "") + "known are " + joined(known));
 }
 
 [[noreturn]] void refuseValue(const std::string& key, const std::string& value, const std::string& must) {
-  throw std::invalid_argument(key + " is '" + printable(value, kMostShown) + "'; it must be " + must);
+  throw std::invalid_argument(key + " is '" + printable(value, kMostShownBytes) + "'; it must be " + must);
 }
 
 }  // namespace

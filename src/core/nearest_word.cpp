@@ -9,7 +9,7 @@
 namespace tissue_contact {
 namespace {
 
-constexpr std::size_t kLongestWord = 80;  ///< the cost is the product of both lengths, and text may be hostile
+constexpr std::size_t kLongestWordBytes = 80;  ///< the cost is the product of both lengths, and text may be hostile
 
 std::size_t editDistance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -33,7 +33,7 @@ std::string nearestWord(const std::string& word, const std::vector<std::string>&
 }
 
 std::string nearestWord(const std::string& word, const std::vector<std::string>& allowed, std::size_t most) {
-  if (word.empty() || word.size() > kLongestWord) return "";
+  if (word.empty() || word.size() > kLongestWordBytes) return "";
   std::string nearest;
   std::size_t least = most;
   for (const std::string& candidate : allowed) {

@@ -16,7 +16,7 @@ namespace {
 using Kind = FrictionLawDescription::Kind;
 
 /// Round-off of typed decimals, as a share of the size of a matrix.
-constexpr double kTypedRoundOff = 1e-12;
+constexpr double kDecimalRoundOff = 1e-12;
 
 std::string text(double value) {
   std::ostringstream stream;
@@ -89,7 +89,7 @@ double smallerEigenvalue(const Matrix2& S) { return 0.5 * (S.trace() - std::hypo
 void checkDissipates(const std::string& what, const char* list, const std::vector<double>& m) {
   const Matrix2 M = frictionTensor(m);
   const double smaller = smallerEigenvalue(0.5 * (M + M.transpose()));
-  if (smaller >= -kTypedRoundOff * M.norm()) return;
+  if (smaller >= -kDecimalRoundOff * M.norm()) return;
   throwBadValue(
       what + "the smaller eigenvalue of the symmetric part of '" + list + "'", smaller, "",
       ">= 0, or else the tensor drives sliding in some direction; make the diagonal larger or the rest smaller");
@@ -103,7 +103,7 @@ void checkStaticHoldsKinetic(const std::string& what, const FrictionLawDescripti
   const Matrix2 M_k = frictionTensor(law.kinetic_coefficients);
   const Matrix2 S = M_s * M_s.transpose();
   const double smaller = smallerEigenvalue(S - M_k * M_k.transpose());
-  if (smaller >= -kTypedRoundOff * S.norm()) return;
+  if (smaller >= -kDecimalRoundOff * S.norm()) return;
   throwBadValue(what + "the smaller eigenvalue of S S' - K K', S 'static' and K 'kinetic',", smaller, "",
                 ">= 0, or else static friction is below kinetic friction in some direction; make 'static' larger");
 }

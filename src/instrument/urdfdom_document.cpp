@@ -15,7 +15,7 @@ namespace tissue_contact {
 namespace {
 
 // A URDF needs 5 levels (robot, link, visual, geometry, mesh); extensions such as gazebo's nest a little deeper.
-constexpr std::size_t kMaxElementDepth = 64;
+constexpr std::size_t kMaxXmlDepth = 64;
 // urdfdom frees a chain of links recursively, so an endless chain overflows the stack. The largest humanoids have some
 // hundred links.
 constexpr std::size_t kMaxLinks = 10000;
@@ -72,7 +72,7 @@ void checkText(const std::string& xml, const std::string& source) {
     throw std::invalid_argument(source + ":" + std::to_string(lineOf(xml, zero)) +
                                 ": malformed XML: a zero byte; is this a text file?");
   }
-  checkXmlNesting(xml, source, kMaxElementDepth);
+  checkXmlNesting(xml, source, kMaxXmlDepth);
   std::size_t links = 0;
   XmlTagScanner scanner(xml);
   for (XmlTag tag; scanner.next(tag);) links += tag.kind != XmlTag::Kind::kClose && tag.name == "link" ? 1 : 0;

@@ -18,7 +18,7 @@ constexpr double kStaleContraction = 0.3;
 /// more defect than a relaxation takes (seen on a taut membrane at 0.7).
 constexpr double kUselessContraction = 0.5;
 /// Round-off leaves a defect of its own (relative to the loads), which says nothing about the factor.
-constexpr double kFactorRoundOff = 1e-12;
+constexpr double kDefectRoundOff = 1e-12;
 
 double normOf(const std::vector<NodalVectors>& defects) {
   double sum = 0.0;
@@ -106,7 +106,7 @@ double CholeskyRelaxation::relaxSafely(const ContactProblem& problem, ContactSol
   const bool grows = after > left_ && after > kStaleContraction * before;
   const bool serves = after <= kUselessContraction * before && !grows;
   left_ = after;
-  if (serves || fresh_ || after <= kFactorRoundOff * loads_) return after;
+  if (serves || fresh_ || after <= kDefectRoundOff * loads_) return after;
   solution.v = saved_;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     if (!problem.bodies[k].asleep) bodies_[k].renew(problem.bodies[k]);
@@ -150,7 +150,7 @@ double CholeskyRelaxation::relaxOnce(const ContactProblem& problem, ContactSolut
     if (!problem.bodies[k].asleep) bodies_[k].relax(defect_[k], solution.v[k]);
   }
   const double after = computeDefect(problem, solution);
-  if (!(after <= kStaleContraction * before) && !(after <= kFactorRoundOff * loads_)) {
+  if (!(after <= kStaleContraction * before) && !(after <= kDefectRoundOff * loads_)) {
     for (FactoredBody& body : bodies_) body.markStale();
   }
   return after;

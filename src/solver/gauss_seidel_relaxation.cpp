@@ -25,7 +25,7 @@ struct Mixture {
   std::vector<double> reached;  ///< and where it led
 };
 
-void gatherBodies(const Mixture& mixture, const std::vector<NodalVectors>& v, std::vector<double>& all) {
+void gatherVelocities(const Mixture& mixture, const std::vector<NodalVectors>& v, std::vector<double>& all) {
   all.clear();
   for (const int k : mixture.bodies) all.insert(all.end(), v[k].data(), v[k].data() + v[k].size());
 }
@@ -271,7 +271,7 @@ void GaussSeidelRelaxation::beginMixing(const ContactProblem& problem, const std
   }
   for (Mixture& mixture : mixtures_) {
     mixture.mixing.restart();
-    gatherBodies(mixture, v, mixture.begun);
+    gatherVelocities(mixture, v, mixture.begun);
   }
 }
 
@@ -281,7 +281,7 @@ void GaussSeidelRelaxation::beginMixing(const ContactProblem& problem, const std
 void GaussSeidelRelaxation::mix(std::vector<NodalVectors>& v) {
   for (Mixture& mixture : mixtures_) {
     if (mixture.bodies.empty()) continue;
-    gatherBodies(mixture, v, mixture.reached);
+    gatherVelocities(mixture, v, mixture.reached);
     viewOf(mixture.begun) = mixture.mixing.next(viewOf(mixture.begun), viewOf(mixture.reached));
     const double* from = mixture.begun.data();
     for (const int k : mixture.bodies) {

@@ -37,7 +37,7 @@ void checkBlock(const BlockDescription& block);
 constexpr int kTetrahedraPerCell = 5;
 
 /// Reads a tetrahedral mesh, or fills a surface (fill/fill_surface.h) where the description has a cell_size_m. Of the former:
-/// Gmsh .msh (2.x, 4.0, 4.1) or legacy VTK (1 to 5), ASCII and binary; the contents decide which, not the name.
+/// Gmsh .msh (1, 2.x, 4.0, 4.1) or legacy VTK (1 to 5), ASCII and binary; the contents decide which, not the name.
 /// Other elements than tetrahedra are skipped; tetrahedra of higher order are refused. Coordinates are multiplied by
 /// the scale. Node and element order is the file's; unreferenced nodes are dropped if the description says so, else
 /// kept for checkTetMesh to name. The result has finite nodes, indices in range and a tetrahedron at least: whether it

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kMostPieces = 40;  // sampled: what a triangle of four sizes of the shape needs
 constexpr int kMostCuts = 12;
-constexpr double kFinest = 3.0;         // spacings: smaller pieces are left to the cutting planes
-constexpr double kLowestWithin = 0.01;  // of the spacing
+constexpr double kFinest = 3.0;              // spacings: smaller pieces are left to the cutting planes
+constexpr double kDistanceTolerance = 0.01;  // of the spacing
 
 /// One of the similar triangles a triangle is cut into.
 struct Piece {
@@ -48,7 +48,7 @@ class Queue {
 class Lowest {
  public:
   Lowest(const DistanceGrid& grid, const TrianglePoints& triangle)
-      : grid_(grid), triangle_(triangle), tolerance_(kLowestWithin * grid.spacing) {}
+      : grid_(grid), triangle_(triangle), tolerance_(kDistanceTolerance * grid.spacing) {}
 
   /// Distance at a point of the triangle. Most points are forgotten before a plane is laid through them.
   double sample(const Vector3& weights) {

@@ -25,7 +25,7 @@
 namespace tissue_contact {
 namespace {
 
-constexpr std::uintmax_t kMostFileBytes = std::uintmax_t{64} << 20U;
+constexpr std::uintmax_t kMostSurfaceBytes = std::uintmax_t{64} << 20U;
 constexpr std::uint64_t kRecipe = 1;          // raise it when what is done to a surface changes
 constexpr double kTetrahedraPerVolume = 4.5;  // of a cell's edge cubed, as gmsh fills organs
 constexpr double kFewestCells = 3.0;          // across the longest side
@@ -36,7 +36,7 @@ constexpr std::string_view kEnd = "$EndComments\n";
 
 std::string sourceOf(const MeshDescription& description) { return "mesh file '" + description.file + "'"; }
 
-std::string digitsOf(double value, int digits = 2) {
+std::string roundedText(double value, int digits = 2) {
   std::ostringstream out;
   out.precision(digits);
   out << value;
@@ -49,7 +49,7 @@ FillOptions optionsOf(const MeshDescription& description) {
 
 std::string keyOf(const MeshDescription& description, const std::string& version) {
   ContentKey key;
-  const std::string bytes = readFile(description.file, "mesh file", kMostFileBytes);
+  const std::string bytes = readFile(description.file, "mesh file", kMostSurfaceBytes);
   const double numbers[] = {static_cast<double>(kRecipe), description.scale_m_per_unit, description.cell_size_m,
                             description.cell_size_inside_m};
   key.add(numbers, sizeof numbers);
@@ -96,18 +96,18 @@ void requireFittingCells(const ClosedSurface& surface, const MeshDescription& de
   const Vector3 size = surface.mesh.vertices.rowwise().maxCoeff() - surface.mesh.vertices.rowwise().minCoeff();
   const double cell = description.cell_size_m;
   const std::string sizes = sourceOf(description) + ": with scale_m_per_unit " +
-                            digitsOf(description.scale_m_per_unit, 3) + " it is " + digitsOf(size.x(), 3) + " x " +
-                            digitsOf(size.y(), 3) + " x " + digitsOf(size.z(), 3) + " m";
+                            roundedText(description.scale_m_per_unit, 3) + " it is " + roundedText(size.x(), 3) +
+                            " x " + roundedText(size.y(), 3) + " x " + roundedText(size.z(), 3) + " m";
   if (size.maxCoeff() < kFewestCells * cell) {
     throw std::invalid_argument(
-        sizes + ", fewer than three cells of cell_size_m " + digitsOf(cell, 3) +
+        sizes + ", fewer than three cells of cell_size_m " + roundedText(cell, 3) +
         " m; give a smaller cell_size_m, or the scale_m_per_unit of its unit (1 for metres, 0.001 for "
         "millimetres)");
   }
   const double count = kTetrahedraPerVolume * surface.volume / std::pow(optionsOf(description).inside_cell_m, 3);
   if (count <= static_cast<double>(kMostElements)) return;
-  throw std::invalid_argument(sizes + ", which takes some " + digitsOf(count) + " tetrahedra of cell_size_m " +
-                              digitsOf(cell, 3) + " m, more than " + std::to_string(kMostElements) +
+  throw std::invalid_argument(sizes + ", which takes some " + roundedText(count) + " tetrahedra of cell_size_m " +
+                              roundedText(cell, 3) + " m, more than " + std::to_string(kMostElements) +
                               (size.maxCoeff() > kLongOrgan ? "; if it is in millimetres, give scale_m_per_unit: 0.001"
                                                             : "; give a larger cell_size_m"));
 }
@@ -153,7 +153,7 @@ Filled fill(const MeshDescription& description, const std::string& version) {
   const double share = filled.made.quality.volume / surface.volume;
   if (!(std::abs(share - 1.0) <= kMostVolumeError)) {
     refuseFilling(description, crossings,
-                  "its tetrahedra have " + digitsOf(100.0 * share, 3) + " % of the surface's volume");
+                  "its tetrahedra have " + roundedText(100.0 * share, 3) + " % of the surface's volume");
   }
   if (crossings.count > 0) {
     filled.notes.push_back("it passes through itself in " + std::to_string(crossings.count) +
@@ -161,9 +161,9 @@ Filled fill(const MeshDescription& description, const std::string& version) {
   }
   filled.notes.push_back("filled with " + std::to_string(filled.made.mesh.tetrahedra.size()) + " tetrahedra on " +
                          std::to_string(filled.made.mesh.positions.cols()) + " nodes, cells of " +
-                         digitsOf(1e3 * description.cell_size_m, 3) + " mm; smallest angle between faces " +
-                         digitsOf(filled.made.quality.smallest_angle) + " degrees, volume " +
-                         digitsOf(100.0 * share, 3) + " % of the surface's; by gmsh " + version);
+                         roundedText(1e3 * description.cell_size_m, 3) + " mm; smallest angle between faces " +
+                         roundedText(filled.made.quality.smallest_angle) + " degrees, volume " +
+                         roundedText(100.0 * share, 3) + " % of the surface's; by gmsh " + version);
   return filled;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 // Two million tetrahedra, the most a scene may have, take it some ten seconds and 1 GB.
 constexpr ProgramLimits kLimits = {300, std::size_t{8} << 30U};
-constexpr std::uintmax_t kMostMadeBytes = std::uintmax_t{256} << 20U;
+constexpr std::uintmax_t kMostMeshBytes = std::uintmax_t{256} << 20U;
 
 // Edges sharper than this are kept where that gives sound elements: those of a cast phantom, not those of a scan's noise.
 constexpr double kEdgeAngle = 40.0;
@@ -80,7 +80,7 @@ GmshResult attempt(const TriangleMesh& surface, const FillOptions& options, doub
     result.mesh = loadTetMesh(made);
     checkTetMesh(result.mesh, "the mesh that gmsh made");
     result.quality = qualityOf(result.mesh);
-    result.file = readFile(made.file, "mesh file", kMostMadeBytes);
+    result.file = readFile(made.file, "mesh file", kMostMeshBytes);
   } catch (const std::invalid_argument& error) {
     result.complaint = end.well ? error.what() : "it ended without a mesh";
   }

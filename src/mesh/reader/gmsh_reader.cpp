@@ -18,14 +18,16 @@
 namespace tissue_contact {
 namespace {
 
-constexpr int kDouble = 8;       // bytes
-constexpr int kGmshInt = 4;      // bytes
-constexpr int kCount = 8;        // bytes of `unsigned long` (4.0) and `size_t` (4.1)
-constexpr int kTetrahedron = 4;  // element types
+constexpr int kDouble = 8;        // bytes
+constexpr int kGmshIntBytes = 4;  // bytes
+constexpr int kCount = 8;         // bytes of `unsigned long` (4.0) and `size_t` (4.1)
+constexpr int kTetrahedron = 4;   // element types
 constexpr int kLine = 1;
 constexpr int kTriangle = 2;
 constexpr int kPoint = 15;
 constexpr std::size_t kMostGroups = 16;
+constexpr std::size_t kLongestName =
+    64;  // of a section: its end is searched for, at the cost of the name's length times the file's
 
 constexpr ItemSize kBlockHeader = {4, 20};  // three ints and a count
 
@@ -56,9 +58,9 @@ class GmshReader {
   int nodeCount(std::int64_t type, std::int64_t tag) const;
   std::size_t blockCount(std::int64_t count, std::size_t left, ItemSize item, const char* what) const;
   void readSection(const std::string& name);
-  std::string nameOfNodes() const { return version_ == Version::k1 ? "$NOD" : "$Nodes"; }
-  std::string nameOfElements() const { return version_ == Version::k1 ? "$ELM" : "$Elements"; }
-  int tagBytes() const { return version_ == Version::k41 ? kCount : kGmshInt; }
+  std::string nodesSection() const { return version_ == Version::k1 ? "$NOD" : "$Nodes"; }
+  std::string elementsSection() const { return version_ == Version::k1 ? "$ELM" : "$Elements"; }
+  int tagBytes() const { return version_ == Version::k41 ? kCount : kGmshIntBytes; }
   ItemSize nodeSize() const { return {4, static_cast<std::size_t>(tagBytes()) + 3 * sizeof(double)}; }
   ItemSize elementSize() const {  // of the smallest, a point: in binary its tag and its node
     const std::size_t values = version_ == Version::k1 ? 6 : version_ == Version::k2 ? 4 : 2;
@@ -81,14 +83,14 @@ MeshFileContents GmshReader::read() {
   readFormat();
   while (!in_.atEnd()) {
     const std::string name(in_.word("a section"));
-    if (name.size() < 2 || name[0] != '$') {
+    if (name.size() < 2 || name.size() > kLongestName || name[0] != '$') {
       in_.fail("expected a section such as $Nodes, found " + excerpt(name) +
                "; the section before is longer than its count says, or the file is damaged: export it again");
     }
     readSection(name);
   }
   if (!have_elements_) {
-    in_.fail("the file ends without a " + nameOfElements() + " section: it is truncated; export or copy it again");
+    in_.fail("the file ends without a " + elementsSection() + " section: it is truncated; export or copy it again");
   }
   return std::move(contents_);
 }
@@ -98,11 +100,11 @@ void GmshReader::readSection(const std::string& name) {
   if (name == "$ParametricNodes") in_.fail("$ParametricNodes is not read; save without Mesh.SaveParametric");
   if (with_labels_ && name == "$PhysicalNames") readPhysicalNames();
   if (with_labels_ && name == "$Entities" && (version_ == Version::k40 || version_ == Version::k41)) readEntities();
-  const bool is_nodes = name == nameOfNodes();
-  if (!is_nodes && name != nameOfElements()) return in_.skipPast(end);
+  const bool is_nodes = name == nodesSection();
+  if (!is_nodes && name != elementsSection()) return in_.skipPast(end);
   bool& seen = is_nodes ? have_nodes_ : have_elements_;
   if (seen) in_.fail("a second section " + name + "; there must be one: export the mesh again");
-  if (!is_nodes && !have_nodes_) in_.fail(name + " comes before any " + nameOfNodes() + "; export the mesh again");
+  if (!is_nodes && !have_nodes_) in_.fail(name + " comes before any " + nodesSection() + "; export the mesh again");
   seen = true;
   in_.endLine();
   if (is_nodes) {
@@ -162,10 +164,10 @@ void GmshReader::readFormat() {
 void GmshReader::setBinaryOrder() {
   in_.setEncoding(MeshFileCursor::Encoding::kLittleEndian);
   const std::size_t start = in_.offset();
-  if (in_.integer(kGmshInt, "the number one that tells the byte order") == 1) return;
+  if (in_.integer(kGmshIntBytes, "the number one that tells the byte order") == 1) return;
   in_.seek(start);
   in_.setEncoding(MeshFileCursor::Encoding::kBigEndian);
-  if (in_.integer(kGmshInt, "the number one that tells the byte order") != 1) {
+  if (in_.integer(kGmshIntBytes, "the number one that tells the byte order") != 1) {
     in_.fail(
         "the four bytes after the format line must be the number 1 in either byte order: "
         "the file was changed by a text-mode transfer or is damaged; copy it again");
@@ -180,7 +182,7 @@ void GmshReader::readNodes2() {
   contents_.nodes.reserve(count);
   tags_.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    tags_.add(in_.integer(kGmshInt, "a node tag"), in_);
+    tags_.add(in_.integer(kGmshIntBytes, "a node tag"), in_);
     contents_.nodes.push_back(readNode(in_, kDouble, i));
   }
 }
@@ -205,13 +207,13 @@ void GmshReader::readNodes4() {
     in_.integer(kCount, "the largest node tag");
   }
   for (std::size_t b = in_.checkedCount(blocks, kBlockHeader, "entity blocks"); b > 0; --b) {
-    const std::int64_t first = in_.integer(kGmshInt, "an entity");
-    const std::int64_t second = in_.integer(kGmshInt, "an entity");
+    const std::int64_t first = in_.integer(kGmshIntBytes, "an entity");
+    const std::int64_t second = in_.integer(kGmshIntBytes, "an entity");
     const std::int64_t dimension = version_ == Version::k41 ? first : second;
     if (dimension < 0 || dimension > 3) {
       in_.fail("entity dimension " + std::to_string(dimension) + "; it must be 0 to 3: export the mesh again");
     }
-    const std::int64_t parameters = in_.integer(kGmshInt, "the parametric flag") != 0 ? dimension : 0;
+    const std::int64_t parameters = in_.integer(kGmshIntBytes, "the parametric flag") != 0 ? dimension : 0;
     const std::int64_t block = in_.integer(kCount, "the number of nodes of a block");
     const std::size_t count = blockCount(block, left, nodeSize(), "nodes");
     left -= count;
@@ -227,7 +229,7 @@ void GmshReader::readNodeBlock4(std::size_t count, std::int64_t parameters) {
   const bool tags_first = version_ == Version::k41;  // 4.0 has each tag with its coordinates
   for (std::size_t i = 0; tags_first && i < count; ++i) tags_.add(in_.integer(kCount, "a node tag"), in_);
   for (std::size_t i = 0; i < count; ++i) {
-    if (!tags_first) tags_.add(in_.integer(kGmshInt, "a node tag"), in_);
+    if (!tags_first) tags_.add(in_.integer(kGmshIntBytes, "a node tag"), in_);
     contents_.nodes.push_back(readNode(in_, kDouble, contents_.nodes.size()));
     for (std::int64_t p = 0; p < parameters; ++p) in_.real(kDouble, "a parametric coordinate");
   }
@@ -236,18 +238,19 @@ void GmshReader::readNodeBlock4(std::size_t count, std::int64_t parameters) {
 void GmshReader::readElements1() {
   const std::int64_t stated = in_.textInteger("the number of elements");
   for (std::size_t i = in_.checkedCount(stated, elementSize(), "elements"); i > 0; --i) {
-    const std::int64_t tag = in_.integer(kGmshInt, "an element tag");
-    const std::int64_t type = in_.integer(kGmshInt, "an element type");
-    const std::int64_t group_number = in_.integer(kGmshInt, "an element's physical group");
-    in_.integer(kGmshInt, "an element's elementary entity");
-    const std::int64_t stated_nodes = in_.integer(kGmshInt, "an element's number of nodes");
-    if (stated_nodes != nodeCount(type, tag)) {
+    const std::int64_t tag = in_.integer(kGmshIntBytes, "an element tag");
+    const std::int64_t type = in_.integer(kGmshIntBytes, "an element type");
+    const std::int64_t group_number = in_.integer(kGmshIntBytes, "an element's physical group");
+    in_.integer(kGmshIntBytes, "an element's elementary entity");
+    const std::int64_t stated_nodes = in_.integer(kGmshIntBytes, "an element's number of nodes");
+    const int needed = nodeCount(type, tag);
+    if (stated_nodes != needed) {
       in_.fail("element " + std::to_string(tag) + " has " + std::to_string(stated_nodes) + " nodes; its type " +
-               std::to_string(type) + " must have " + std::to_string(nodeCount(type, tag)) + ": export the mesh again");
+               std::to_string(type) + " must have " + std::to_string(needed) + ": export the mesh again");
     }
     numbers_.clear();
     if (group_number != 0) numbers_.push_back(group_number);
-    readElement(tag, type, kGmshInt);
+    readElement(tag, type, kGmshIntBytes);
   }
 }
 
@@ -257,11 +260,11 @@ void GmshReader::readElements2() {
   const std::size_t count = in_.checkedCount(stated, elementSize(), "elements");
   if (in_.binary()) return readBinaryElements2(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::int64_t tag = in_.integer(kGmshInt, "an element tag");
-    const std::int64_t type = in_.integer(kGmshInt, "an element type");
-    const std::int64_t stated_tags = in_.integer(kGmshInt, "the number of an element's tags");
-    readTags2(in_.checkedCount(stated_tags, {1, kGmshInt}, "an element's tags"));
-    readElement(tag, type, kGmshInt);
+    const std::int64_t tag = in_.integer(kGmshIntBytes, "an element tag");
+    const std::int64_t type = in_.integer(kGmshIntBytes, "an element type");
+    const std::int64_t stated_tags = in_.integer(kGmshIntBytes, "the number of an element's tags");
+    readTags2(in_.checkedCount(stated_tags, {1, kGmshIntBytes}, "an element's tags"));
+    readElement(tag, type, kGmshIntBytes);
   }
 }
 
@@ -269,23 +272,23 @@ void GmshReader::readElements2() {
 void GmshReader::readTags2(std::size_t count) {
   numbers_.clear();
   for (std::size_t t = 0; t < count; ++t) {
-    const std::int64_t tag = in_.integer(kGmshInt, "an element's tag");
+    const std::int64_t tag = in_.integer(kGmshIntBytes, "an element's tag");
     if (t == 0 && tag != 0) numbers_.push_back(tag);
   }
 }
 
 void GmshReader::readBinaryElements2(std::size_t count) {
   while (count > 0) {
-    const std::int64_t type = in_.integer(kGmshInt, "an element type");
-    const std::int64_t following = in_.integer(kGmshInt, "the number of elements of a block");
+    const std::int64_t type = in_.integer(kGmshIntBytes, "an element type");
+    const std::int64_t following = in_.integer(kGmshIntBytes, "the number of elements of a block");
     const std::size_t block = blockCount(following, count, elementSize(), "elements");
     if (block == 0) in_.fail("a block has 0 elements; it must have at least 1: export the mesh again");
-    const std::int64_t stated_tags = in_.integer(kGmshInt, "the number of an element's tags");
-    const std::size_t tags = in_.checkedCount(stated_tags, {1, kGmshInt}, "an element's tags");
+    const std::int64_t stated_tags = in_.integer(kGmshIntBytes, "the number of an element's tags");
+    const std::size_t tags = in_.checkedCount(stated_tags, {1, kGmshIntBytes}, "an element's tags");
     for (std::size_t i = 0; i < block; ++i) {
-      const std::int64_t tag = in_.integer(kGmshInt, "an element tag");
+      const std::int64_t tag = in_.integer(kGmshIntBytes, "an element tag");
       readTags2(tags);
-      readElement(tag, type, kGmshInt);
+      readElement(tag, type, kGmshIntBytes);
     }
     count -= block;
   }
@@ -300,12 +303,12 @@ void GmshReader::readElements4() {
     in_.integer(kCount, "the largest element tag");
   }
   for (std::size_t b = in_.checkedCount(blocks, kBlockHeader, "entity blocks"); b > 0; --b) {
-    const std::int64_t first = in_.integer(kGmshInt, "an entity");
-    const std::int64_t second = in_.integer(kGmshInt, "an entity");
+    const std::int64_t first = in_.integer(kGmshIntBytes, "an entity");
+    const std::int64_t second = in_.integer(kGmshIntBytes, "an entity");
     const auto entity = version_ == Version::k41 ? std::make_pair(first, second) : std::make_pair(second, first);
     const auto known = numbers_of_.find({static_cast<int>(entity.first), entity.second});
     numbers_ = known == numbers_of_.end() ? std::vector<std::int64_t>() : known->second;
-    const std::int64_t type = in_.integer(kGmshInt, "an element type");
+    const std::int64_t type = in_.integer(kGmshIntBytes, "an element type");
     const std::size_t count =
         blockCount(in_.integer(kCount, "the number of elements of a block"), left, elementSize(), "elements");
     left -= count;
@@ -353,7 +356,7 @@ void GmshReader::readElement(std::int64_t tag, std::int64_t type, int tag_bytes)
     node = tags_.find(node_tag);
     if (node < 0) {
       in_.fail("element " + std::to_string(tag) + " refers to node tag " + std::to_string(node_tag) + ", which " +
-               nameOfNodes() + " does not define; export the mesh again with all its nodes");
+               nodesSection() + " does not define; export the mesh again with all its nodes");
     }
   }
   contents_.tetrahedra.push_back(tet);
@@ -399,11 +402,11 @@ void GmshReader::readEntities() {
 }
 
 void GmshReader::readEntity(int dimension) {
-  const std::int64_t tag = in_.integer(kGmshInt, "an entity");
+  const std::int64_t tag = in_.integer(kGmshIntBytes, "an entity");
   const int corners = dimension == 0 && version_ == Version::k41 ? 3 : 6;
   for (int i = 0; i < corners; ++i) in_.real(kDouble, "a coordinate of an entity");
   const std::int64_t stated = in_.integer(kCount, "the number of an entity's physical groups");
-  const std::size_t count = in_.checkedCount(stated, {1, kGmshInt}, "physical groups");
+  const std::size_t count = in_.checkedCount(stated, {1, kGmshIntBytes}, "physical groups");
   // Each element of the entity is noted for each of them.
   if (count > kMostGroups) {
     in_.fail("an entity belongs to " + std::to_string(count) + " physical groups; at most " +
@@ -412,12 +415,12 @@ void GmshReader::readEntity(int dimension) {
   if (numbers_of_.count({dimension, tag}) > 0) in_.fail("an entity is given twice");
   for (std::size_t i = 0; i < count; ++i) {
     // Gmsh writes the number of a group that is oriented the other way with a minus.
-    numbers_of_[{dimension, tag}].push_back(std::abs(in_.integer(kGmshInt, "a physical group")));
+    numbers_of_[{dimension, tag}].push_back(std::abs(in_.integer(kGmshIntBytes, "a physical group")));
   }
   if (dimension == 0) return;
   const std::int64_t bounding = in_.integer(kCount, "the number of an entity's boundaries");
-  for (std::size_t i = in_.checkedCount(bounding, {1, kGmshInt}, "boundaries"); i > 0; --i)
-    in_.integer(kGmshInt, "a boundary");
+  for (std::size_t i = in_.checkedCount(bounding, {1, kGmshIntBytes}, "boundaries"); i > 0; --i)
+    in_.integer(kGmshIntBytes, "a boundary");
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ namespace {
 // First byte of what the child sends, and last byte: a host that ignores SIGCHLD gets no exit status, only the bytes.
 constexpr char kResult = '+';
 constexpr char kRefusal = '-';
-constexpr char kLastByte = '.';
+constexpr char kWholeMark = '.';
 
 /// Limits of the calling (child) process. Its address space now is the base, because sanitizers reserve terabytes.
 void limitSelf(unsigned seconds, std::size_t bytes) {
@@ -45,11 +45,11 @@ void limitSelf(unsigned seconds, std::size_t bytes) {
 
 std::string answerOf(const std::function<std::string()>& work) {
   try {
-    return kResult + work() + kLastByte;
+    return kResult + work() + kWholeMark;
   } catch (const std::bad_alloc&) {
-    return kRefusal + std::string("it needs too much memory") + kLastByte;
+    return kRefusal + std::string("it needs too much memory") + kWholeMark;
   } catch (const std::exception& error) {
-    return kRefusal + std::string(error.what()) + kLastByte;
+    return kRefusal + std::string(error.what()) + kWholeMark;
   }
 }
 
@@ -107,7 +107,7 @@ std::string runIsolated(const std::function<std::string()>& work, unsigned secon
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.size() < 2 || answer.back() != kLastByte) {
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.size() < 2 || answer.back() != kWholeMark) {
     throw std::invalid_argument(describeEnd(status, seconds));
   }
   answer.pop_back();

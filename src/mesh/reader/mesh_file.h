@@ -20,7 +20,7 @@ struct MeshFileContents {
   std::vector<MeshLabels::CellData> cell_data;
 };
 
-/// Gmsh MSH 2.x, 4.0 and 4.1, ASCII and binary of either byte order; `in` at its start.
+/// Gmsh MSH 1, 2.x, 4.0 and 4.1, ASCII and (but for 1) binary of either byte order; `in` at its start.
 /// @throws std::invalid_argument.
 MeshFileContents readGmsh(MeshFileCursor& in, bool with_labels);
 

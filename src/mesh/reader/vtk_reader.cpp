@@ -15,7 +15,7 @@
 namespace tissue_contact {
 namespace {
 
-constexpr int kVtkInt = 4;  // bytes of `int` and `vtkIdType` in a binary file
+constexpr int kVtkIntBytes = 4;  // bytes of `int` and `vtkIdType` in a binary file
 constexpr std::int64_t kTetra = 10;
 
 std::string upperCase(std::string_view text) {
@@ -42,7 +42,7 @@ constexpr ValueType kValueTypes[] = {
     {"VTKTYPEUINT64", 8, false},
     {"VTKTYPEINT32", 4, false},
     {"VTKTYPEUINT32", 4, false},
-    {"VTKIDTYPE", kVtkInt, false},
+    {"VTKIDTYPE", kVtkIntBytes, false},
     {"SHORT", 2, false},
     {"UNSIGNED_SHORT", 2, false},
     {"UNSIGNED_CHAR", 1, false},
@@ -53,7 +53,7 @@ constexpr ValueType kValueTypes[] = {
 struct IntegerArray {
   std::vector<std::int64_t> values;
   std::size_t start = 0;  ///< offset in the file
-  int bytes = kVtkInt;
+  int bytes = kVtkIntBytes;
 };
 
 struct Cell {
@@ -200,9 +200,9 @@ IntegerArray VtkReader::readIntegers(std::size_t count, int bytes, const char* w
 }
 
 void VtkReader::readCellsBySize() {
-  const auto count = static_cast<std::size_t>(readTotal("cells", {1, kVtkInt}));
-  const auto size = static_cast<std::size_t>(readTotal("values of CELLS", {1, kVtkInt}));
-  connectivity_ = readIntegers(size, kVtkInt, "values of CELLS");
+  const auto count = static_cast<std::size_t>(readTotal("cells", {1, kVtkIntBytes}));
+  const auto size = static_cast<std::size_t>(readTotal("values of CELLS", {1, kVtkIntBytes}));
+  connectivity_ = readIntegers(size, kVtkIntBytes, "values of CELLS");
   cells_.reserve(count);
   std::size_t next = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -264,12 +264,12 @@ void VtkReader::readCellsByOffset() {
 }
 
 void VtkReader::readCellTypes() {
-  const auto count = static_cast<std::size_t>(readTotal("cell types", {1, kVtkInt}));
+  const auto count = static_cast<std::size_t>(readTotal("cell types", {1, kVtkIntBytes}));
   if (count != cells_.size()) {
     in_.fail("there are " + std::to_string(count) + " cell types for " + std::to_string(cells_.size()) +
              " cells; export the file again");
   }
-  const IntegerArray types = readIntegers(count, kVtkInt, "cell types");
+  const IntegerArray types = readIntegers(count, kVtkIntBytes, "cell types");
   for (std::size_t i = 0; i < count; ++i) {
     const std::int64_t type = types.values[i];
     const bool high_order =

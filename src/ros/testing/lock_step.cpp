@@ -14,7 +14,7 @@
 namespace tissue_contact {
 namespace {
 
-constexpr Range kStateRate{0.1, 10000.0, "Hz"};
+constexpr Range kJointStateRate{0.1, 10000.0, "Hz"};
 constexpr std::int64_t kStart_ns = 1000000000;  // 0 is no stamp
 
 SceneEnvironment plainEnvironment() {
@@ -32,7 +32,7 @@ LockStep::LockStep(const std::string& scene_file, double rate_hz)
 LockStep::LockStep(const Scene& scene, const SceneEnvironment& environment, double rate_hz)
     : simulator_(scene, environment),
       player_(simulator_),
-      rate_hz_(kStateRate.require("the rate of the joint states", rate_hz)),
+      rate_hz_(kJointStateRate.require("the rate of the joint states", rate_hz)),
       peaks_(scene.instruments.size(), 0.0) {}
 
 void LockStep::step(const std::map<std::string, JointPositions>& joint_states) {

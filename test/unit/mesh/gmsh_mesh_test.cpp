@@ -114,6 +114,9 @@ TEST(GmshMesh, NamesSectionsThatAreWrong) {
   expectRefused("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Elements\n0\n$EndElements\n", {":4: $Elements comes before"});
   expectRefused("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n", {"without a $Elements section", "truncated"});
   expectRefused(std::string(kText22) + "garbage", {":22: expected a section", "'garbage'"});
+  for (const char* text : {kText1, kText22}) {  // to search for the end of such a section would take hours
+    expectRefused(text + ("$" + std::string(1000, 'N')) + "\n", {"expected a section", "'$NNN", "...'"});
+  }
   expectRefused(std::string(kText22) + "$NodeData\n1\n", {":22: no $EndNodeData follows"});
   expectRefused(replaced(kText22, "$EndNodes", "$EndNode"), {":14: expected $EndNodes, found '$EndNode'"});
 }

@@ -49,7 +49,7 @@ std::vector<std::string> wholeFiles() {
   std::vector<std::string> files;
   for (const char* name :
        {"box_v22.msh", "box_v22_binary.msh", "box_v40_parametric.msh", "box_v41.msh", "box_v41_binary_parametric.msh",
-        "box_v41_binary_order2.msh", "box_v2.vtk", "box_v2_binary.vtk"}) {
+        "box_v41_binary_order2.msh", "box_v2.vtk", "box_v2_binary.vtk", "box_v1.msh"}) {
     files.push_back(readBytes(fixturePath(name)));
   }
   const TetMesh mesh = makeBlockMesh({Vector3(1, 1, 1), {1, 1, 1}, {}});  // small: more damage per byte
