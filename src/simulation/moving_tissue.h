@@ -40,8 +40,8 @@ class MovingTissue {
   /// keep theirs.
   void stop();
 
-  static constexpr double kMost =
-      1e9;  ///< in a saved state, m, m/s: what is farther or faster has long stopped to be tissue
+  /// In a saved state, m, m/s: what is farther or faster has long stopped to be tissue.
+  static constexpr double kMost = 1e9;
 
   /// @pre on reading: the mesh is that of what was written.
   void carry(StateArchive& archive);

@@ -12,7 +12,7 @@ namespace {
 using Edge = EdgeTable::Edge;
 
 /// Sine of the angle below which two edges are parallel: they have no crossing, and their ends are what touches.
-constexpr double kParallelEdges = 1e-3;
+constexpr double kParallelSine = 1e-3;
 
 SurfacePoint edgePoint(const Edge& edge, double u) {
   return {{edge.nodes[0], edge.nodes[1], edge.nodes[1]}, {1.0 - u, u, 0.0}};
@@ -129,7 +129,7 @@ bool EdgeEdge::cross(const SurfacePair& pair, const Edge& own, const Edge& other
   const Vector3 ac = c - a;
   const Vector3 square = ab.cross(cd);
   const double squared = square.squaredNorm();
-  if (!(squared > kParallelEdges * kParallelEdges * ab.squaredNorm() * cd.squaredNorm())) return false;
+  if (!(squared > kParallelSine * kParallelSine * ab.squaredNorm() * cd.squaredNorm())) return false;
   crossing.u = ac.cross(cd).dot(square) / squared;
   crossing.v = ac.cross(ab).dot(square) / squared;
   const double u_end = std::min(crossing.u, 1.0 - crossing.u);

@@ -15,7 +15,7 @@ Vector2 coefficients(const Vector3& a, const Vector3& b, const Vector3& p) {
 }
 
 /// Normals nearer to parallel than this (sine squared) do not say where two shapes meet.
-constexpr double kParallelNormals = 1e-6;
+constexpr double kParallelSineSquared = 1e-6;
 
 /// Whether a ball around the point where the shapes are that far away touches both, to a hundredth of its radius.
 bool isPlaced(const SignedDistance& a, const SignedDistance& b, double radius) {
@@ -49,7 +49,7 @@ bool fillGroove(const PlacedShape& first, const PlacedShape& second, const Vecto
   Vector3 centre = p_W;
   for (int k = 0; k < kSteps; ++k) {
     const double cosine = a.normal.dot(b.normal);
-    if (!(1.0 - cosine * cosine > kParallelNormals)) return false;
+    if (!(1.0 - cosine * cosine > kParallelSineSquared)) return false;
     const double short_a = radius - a.distance;
     const double short_b = radius - b.distance;
     const Vector3 step =
@@ -61,7 +61,7 @@ bool fillGroove(const PlacedShape& first, const PlacedShape& second, const Vecto
     if (isPlaced(a, b, radius)) break;
   }
   const double cosine = a.normal.dot(b.normal);
-  if (!isPlaced(a, b, radius) || !(1.0 - cosine * cosine > kParallelNormals)) return false;
+  if (!isPlaced(a, b, radius) || !(1.0 - cosine * cosine > kParallelSineSquared)) return false;
   // The groove lies between the points that the ball touches.
   if (!(coefficients(a.normal, b.normal, centre - p_W).minCoeff() > 0.0)) return false;
   const double to_centre = (centre - p_W).norm();

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "ros/absolute_path.h"
 #include "tissue_contact/core/read_file.h"
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/core/whole_file.h"
@@ -22,12 +23,6 @@ void requireName(const std::string& file) {
   if (file.find('\0') != std::string::npos) throw std::invalid_argument("the name of the file has a byte 0 in it");
 }
 
-std::string absolute(const std::string& file) {
-  std::error_code error;
-  const std::filesystem::path path = std::filesystem::absolute(file, error);
-  return error ? file : path.lexically_normal().string();
-}
-
 bool beginsAsState(const std::string& file) {
   const std::string title = JointStatePlayer::stateTitle();
   std::string begins(title.size(), '\0');
@@ -39,12 +34,12 @@ void requireReplaceable(const std::string& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error) || std::filesystem::file_size(file, error) == 0) return;
   if (beginsAsState(file)) return;
-  throw std::invalid_argument("'" + printable(absolute(file), kMostLetters) +
+  throw std::invalid_argument("'" + printable(absolutePath(file), kMostLetters) +
                               "' is there already and is no saved state, so it is not replaced; name another file");
 }
 
 std::string told(const std::string& file, std::size_t bytes) {
-  return printable(absolute(file), kMostLetters) + " (" + std::to_string((bytes + 999) / 1000) + " kB)";
+  return printable(absolutePath(file), kMostLetters) + " (" + std::to_string((bytes + 999) / 1000) + " kB)";
 }
 
 }  // namespace
@@ -61,7 +56,7 @@ std::string saveStateFile(JointStatePlayer& player, const std::string& file) {
 
 std::string loadStateFile(JointStatePlayer& player, const std::string& file, const std::function<void()>& before) {
   requireName(file);
-  const std::string name = printable(absolute(file), kMostLetters);
+  const std::string name = printable(absolutePath(file), kMostLetters);
   requireRegularFile(file, "saved state", kMostBytes);
   if (!beginsAsState(file)) {
     throw std::invalid_argument("'" + name + "' does not begin with '" + JointStatePlayer::stateTitle() +

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 #include <map>
-#include <system_error>
 
+#include "ros/absolute_path.h"
 #include "ros/replay/commit.h"  // made by CMakeLists.txt
 #include "ros/replay/file_hash.h"
 #include "tissue_contact/scene/load_scene.h"
@@ -14,12 +14,6 @@
 
 namespace tissue_contact {
 namespace {
-
-std::string absolute(const std::string& file) {
-  std::error_code error;
-  const std::filesystem::path path = std::filesystem::absolute(file, error);
-  return error ? file : path.lexically_normal().string();
-}
 
 /// The file that the code at an address was loaded from.
 std::string loadedFrom(const void* address) {
@@ -41,15 +35,15 @@ std::vector<NamedFile> programFiles() {
 void addFile(YAML::Emitter& yaml, const NamedFile& file, const std::string& content) {
   const FileHash hash = hashOfFile(content, file.role);
   yaml << YAML::BeginMap << YAML::Key << "role" << YAML::Value << YAML::DoubleQuoted << file.role << YAML::Key << "file"
-       << YAML::Value << YAML::DoubleQuoted << absolute(file.path) << YAML::Key << "bytes" << YAML::Value << hash.bytes
-       << YAML::Key << "sha256" << YAML::Value << YAML::DoubleQuoted << hash.sha256 << YAML::EndMap;
+       << YAML::Value << YAML::DoubleQuoted << absolutePath(file.path) << YAML::Key << "bytes" << YAML::Value
+       << hash.bytes << YAML::Key << "sha256" << YAML::Value << YAML::DoubleQuoted << hash.sha256 << YAML::EndMap;
 }
 
 void addFiles(YAML::Emitter& yaml, const char* key, const std::vector<NamedFile>& files) {
   yaml << YAML::Key << key << YAML::Value << YAML::BeginSeq;
   std::map<std::string, bool> seen;
   for (const NamedFile& file : files) {
-    const bool is_new = !file.path.empty() && seen.emplace(absolute(file.path), true).second;
+    const bool is_new = !file.path.empty() && seen.emplace(absolutePath(file.path), true).second;
     if (is_new) addFile(yaml, file, file.path);
   }
   yaml << YAML::EndSeq;
