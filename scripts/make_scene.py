@@ -40,7 +40,7 @@ tissues:
       scale_m_per_unit: {scale:g}  # it then is {size[0]:.3g} x {size[1]:.3g} x {size[2]:.3g} m
       cell_size_m: {cell:.3g}  # edge of the tetrahedra: half of it has eight times as many
     refinement: {{cell_m: {fine:.3g}}}  # and fine ones where the probe is, a third of its ball's radius at most
-    material: {{preset: {material}, model: neo_hookean, dilatation: patch}}  # doc/organ.md; or youngs_modulus_pa, poissons_ratio, density_kg_per_m3
+    material: {{preset: {material}, model: neo_hookean}}  # doc/organ.md; or youngs_modulus_pa, poissons_ratio, density_kg_per_m3
     fixed:
       - plane: {{point_m: [0, 0, {held:.4f}], normal: [0, 0, 1]}}  # the lowest {part:.0f} % of its height
 

@@ -52,17 +52,20 @@ Bisection::Bisection(const TetMesh& base, const std::vector<int>& patch_of)
   }
   base_patches_.resize(patch_of.empty() ? 0 : 1 + *std::max_element(patch_of.begin(), patch_of.end()));
   for (std::size_t e = 0; e < patch_of.size(); ++e) base_patches_[patch_of[e]].push_back(static_cast<int>(e));
+  lasting_nodes_ = base_nodes_;
+  lasting_elements_ = patch_of.size();
 }
 
-/// Back to the unrefined mesh.
+/// Back to the unrefined mesh with its lasting cuts.
 void Bisection::start() {
-  const std::size_t unrefined = base_patch_of_.size();
-  x_.resize(base_nodes_);
-  parents_.clear();
+  x_.resize(lasting_nodes_);
+  parents_.resize(lasting_nodes_ - base_nodes_);
   for (std::vector<int>& elements : uncut_at_) elements.clear();
-  elements_.resize(unrefined);
-  for (std::size_t e = 0; e < unrefined; ++e) {
-    elements_[e].first_child = -1;
+  elements_.resize(lasting_elements_);
+  for (std::size_t e = 0; e < lasting_elements_; ++e) {
+    int& child = elements_[e].first_child;
+    if (child >= static_cast<int>(lasting_elements_)) child = -1;
+    if (child >= 0) continue;
     for (const int node : elements_[e].nodes) uncut_at_[node].push_back(static_cast<int>(e));
   }
 }
@@ -106,16 +109,37 @@ Vector3 Bisection::centroid(const Element& element) const {
   return 0.25 * (x_[element.nodes[0]] + x_[element.nodes[1]] + x_[element.nodes[2]] + x_[element.nodes[3]]);
 }
 
-bool Bisection::refine(const EdgeLimit& limit, std::size_t most_nodes, BisectedMesh& result) {
-  constexpr double kRounding = 1.0 + 1e-9;  // edges of one length differ by rounding
-  start();
+std::array<Vector3, 4> Bisection::corners(const Element& element) const {
+  return {x_[element.nodes[0]], x_[element.nodes[1]], x_[element.nodes[2]], x_[element.nodes[3]]};
+}
+
+template <typename LimitOf>
+bool Bisection::cutBeyond(const LimitOf& limit_of, std::size_t most_nodes) {
+  constexpr double kRounding = 1.0 + 1e-9;              // edges of one length differ by rounding
   for (std::size_t e = 0; e < elements_.size(); ++e) {  // children come at the end
     if (elements_[e].first_child >= 0) continue;
-    const double most_m = limit(centroid(elements_[e]));
+    const double most_m = limit_of(elements_[e]);
     if (!(elements_[e].squared_m2 > kRounding * most_m * most_m)) continue;
     if (!cut(static_cast<int>(e), most_nodes)) return false;
   }
+  return true;
+}
+
+bool Bisection::refineLasting(const CornersLimit& limit, std::size_t most_nodes) {
+  lasting_nodes_ = base_nodes_;
+  lasting_elements_ = base_patch_of_.size();
+  start();
+  if (!cutBeyond([&](const Element& element) { return limit(corners(element)); }, most_nodes)) return false;
+  lasting_nodes_ = x_.size();
+  lasting_elements_ = elements_.size();
+  return true;
+}
+
+bool Bisection::refine(const EdgeLimit& limit, std::size_t most_nodes, BisectedMesh& result) {
+  start();
+  if (!cutBeyond([&](const Element& element) { return limit(centroid(element)); }, most_nodes)) return false;
   write(result);
+  result.lasting = static_cast<int>(lasting_nodes_ - base_nodes_);
   return true;
 }
 

@@ -22,12 +22,15 @@ namespace tissue_contact {
 
 /// The longest edge that a tetrahedron with its centroid there may have, m; > 0.
 using EdgeLimit = std::function<double(const Vector3&)>;
+/// Likewise of a tetrahedron by its corners, m.
+using CornersLimit = std::function<double(const std::array<Vector3, 4>&)>;
 
 struct BisectedMesh {
   TetMesh mesh;                   ///< nodes of the unrefined mesh first, in its order
   std::vector<Triangle> surface;  ///< boundaryTriangles() of it
   /// Of each further node the two, both before it, in the middle between which it lies.
   std::vector<std::array<int, 2>> parents;
+  int lasting = 0;  ///< how many of these, the first, every mesh has: Bisection::refineLasting()
   /// Groups of neighbouring tetrahedra as patchesByFaces() makes them. Where two limits make the same elements they are the same.
   std::vector<int> patch_of;
   /// Per tetrahedron, and per surface triangle: centroid of the one of the unrefined mesh that it is a part of, m. Regions are decided by
@@ -44,7 +47,11 @@ class Bisection {
   /// @param patch_of of its tetrahedra.
   Bisection(const TetMesh& base, const std::vector<int>& patch_of);
 
-  /// Refines the unrefined mesh until no tetrahedron has an edge beyond the limit at its centroid.
+  /// From now on every mesh has these cuts, before its own: until no tetrahedron has an edge beyond the limit.
+  /// @return false, and there are none, if that would take more than `most_nodes` nodes.
+  bool refineLasting(const CornersLimit& limit, std::size_t most_nodes);
+
+  /// Refines the unrefined mesh, its lasting cuts kept, until no tetrahedron has an edge beyond the limit at its centroid.
   /// @return false, with `result` as it was, if that would take more than `most_nodes` nodes.
   bool refine(const EdgeLimit& limit, std::size_t most_nodes, BisectedMesh& result);
 
@@ -62,6 +69,9 @@ class Bisection {
     int leaves = 1;  ///< scratch: of the mesh, into which it has been cut
   };
   void start();
+  std::array<Vector3, 4> corners(const Element& element) const;
+  template <typename LimitOf>
+  bool cutBeyond(const LimitOf& limit_of, std::size_t most_nodes);
   int add(const Tetrahedron& nodes, int unrefined, const std::array<int, 4>& outer);
   bool comesBefore(const std::array<int, 2>& a, const std::array<int, 2>& b) const;
   void findLongest(Element& element) const;
@@ -79,6 +89,7 @@ class Bisection {
   std::vector<Vector3> base_elements_, base_triangles_;  ///< centroids, m
   std::vector<int> base_patch_of_;
   std::vector<std::vector<int>> base_patches_;  ///< their elements
+  std::size_t lasting_nodes_, lasting_elements_;
   std::vector<Vector3> x_;
   std::vector<std::array<int, 2>> parents_;                    ///< of nodes beyond the unrefined ones
   std::vector<Element> elements_;                              ///< unrefined ones first; children after their parents

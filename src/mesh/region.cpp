@@ -87,6 +87,18 @@ bool anyHolds(const std::vector<Region>& regions, const Vector3& x, double round
   return std::any_of(regions.begin(), regions.end(), [&](const Region& region) { return holds(region, x, rounding); });
 }
 
+bool bordersIn(const std::vector<Region>& regions, const std::array<Vector3, 4>& corners, double rounding) {
+  constexpr double kCorner = 0.125;  // of an edge: what holds no more of it holds the corner alone
+  std::array<bool, 4> held{};
+  for (std::size_t i = 0; i < 4; ++i) held[i] = anyHolds(regions, corners[i], rounding);
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; held[i] && j < 4; ++j) {
+      if (!held[j] && anyHolds(regions, corners[i] + kCorner * (corners[j] - corners[i]), rounding)) return true;
+    }
+  }
+  return false;
+}
+
 std::vector<bool> heldPoints(const NodalVectors& points, const std::vector<Region>& regions, const std::string& entry,
                              const std::string& what, const std::string& source) {
   std::vector<bool> held(static_cast<std::size_t>(points.cols()), false);

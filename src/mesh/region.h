@@ -2,6 +2,7 @@
 /// Room `mesh`, private: which points lie in a region.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ double placeOrder(const Vector3& place);
 
 /// Whether any of the regions holds the point (m, in T). Boundaries count as inside.
 bool anyHolds(const std::vector<Region>& regions, const Vector3& x, double rounding);
+
+/// Whether the border of what the regions hold runs through a tetrahedron, not only along its faces.
+bool bordersIn(const std::vector<Region>& regions, const std::array<Vector3, 4>& corners, double rounding);
 
 /// For each point (3 x n, m, in T) whether any of the regions holds it.
 /// @param entry of the regions in their tissue, "fixed". @param what a point is, "node".

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <variant>
 
+#include "tissue/body_edges.h"
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/simulation/force_error.h"
 #include "tissue_contact/simulation/simulator.h"
@@ -198,6 +199,30 @@ std::optional<Advice> sizeDoubt(const TissueDescription& tissue, const NodalVect
                 true};
 }
 
+std::optional<Advice> heldDoubt(const TissueDescription& description, const Tissue& tissue) {
+  if (!std::holds_alternative<MeshDescription>(description.geometry)) return std::nullopt;
+  const auto is_fixed = [&](int node) { return tissue.fixed()[static_cast<std::size_t>(node)]; };
+  double longest_m = 0.0;
+  for (const Tetrahedron& nodes : tissue.tetrahedra()) {
+    const auto fixed = std::count_if(nodes.begin(), nodes.end(), is_fixed);
+    if (fixed == 0 || fixed == 4) continue;
+    for (const int a : nodes) {
+      for (const int b : nodes) {
+        longest_m = std::max(longest_m, (tissue.restPositions().col(a) - tissue.restPositions().col(b)).norm());
+      }
+    }
+  }
+  if (longest_m <= longestBodyEdge(tissue.restPositions(), tissue.tetrahedra(), description.refinement)) {
+    return std::nullopt;
+  }
+  const auto held = std::count(tissue.fixed().begin(), tissue.fixed().end(), true);
+  return Advice{"tissue " + quoted(description.name) + ": `fixed` holds " + std::to_string(held) + " of " +
+                    std::to_string(tissue.nodeCount()) + " nodes, beside edges of up to " + twoDigits(1e3 * longest_m) +
+                    " mm, so that its border is off by as much and forces may be by a third: refinement (auto, fine or "
+                    "a map) cuts them",
+                true};
+}
+
 Advice meshLine(const TissueDescription& tissue, double edge_m, const HalfExtents& shapes) {
   return withExpectedError(tissue,
                            "mesh of tissue " + quoted(tissue.name) + ": as it is, cells of " + twoDigits(1e3 * edge_m) +
@@ -206,11 +231,14 @@ Advice meshLine(const TissueDescription& tissue, double edge_m, const HalfExtent
 }
 
 Advice refinementLine(const TissueDescription& tissue, const std::vector<double>& cells_m, double reach_m,
-                      double growth, int nodes_at_most, const HalfExtents& shapes) {
+                      double growth, int nodes_at_most, int body_nodes, const HalfExtents& shapes) {
   std::ostringstream line;
   line << "mesh of tissue " << quoted(tissue.name) << ": ";
+  if (body_nodes > 0) {
+    line << body_nodes << " nodes more than as it came, so that it bends and is held as it should wherever tools are; ";
+  }
   if (cells_m.empty()) {
-    line << "as it is, since no instrument touches; for other tissues give refinement.cell_m";
+    line << "stays as it is, since no instrument touches; for other tissues give refinement.cell_m";
     return {line.str()};
   }
   line.precision(3);

@@ -32,15 +32,18 @@ std::vector<Advice> adviceLines(const Scene& scene, const FoldWatch& folds,
 /// @param rest 3 x n, m.
 std::optional<Advice> sizeDoubt(const TissueDescription& tissue, const NodalVectors& rest, const HalfExtents& shapes);
 
+/// A warning where a tissue from a file is held beside elements so long that they hold it elsewhere than `fixed` says; else none.
+std::optional<Advice> heldDoubt(const TissueDescription& description, const Tissue& tissue);
+
 /// What the mesh of a volume is, and what it is likely to do to the forces of the instruments' shapes: a warning where
 /// even the largest shape meets coarse cells.
 /// @param edge_m of the shorter triangles of the surface.
 Advice meshLine(const TissueDescription& tissue, double edge_m, const HalfExtents& shapes);
 
 /// The same of a mesh that follows. @param cells_m edges of the finest cells under all shapes, ascending; none: nothing asks for any.
-/// @param reach_m of the finest.
+/// @param reach_m of the finest. @param body_nodes that have come for the body itself: BisectedMesh::lasting.
 Advice refinementLine(const TissueDescription& tissue, const std::vector<double>& cells_m, double reach_m,
-                      double growth, int nodes_at_most, const HalfExtents& shapes);
+                      double growth, int nodes_at_most, int body_nodes, const HalfExtents& shapes);
 
 /// Of a tenth of the surface's triangles the mean edge is shorter, m.
 double shortSurfaceEdge(const Tissue& tissue);

@@ -51,6 +51,7 @@ std::vector<Advice> Simulator::advice() const {
     if (const auto doubt = sizeDoubt(tissue, all.tissues[t].restPositions(), shapes)) meshes[t].push_back(*doubt);
     if (!isContinuum(tissue.material.model)) continue;
     if (!all.refinements[t]) {
+      if (const auto doubt = heldDoubt(tissue, all.tissues[t])) meshes[t].push_back(*doubt);
       meshes[t].push_back(meshLine(tissue, shortSurfaceEdge(all.tissues[t]), shapes));
       continue;
     }
@@ -58,7 +59,7 @@ std::vector<Advice> Simulator::advice() const {
     const double cell_m = cells_m.empty() ? 0.0 : cells_m.front();
     meshes[t].push_back(refinementLine(tissue, cells_m, all.refinements[t]->cells().reach(cell_m),
                                        all.refinements[t]->cells().growth(), all.refinements[t]->nodesAtMost(),
-                                       shapes));
+                                       all.refinements[t]->mesh().lasting, shapes));
   }
   return adviceLines(scene(), all.folds, meshes);
 }

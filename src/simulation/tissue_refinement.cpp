@@ -13,7 +13,7 @@ namespace {
 /// Where new foci would need cells so many times longer than those that stay have, all get the same: else the first touch would
 /// take all nodes.
 constexpr double kMostUneven = 2.0;
-/// Of the nodes that may come to the unrefined mesh: with fewer, cells need not be as long as they had to be before.
+/// Of the nodes that may come to the mesh that nothing touches: with fewer, cells need not be as long as they had to be before.
 constexpr double kRoom = 0.6;
 constexpr double kCoarser = 1.189207115002721;  // fourth root of 2
 
@@ -79,7 +79,7 @@ TissueRefinement::TissueRefinement(RefinableMesh&& mesh, const Pose& X_WT)
 }
 
 bool TissueRefinement::reset() {
-  const bool changes = !mesh_.parents.empty();
+  const bool changes = static_cast<int>(mesh_.parents.size()) != mesh_.lasting;
   cells_.clear();
   refineWithin(cells_, mesh_);
   if (changes) ++revision_;
@@ -132,8 +132,8 @@ NextMesh TissueRefinement::plan(const std::vector<FinePlace>& places) {
   NextMesh next = {cells_, {}, std::nullopt};
   FineCells kept = cells_;
   kept.dropIdle(places);
-  const int unrefined = bisection_.unrefinedNodes();
-  const bool has_room = static_cast<double>(mesh_.parents.size()) < kRoom * (nodes_at_most_ - unrefined);
+  const auto come = static_cast<int>(mesh_.parents.size()) - mesh_.lasting;
+  const bool has_room = come < kRoom * (nodes_at_most_ - bisection_.unrefinedNodes() - mesh_.lasting);
   if (kept.empty()) {
     kept.setCoarsening(1.0);
   } else if (has_room) {

@@ -44,6 +44,12 @@ bool averagesDistortion(const ElementMaterials& materials) {
 ElementMaterials materialsOf(const TissueDescription& tissue) {
   ElementMaterials materials(tissue.material);
   for (const TissueRegion& region : tissue.regions) materials.materials.push_back(region.material);
+  // What the cells around a tool are too small for, see averagesDilatation(), while those far away bend as they are.
+  MaterialDescription& first = materials.materials[0];
+  if (tissue.refinement.mode != RefinementDescription::Mode::kNever && first.model == ElasticModel::kNeoHookean &&
+      first.dilatation == Dilatation::kAuto && averagesByItself(materials)) {
+    first.dilatation = Dilatation::kPatch;
+  }
   return materials;
 }
 

@@ -7,6 +7,7 @@
 
 #include "mesh/labels.h"
 #include "mesh/region.h"
+#include "tissue/body_edges.h"
 #include "tissue/element_patches.h"
 #include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/mesh/tet_mesh.h"
@@ -299,7 +300,9 @@ RefinableMesh refinableMesh(const TissueDescription& description, const MeshSize
                             const MeshPreparation& preparation) {
   checkTissue(description);
   const VolumeMesh made = volumeMesh(description, tissueLabel(description), on_size, preparation);
-  return {withPlaces(description, made.labels, made.mesh), Bisection(made.mesh, made.patch_of)};
+  RefinableMesh refinable{withPlaces(description, made.labels, made.mesh), Bisection(made.mesh, made.patch_of)};
+  refineBody(made.mesh, refinable.description, refinable.bisection);
+  return refinable;
 }
 
 PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, const BisectedMesh& mesh) {
@@ -309,8 +312,16 @@ PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, con
   placed.surface_places = mesh.surface_places;
   const NodalVectors unrefined = placed.rest.leftCols(mesh.unrefinedNodes());
   placed.fixed = fixedNodes(unrefined, description.fixed, tissueLabel(description));
-  // A node between two that move would be held back from where it is.
-  for (const auto& [a, b] : mesh.parents) placed.fixed.push_back(placed.fixed[a] && placed.fixed[b]);
+  placed.fixed.resize(static_cast<std::size_t>(placed.rest.cols()), false);
+  const double rounding = roundingDistance(unrefined);
+  for (Eigen::Index k = unrefined.cols(); k < placed.rest.cols(); ++k) {
+    const auto [a, b] = mesh.parents[static_cast<std::size_t>(k - unrefined.cols())];
+    // One that comes later, between two that move, would be held back from where it is.
+    const bool is_lasting = k - unrefined.cols() < mesh.lasting;
+    placed.fixed[static_cast<std::size_t>(k)] =
+        (placed.fixed[a] && placed.fixed[b]) ||
+        (is_lasting && anyHolds(description.fixed, placed.rest.col(k), rounding));
+  }
   finish(description, X_WT, placed);
   return placed;
 }

@@ -1,8 +1,12 @@
 /// @file
-/// The smallest meshes that are accepted, as texts of files.
+/// Meshes as texts of files: the smallest that are accepted, and any.
 #pragma once
 
+#include <cstddef>
+#include <sstream>
 #include <string>
+
+#include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
 
@@ -10,6 +14,19 @@ namespace tissue_contact {
 inline std::string vtkTetrahedron() {
   return "# vtk DataFile Version 2.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
          "5 0 0 6 0 0 5 1 0 5 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n";
+}
+
+inline std::string vtkOf(const TetMesh& mesh) {
+  std::ostringstream vtk;
+  vtk.precision(17);
+  vtk << "# vtk DataFile Version 2.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " << mesh.positions.cols()
+      << " double\n"
+      << mesh.positions.transpose() << "\nCELLS " << mesh.tetrahedra.size() << ' ' << 5 * mesh.tetrahedra.size()
+      << '\n';
+  for (const Tetrahedron& t : mesh.tetrahedra) vtk << "4 " << t[0] << ' ' << t[1] << ' ' << t[2] << ' ' << t[3] << '\n';
+  vtk << "CELL_TYPES " << mesh.tetrahedra.size() << '\n';
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) vtk << "10\n";
+  return vtk.str();
 }
 
 /// The surface of a tetrahedron with edges of 1 cm along the axes.

@@ -26,7 +26,7 @@ bool averagesDilatation(const ElementMaterials& materials);
 /// Whether a part of their changes of shape is, likewise; of neo-Hookean ones without the former, a part of all strain.
 bool averagesDistortion(const ElementMaterials& materials);
 
-/// Of the tissue and of its regions.
+/// Of the tissue and of its regions; where its mesh follows tools, kAuto averages neo-Hookean changes of volume as those of other models.
 ElementMaterials materialsOf(const TissueDescription& tissue);
 
 /// @param rest 3 x n, m.

@@ -191,6 +191,36 @@ TEST(Bisection, EndsWhereItMayHaveNoMoreNodes) {
   EXPECT_LE(refined.mesh.positions.cols(), 500);
 }
 
+TEST(Bisection, LastingCutsComeFirstInEveryMesh) {
+  Bisection bisection = bisectionOf(cube(2));
+  const auto below = [](double height) {
+    return [height](const std::array<Vector3, 4>& corners) {
+      const bool any = std::any_of(corners.begin(), corners.end(), [&](const Vector3& x) { return x.z() < height; });
+      return any ? 0.02 : 1.0;
+    };
+  };
+  EXPECT_FALSE(bisection.refineLasting(below(0.1), 30));
+  BisectedMesh untouched;
+  ASSERT_TRUE(bisection.refine([](const Vector3&) { return 1.0; }, kMany, untouched));
+  EXPECT_TRUE(untouched.parents.empty()) << "what did not fit left nothing";
+  ASSERT_TRUE(bisection.refineLasting(below(0.02), kMany));
+  ASSERT_TRUE(bisection.refine([](const Vector3&) { return 1.0; }, kMany, untouched));
+  EXPECT_GT(untouched.lasting, 50);
+  EXPECT_EQ(untouched.parents.size(), static_cast<std::size_t>(untouched.lasting));
+  for (const Tetrahedron& tet : untouched.mesh.tetrahedra) {
+    double lowest = 1.0;
+    for (const int node : tet) lowest = std::min(lowest, untouched.mesh.positions(2, node));
+    EXPECT_LE(longestEdge(untouched.mesh, tet), lowest < 0.0199 ? 0.02 * (1.0 + 1e-8) : 0.1);
+  }
+  BisectedMesh refined;
+  ASSERT_TRUE(bisection.refine(around({0.02, 0.01, 0.1}, 0.008, 0.5), kMany, refined));
+  EXPECT_EQ(refined.lasting, untouched.lasting);
+  EXPECT_GT(refined.parents.size(), untouched.parents.size() + 100U);
+  EXPECT_EQ(refined.mesh.positions.leftCols(untouched.mesh.positions.cols()), untouched.mesh.positions);
+  EXPECT_NEAR(volumeOf(refined.mesh), 1e-3, 1e-15);
+  expectConforming(refined);
+}
+
 TEST(Bisection, PatchesAreOfAFewElements) {
   Bisection bisection = bisectionOf(cube(2));
   BisectedMesh refined;

@@ -1,13 +1,15 @@
 /// @file
-/// checkTetMesh, signedVolume, boundaryTriangles and fixedNodes on small meshes made by hand.
+/// checkTetMesh, signedVolume, boundaryTriangles, fixedNodes and bordersIn on small meshes made by hand.
 #include "tissue_contact/mesh/tet_mesh.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "mesh/region.h"
 #include "mesh_writers.h"
 
 namespace tissue_contact {
@@ -166,6 +168,17 @@ TEST(FixedNodes, CountsANodeOnTheBoundaryDespiteRounding) {
   EXPECT_EQ(fixedNodes(x, {BoxRegion{{0, 0, 0}, {0.3, 0, 0}}}, "mesh"), expected);
   EXPECT_EQ(fixedNodes(x, {PlaneRegion{{0.3, 0, 0}, {2, 0, 0}}}, "mesh"), expected);
   EXPECT_EQ(fixedNodes(x, {SphereRegion{{0, 0, 0}, 0.3}}, "mesh"), expected);
+}
+
+TEST(Region, HasABorderInATetrahedronThatItCutsAndNotInOneThatItTouches) {
+  const std::array<Vector3, 4> corners = {Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)};
+  const auto below = [](double height) { return PlaneRegion{{0, 0, height}, {0, 0, 1}}; };
+  for (const double height : {0.2, 0.5, 0.9}) EXPECT_TRUE(bordersIn({below(height)}, corners, 1e-9)) << height;
+  for (const double height : {-0.1, 0.0, 0.1, 1.0}) EXPECT_FALSE(bordersIn({below(height)}, corners, 1e-9)) << height;
+  EXPECT_TRUE(bordersIn({SphereRegion{{0, 0, 1}, 0.2}}, corners, 1e-9));
+  EXPECT_FALSE(bordersIn({SphereRegion{{0, 0, 1}, 0.1}}, corners, 1e-9)) << "as good as the corner alone";
+  EXPECT_FALSE(bordersIn({below(0.5), below(2.0)}, corners, 1e-9)) << "all of it is held";
+  EXPECT_FALSE(bordersIn({}, corners, 1e-9));
 }
 
 TEST(FixedNodes, NamesTheRegionThatHoldsNoNodeAndTheMesh) {

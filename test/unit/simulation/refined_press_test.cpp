@@ -15,6 +15,7 @@
 #include "support/replaced.h"
 #include "support/temporary_directory.h"
 #include "support/text_scene.h"
+#include "support/tissue_files.h"
 #include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
@@ -151,21 +152,12 @@ TEST(RefinedPress, AMeshThatMovesWhileNodesSleepGivesTheSameForces) {
 // The block's own unrefined mesh, from a file: its patches are others, its cells the same.
 TEST(RefinedPress, AMeshFromAFileGivesTheForcesOfTheBlock) {
   const TetMesh mesh = makeBlockMesh({Vector3(0.1, 0.1, 0.04), {10, 10, 4}, {}}, BlockSplit::kSix);
-  std::ostringstream vtk;
-  vtk.precision(17);
-  vtk << "# vtk DataFile Version 2.0\nblock\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " << mesh.positions.cols()
-      << " double\n"
-      << mesh.positions.transpose() << "\nCELLS " << mesh.tetrahedra.size() << ' ' << 5 * mesh.tetrahedra.size()
-      << '\n';
-  for (const Tetrahedron& t : mesh.tetrahedra) vtk << "4 " << t[0] << ' ' << t[1] << ' ' << t[2] << ' ' << t[3] << '\n';
-  vtk << "CELL_TYPES " << mesh.tetrahedra.size() << '\n';
-  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) vtk << "10\n";
   const TemporaryDirectory directory;
   const std::string from_block = scene("auto");
   const std::string block = "block: {size_m: [0.10, 0.10, 0.04], cells: [10, 10, 4]}";
   ASSERT_NE(from_block.find(block), std::string::npos);
   Simulator file =
-      makeSimulator(replaced(from_block, block, "mesh: {file: " + directory.write("block.vtk", vtk.str()) + "}"),
+      makeSimulator(replaced(from_block, block, "mesh: {file: " + directory.write("block.vtk", vtkOf(mesh)) + "}"),
                     {{"probe", probeUrdf(0.005)}});
   const Trace trace = traceOf(file, 0.0041, 0.003);
   Simulator generated = simulatorOf("auto");

@@ -1,0 +1,26 @@
+/// @file
+/// Room `tissue`, private: how long edges of a volume's mesh may be wherever the tools are. A mesh that is to be refined in; its
+/// lasting cuts out.
+///
+/// Meshes of organs that others made are often so coarse that a few nodes hold them where `fixed` says, or that they bend much too
+/// stiffly far from any tool, however fine the cells under it (doc/accuracy.md, "Coarse organs of others").
+#pragma once
+
+#include <vector>
+
+#include "mesh/bisection.h"
+#include "tissue_contact/mesh/tet_mesh.h"
+#include "tissue_contact/tissue/tissue_description.h"
+
+namespace tissue_contact {
+
+/// Of cells of the length that is chosen for the body (RefinementDescription::Choice), the diagonal, m.
+double longestBodyEdge(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
+                       const RefinementDescription& refinement);
+
+/// Cuts the elements of a mesh from a file until none has a longer edge than that, and of any mesh those that the border of `fixed` runs
+/// through until none has one of half of it. Longer ones if that takes more than half of the nodes that may come.
+/// @param tissue with groups and cell data as the places they are.
+void refineBody(const TetMesh& mesh, const TissueDescription& tissue, Bisection& bisection);
+
+}  // namespace tissue_contact

@@ -1,0 +1,111 @@
+/// @file
+/// Bodies from files whose mesh is coarse where no tool is: with refinement they are held where `fixed` says and bend as they should,
+/// without it a warning tells.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "support/refusal.h"
+#include "support/temporary_directory.h"
+#include "support/text_scene.h"
+#include "support/tissue_files.h"
+
+namespace tissue_contact {
+namespace coarse_body_test {
+
+/// 20 x 20 x 100 mm from a file of five cells, held up to a height where it has no node. Pulled along x by gravity.
+class Pillar : public testing::Test {
+ protected:
+  Simulator pillar(const std::string& refinement, const std::string& material, const std::string& held_to_m = "0.03") {
+    const TetMesh mesh = makeBlockMesh({Vector3(0.02, 0.02, 0.1), {1, 1, 5}, {}}, BlockSplit::kSix);
+    return makeSimulator("tissues:\n  - name: pillar\n    mesh: {file: " + directory_.write("pillar.vtk", vtkOf(mesh)) +
+                         "}\n    material: {youngs_modulus_pa: 5000, density_kg_per_m3: 1000, poissons_ratio: 0.45, " +
+                         material + "}\n    damping: {stiffness_s: 0.05}\n    refinement: " + refinement +
+                         "\n    fixed: [{plane: {point_m: [0, 0, " + held_to_m +
+                         "], normal: [0, 0, 1]}}]\ngravity_m_per_s2: [0.05, 0, 0]\n"
+                         "solver: {relaxation: cholesky, iterations: 100, tolerance: 1.0e-10}\n");
+  }
+
+  /// How far the middle of its end has gone, m, at rest.
+  double leaning(const std::string& refinement, const std::string& material) {
+    Simulator simulator = pillar(refinement, material);
+    for (int k = 0; k < 300; ++k) simulator.advance(0.05, {});
+    double sum = 0.0;
+    int nodes = 0;
+    const NodalVectors& rest = simulator.tissues()[0].restPositions();
+    for (Eigen::Index i = 0; i < rest.cols(); ++i) {
+      if (rest(2, i) < 0.0999) continue;
+      sum += simulator.positions(0)(0, i) - rest(0, i);
+      ++nodes;
+    }
+    return sum / nodes;
+  }
+
+ private:
+  TemporaryDirectory directory_;
+};
+
+/// A cantilever under its own weight (Timoshenko, shear coefficient 5/6): w L^4 / (8 E I) + w L^2 / (2 5/6 G A), m.
+double beam() {
+  const double young = 5000.0, side = 0.02, length = 0.07, nu = 0.45;
+  const double load = 1000.0 * 0.05 * side * side;  // N/m
+  return load * std::pow(length, 4.0) / (8.0 * young * std::pow(side, 4.0) / 12.0) +
+         load * length * length / (2.0 * 5.0 / 6.0 * young / (2.0 + 2.0 * nu) * side * side);
+}
+
+/// The part of the beam by which a pillar leans less or more.
+double departure(double leaning_m) { return leaning_m / beam() - 1.0; }
+
+// Measured: -16 % with either law. Cells of 6 mm, three and a half across, bend that stiffly; with `fine`, cells of 3 mm, -9 %.
+TEST_F(Pillar, LeansAsABeamThatIsHeldWhereFixedSays) {
+  for (const char* const law : {"model: corotational", "model: neo_hookean"}) {
+    EXPECT_NEAR(departure(leaning("auto", law)), -0.16, 0.03) << law;
+  }
+}
+
+// Held 10 mm too low by eight nodes, the softer of two errors, it leans too far; by element, which cannot bend, far too little.
+TEST_F(Pillar, AsItComesLeansByAThirdTooMuchOrTooLittle) {
+  EXPECT_GT(departure(leaning("never", "model: corotational")), 0.3);
+  EXPECT_LT(departure(leaning("never", "model: neo_hookean")), -0.3);
+}
+
+// With refinement changes of volume are averaged unless the scene says otherwise: by element it is stiffer yet.
+TEST_F(Pillar, OfNeoHookeanTissueIsAveragedWhereTheMeshFollows) {
+  const double element = leaning("auto", "model: neo_hookean, dilatation: element");
+  EXPECT_LT(departure(element), -0.2);
+  EXPECT_GT(leaning("auto", "model: neo_hookean"), 1.05 * element);
+}
+
+TEST_F(Pillar, ThatIsHeldByFewNodesIsWarnedOf) {
+  const auto warnings = [&](const std::string& refinement) {
+    const Simulator simulator = pillar(refinement, "model: corotational");
+    std::string all;
+    for (const Advice& advice : simulator.advice()) {
+      if (advice.is_warning) all += advice.text + '\n';
+    }
+    return all;
+  };
+  expectContains(warnings("never"), {"tissue 'pillar'", "`fixed` holds 8 of 24 nodes", "35 mm", "refinement"});
+  EXPECT_EQ(warnings("auto"), "");
+  EXPECT_EQ(warnings("{cell_m: 0.002}"), "");
+  const Simulator simulator = pillar("auto", "model: corotational");
+  const std::string more = std::to_string(simulator.tissues()[0].nodeCount() - 24) + " nodes more than as it came";
+  const std::vector<Advice> advice = simulator.advice();
+  EXPECT_TRUE(std::any_of(advice.begin(), advice.end(),
+                          [&](const Advice& line) { return line.text.find(more) != std::string::npos; }));
+}
+
+// Half of what the budget leaves at most: the rest is for what touches.
+TEST_F(Pillar, LeavesNodesForTheTool) {
+  for (const int most : {20, 24, 60, 500}) {
+    const Simulator simulator = pillar("{cell_m: 0.001, nodes_at_most: " + std::to_string(most) + "}", "model: linear");
+    EXPECT_LE(simulator.tissues()[0].nodeCount(), std::max(24, 24 + (most - 24) / 2)) << most;
+    EXPECT_GE(simulator.tissues()[0].nodeCount(), most < 60 ? 24 : 30) << most;
+  }
+}
+
+}  // namespace coarse_body_test
+}  // namespace tissue_contact
