@@ -88,8 +88,8 @@ class Bisection {
   std::size_t base_nodes_;
   std::vector<Vector3> base_elements_, base_triangles_;  ///< centroids, m
   std::vector<int> base_patch_of_;
-  std::vector<std::vector<int>> base_patches_;  ///< their elements
-  std::size_t lasting_nodes_, lasting_elements_;
+  std::vector<std::vector<int>> base_patches_;    ///< their elements
+  std::size_t lasting_nodes_, lasting_elements_;  ///< with the unrefined ones
   std::vector<Vector3> x_;
   std::vector<std::array<int, 2>> parents_;                    ///< of nodes beyond the unrefined ones
   std::vector<Element> elements_;                              ///< unrefined ones first; children after their parents

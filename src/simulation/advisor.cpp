@@ -218,8 +218,9 @@ std::optional<Advice> heldDoubt(const TissueDescription& description, const Tiss
   const auto held = std::count(tissue.fixed().begin(), tissue.fixed().end(), true);
   return Advice{"tissue " + quoted(description.name) + ": `fixed` holds " + std::to_string(held) + " of " +
                     std::to_string(tissue.nodeCount()) + " nodes, beside edges of up to " + twoDigits(1e3 * longest_m) +
-                    " mm, so that its border is off by as much and forces may be by a third: refinement (auto, fine or "
-                    "a map) cuts them",
+                    " mm. The body bends too stiffly with such, and where the border of `fixed` runs through them it "
+                    "is held elsewhere: "
+                    "forces may be off by a third; refinement (auto, fine or a map) cuts them",
                 true};
 }
 

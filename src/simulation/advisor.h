@@ -32,7 +32,8 @@ std::vector<Advice> adviceLines(const Scene& scene, const FoldWatch& folds,
 /// @param rest 3 x n, m.
 std::optional<Advice> sizeDoubt(const TissueDescription& tissue, const NodalVectors& rest, const HalfExtents& shapes);
 
-/// A warning where a tissue from a file is held beside elements so long that they hold it elsewhere than `fixed` says; else none.
+/// A warning where a tissue from a file is held beside elements so long that it cannot bend as it should, nor be held where the border of
+/// `fixed` runs through them; else none.
 std::optional<Advice> heldDoubt(const TissueDescription& description, const Tissue& tissue);
 
 /// What the mesh of a volume is, and what it is likely to do to the forces of the instruments' shapes: a warning where

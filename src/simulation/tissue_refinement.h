@@ -62,7 +62,7 @@ class TissueRefinement {
   /// Goes on with a mesh that was planned from the present one, which `next` then holds.
   void take(NextMesh& next);
 
-  /// Back to the unrefined mesh. @return whether that is another one.
+  /// Back to the mesh that nothing touches. @return whether that is another one.
   bool reset();
 
   /// On reading the mesh becomes that of what was written; its revision is a later one than any before.

@@ -14,7 +14,8 @@
 
 namespace tissue_contact {
 
-/// Of cells of the length that is chosen for the body (RefinementDescription::Choice), the diagonal, m.
+/// The longest edge that elements may have where nothing touches, m: the diagonal of a cube of V^(1/3) / cells_along_body
+/// (RefinementDescription::Choice).
 double longestBodyEdge(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
                        const RefinementDescription& refinement);
 

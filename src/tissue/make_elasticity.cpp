@@ -44,10 +44,12 @@ bool averagesDistortion(const ElementMaterials& materials) {
 ElementMaterials materialsOf(const TissueDescription& tissue) {
   ElementMaterials materials(tissue.material);
   for (const TissueRegion& region : tissue.regions) materials.materials.push_back(region.material);
-  // What the cells around a tool are too small for, see averagesDilatation(), while those far away bend as they are.
+  // Averaged elements hook sharp edges in cells much wider than these: a mesh that follows has none there, and far away, where its cells
+  // are wide, it would lock.
   MaterialDescription& first = materials.materials[0];
   if (tissue.refinement.mode != RefinementDescription::Mode::kNever && first.model == ElasticModel::kNeoHookean &&
-      first.dilatation == Dilatation::kAuto && averagesByItself(materials)) {
+      first.dilatation == Dilatation::kAuto &&
+      (first.distortion == Distortion::kPatch || averagesByItself(materials))) {
     first.dilatation = Dilatation::kPatch;
   }
   return materials;

@@ -3,7 +3,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
+#include <variant>
 
 #include "mesh/labels.h"
 #include "mesh/region.h"
@@ -313,14 +315,23 @@ PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, con
   const NodalVectors unrefined = placed.rest.leftCols(mesh.unrefinedNodes());
   placed.fixed = fixedNodes(unrefined, description.fixed, tissueLabel(description));
   placed.fixed.resize(static_cast<std::size_t>(placed.rest.cols()), false);
+  // A group has no places between its nodes: in it is what halves an edge of two of them.
+  std::vector<bool> in_group(placed.fixed.size(), false);
+  std::vector<Region> groups;
+  std::copy_if(description.fixed.begin(), description.fixed.end(), std::back_inserter(groups),
+               [](const Region& region) { return std::holds_alternative<MemberRegion>(region); });
   const double rounding = roundingDistance(unrefined);
+  for (Eigen::Index k = 0; k < unrefined.cols(); ++k) {
+    in_group[static_cast<std::size_t>(k)] = anyHolds(groups, placed.rest.col(k), rounding);
+  }
   for (Eigen::Index k = unrefined.cols(); k < placed.rest.cols(); ++k) {
+    const auto node = static_cast<std::size_t>(k);
     const auto [a, b] = mesh.parents[static_cast<std::size_t>(k - unrefined.cols())];
+    in_group[node] = in_group[a] && in_group[b];
     // One that comes later, between two that move, would be held back from where it is.
     const bool is_lasting = k - unrefined.cols() < mesh.lasting;
-    placed.fixed[static_cast<std::size_t>(k)] =
-        (placed.fixed[a] && placed.fixed[b]) ||
-        (is_lasting && anyHolds(description.fixed, placed.rest.col(k), rounding));
+    placed.fixed[node] = is_lasting ? in_group[node] || anyHolds(description.fixed, placed.rest.col(k), rounding)
+                                    : placed.fixed[a] && placed.fixed[b];
   }
   finish(description, X_WT, placed);
   return placed;

@@ -7,7 +7,7 @@
 
 namespace tissue_contact {
 
-/// Refinement that follows whatever touches a volume. Away from contacts the mesh is that of the scene.
+/// Refinement that follows whatever touches a volume. Away from contacts the mesh is that of the scene, cut where it is too coarse for the body.
 struct RefinementDescription {
   /// Whether the mesh follows: never; with cells that the advisor chooses from the shapes that touch, for short steps
   /// or for little error; with those given.

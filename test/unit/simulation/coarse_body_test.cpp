@@ -8,10 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "simulation/tissue_refinement.h"
 #include "support/refusal.h"
 #include "support/temporary_directory.h"
 #include "support/text_scene.h"
 #include "support/tissue_files.h"
+#include "tissue/body_edges.h"
+#include "tissue/element_patches.h"
 
 namespace tissue_contact {
 namespace coarse_body_test {
@@ -104,6 +107,49 @@ TEST_F(Pillar, LeavesNodesForTheTool) {
     const Simulator simulator = pillar("{cell_m: 0.001, nodes_at_most: " + std::to_string(most) + "}", "model: linear");
     EXPECT_LE(simulator.tissues()[0].nodeCount(), std::max(24, 24 + (most - 24) / 2)) << most;
     EXPECT_GE(simulator.tissues()[0].nodeCount(), most < 60 ? 24 : 30) << most;
+  }
+}
+
+// Two balls at the ends of one edge of the file: what halves the edge between them lies in neither.
+TEST_F(Pillar, IsNotHeldBetweenTwoPlaces) {
+  const TetMesh mesh = makeBlockMesh({Vector3(0.02, 0.02, 0.1), {1, 1, 5}, {}}, BlockSplit::kSix);
+  TissueDescription tissue;
+  tissue.name = "pillar";
+  const TemporaryDirectory directory;
+  MeshDescription file;
+  file.file = directory.write("pillar.vtk", vtkOf(mesh));
+  tissue.geometry = file;
+  tissue.material = {ElasticModel::kCorotational, 5e3, 0.45, 1000.0};
+  tissue.refinement.mode = RefinementDescription::Mode::kAuto;
+  const Vector3 first(-0.01, -0.01, 0.0), second(-0.01, -0.01, 0.02);
+  tissue.fixed = {SphereRegion{first, 0.006}, SphereRegion{second, 0.006}};
+  const Tissue made = TissueRefinement(tissue, Pose::Identity(), nullptr).tissue();
+  int held = 0;
+  for (int i = 0; i < made.nodeCount(); ++i) {
+    const Vector3 x = made.restPositions().col(i);
+    const bool in_place = std::min((x - first).norm(), (x - second).norm()) <= 0.006;
+    EXPECT_EQ(made.fixed()[static_cast<std::size_t>(i)], in_place) << x.transpose();
+    held += in_place ? 1 : 0;
+  }
+  EXPECT_GT(held, 2);
+  EXPECT_LT(held, made.nodeCount() / 2);
+}
+
+// Volumes of such lengths are 0 as numbers: nothing is cut then, and making it ends.
+TEST_F(Pillar, OfLengthsWhoseProductsUnderflowIsLeftAsItIs) {
+  TetMesh mesh = makeBlockMesh({Vector3(0.02, 0.02, 0.1), {1, 1, 5}, {}}, BlockSplit::kSix);
+  for (const double scale : {1e-60, 1e-108, 1e-170}) {
+    TetMesh tiny = mesh;
+    tiny.positions *= scale;
+    TissueDescription tissue;
+    tissue.geometry = MeshDescription{};
+    tissue.refinement.mode = RefinementDescription::Mode::kAuto;
+    tissue.fixed = {PlaneRegion{Vector3(0.0, 0.0, 0.03 * scale), Vector3::UnitZ()}};
+    Bisection bisection(tiny, patchesByCells(tiny.tetrahedra.size(), 6));
+    refineBody(tiny, tissue, bisection);
+    BisectedMesh refined;
+    ASSERT_TRUE(bisection.refine([](const Vector3&) { return 1.0; }, 3000, refined));
+    EXPECT_LE(refined.mesh.positions.cols(), 1600) << scale;
   }
 }
 

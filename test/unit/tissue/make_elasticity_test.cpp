@@ -56,6 +56,22 @@ TEST_P(Averages, AreWhatIsAskedForOrFits) {
   EXPECT_FALSE(averagesDistortion(material));
 }
 
+TEST(AveragesOfRefined, NeoHookeanTissueIsAveragedToo) {
+  TissueDescription tissue;
+  tissue.material = {kNeoHookean, 5e3, 0.45, 1000.0};
+  EXPECT_FALSE(averagesDilatation(materialsOf(tissue)));
+  tissue.refinement.mode = RefinementDescription::Mode::kGiven;
+  EXPECT_TRUE(averagesDilatation(materialsOf(tissue)));
+  EXPECT_TRUE(averagesDistortion(materialsOf(tissue)));
+  tissue.material.poissons_ratio = 0.2;
+  EXPECT_FALSE(averagesDilatation(materialsOf(tissue)));
+  tissue.material.distortion = Distortion::kPatch;
+  EXPECT_TRUE(averagesDilatation(materialsOf(tissue)));
+  tissue.material = {kNeoHookean, 5e3, 0.45, 1000.0};
+  tissue.material.dilatation = Dilatation::kElement;
+  EXPECT_FALSE(averagesDilatation(materialsOf(tissue)));
+}
+
 INSTANTIATE_TEST_SUITE_P(, Averages, testing::ValuesIn(kCases));
 
 }  // namespace make_elasticity_test
