@@ -219,8 +219,7 @@ std::optional<Advice> heldDoubt(const TissueDescription& description, const Tiss
   return Advice{"tissue " + quoted(description.name) + ": `fixed` holds " + std::to_string(held) + " of " +
                     std::to_string(tissue.nodeCount()) + " nodes, beside edges of up to " + twoDigits(1e3 * longest_m) +
                     " mm. The body bends too stiffly with such, and where the border of `fixed` runs through them it "
-                    "is held elsewhere: "
-                    "forces may be off by a third; refinement (auto, fine or a map) cuts them",
+                    "is held elsewhere: forces may be off by a third; refinement (auto, fine or a map) cuts them",
                 true};
 }
 

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "support/temporary_directory.h"
+#include "support/tissue_files.h"
 #include "tissue_contact/mesh/tet_mesh.h"
 #include "validation/hard/hard_cases.h"
 #include "validation/hard/hard_scene.h"
@@ -51,18 +52,7 @@ std::string sliverVtk(const std::function<void(TetMesh&)>& spoil = {}) {
     mesh.positions.col(i) = p;
   }
   if (spoil) spoil(mesh);
-  std::ostringstream vtk;
-  vtk.precision(17);
-  vtk << "# vtk DataFile Version 3.0\nblock\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " << mesh.positions.cols()
-      << " double\n"
-      << mesh.positions.transpose() << "\nCELLS " << mesh.tetrahedra.size() << ' ' << 5 * mesh.tetrahedra.size()
-      << '\n';
-  for (const Tetrahedron& t : mesh.tetrahedra) {
-    vtk << "4 " << t[0] << ' ' << t[1] << ' ' << t[2] << ' ' << t[3] << '\n';
-  }
-  vtk << "CELL_TYPES " << mesh.tetrahedra.size() << '\n';
-  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) vtk << "10\n";
-  return vtk.str();
+  return vtkOf(mesh);
 }
 
 /// Building the pad from this mesh must fail with a message that holds all of these words.
