@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "mesh/face_table.h"
 
@@ -43,13 +44,13 @@ Bisection::Bisection(const TetMesh& base, const std::vector<int>& patch_of)
   uncut_at_.resize(base_nodes_);
   for (std::size_t e = 0; e < base.tetrahedra.size(); ++e) {
     add(base.tetrahedra[e], static_cast<int>(e), {-1, -1, -1, -1});
-    base_elements_.push_back(centroid(elements_.back()));
+    element_places_.push_back(centroid(elements_.back()));
   }
   for (const OuterFace& face : outerFaces(base.tetrahedra)) {
-    elements_[face.tetrahedron].outer[face.opposite] = static_cast<int>(base_triangles_.size());
-    const Triangle nodes = outwardFace(elements_[face.tetrahedron].nodes, face.opposite);
-    base_triangles_.emplace_back((x_[nodes[0]] + x_[nodes[1]] + x_[nodes[2]]) / 3.0);
+    elements_[face.tetrahedron].outer[face.opposite] = static_cast<int>(triangle_places_.size());
+    triangle_places_.push_back(faceCentroid(elements_[face.tetrahedron], face.opposite));
   }
+  base_triangles_ = triangle_places_.size();
   base_patches_.resize(patch_of.empty() ? 0 : 1 + *std::max_element(patch_of.begin(), patch_of.end()));
   for (std::size_t e = 0; e < patch_of.size(); ++e) base_patches_[patch_of[e]].push_back(static_cast<int>(e));
   lasting_nodes_ = base_nodes_;
@@ -93,10 +94,10 @@ void Bisection::findLongest(Element& element) const {
   if (element.longest[0] > element.longest[1]) std::swap(element.longest[0], element.longest[1]);
 }
 
-int Bisection::add(const Tetrahedron& nodes, int unrefined, const std::array<int, 4>& outer) {
+int Bisection::add(const Tetrahedron& nodes, int place, const std::array<int, 4>& outer) {
   Element element;
   element.nodes = nodes;
-  element.unrefined = unrefined;
+  element.place = place;
   element.outer = outer;
   findLongest(element);
   const int index = static_cast<int>(elements_.size());
@@ -107,6 +108,11 @@ int Bisection::add(const Tetrahedron& nodes, int unrefined, const std::array<int
 
 Vector3 Bisection::centroid(const Element& element) const {
   return 0.25 * (x_[element.nodes[0]] + x_[element.nodes[1]] + x_[element.nodes[2]] + x_[element.nodes[3]]);
+}
+
+Vector3 Bisection::faceCentroid(const Element& element, std::size_t opposite) const {
+  const Triangle nodes = outwardFace(element.nodes, opposite);
+  return (x_[nodes[0]] + x_[nodes[1]] + x_[nodes[2]]) / 3.0;
 }
 
 std::array<Vector3, 4> Bisection::corners(const Element& element) const {
@@ -128,11 +134,46 @@ bool Bisection::cutBeyond(const LimitOf& limit_of, std::size_t most_nodes) {
 bool Bisection::refineLasting(const CornersLimit& limit, std::size_t most_nodes) {
   lasting_nodes_ = base_nodes_;
   lasting_elements_ = base_patch_of_.size();
+  element_places_.resize(lasting_elements_);
+  triangle_places_.resize(base_triangles_);
+  whole_elements_.clear();
+  whole_triangles_.clear();
   start();
-  if (!cutBeyond([&](const Element& element) { return limit(corners(element)); }, most_nodes)) return false;
+  const auto limit_of = [&](const Element& element) {
+    const bool at_surface = std::any_of(element.outer.begin(), element.outer.end(), [](int face) { return face >= 0; });
+    return limit(corners(element), at_surface);
+  };
+  if (!cutBeyond(limit_of, most_nodes)) return false;
   lasting_nodes_ = x_.size();
   lasting_elements_ = elements_.size();
+  nameParts();
   return true;
+}
+
+/// What lasting cuts have made, and is not cut itself, gets places of its own.
+void Bisection::nameParts() {
+  for (std::size_t e = base_patch_of_.size(); e < lasting_elements_; ++e) {
+    Element& element = elements_[e];
+    if (element.first_child >= 0) continue;
+    whole_elements_.push_back(std::exchange(element.place, static_cast<int>(element_places_.size())));
+    element_places_.push_back(centroid(element));
+    for (std::size_t i = 0; i < element.outer.size(); ++i) {
+      if (element.outer[i] < 0) continue;
+      whole_triangles_.push_back(std::exchange(element.outer[i], static_cast<int>(triangle_places_.size())));
+      triangle_places_.push_back(faceCentroid(element, i));
+    }
+  }
+}
+
+std::vector<LastingPart> Bisection::lastingParts() const {
+  std::vector<LastingPart> parts;
+  const auto add = [&](const std::vector<int>& whole_of, const std::vector<Vector3>& places) {
+    const std::size_t first = places.size() - whole_of.size();
+    for (std::size_t i = 0; i < whole_of.size(); ++i) parts.push_back({places[first + i], places[whole_of[i]]});
+  };
+  add(whole_elements_, element_places_);
+  add(whole_triangles_, triangle_places_);
+  return parts;
 }
 
 bool Bisection::refine(const EdgeLimit& limit, std::size_t most_nodes, BisectedMesh& result) {
@@ -184,14 +225,14 @@ void Bisection::cutRing(const std::array<int, 2>& edge) {
   for (const int whole : ring_) {
     const Tetrahedron nodes = elements_[whole].nodes;
     const std::array<int, 4> outer = elements_[whole].outer;
-    const int unrefined = elements_[whole].unrefined;
+    const int place = elements_[whole].place;
     for (const int node : nodes) {
       std::vector<int>& there = uncut_at_[node];
       there.erase(std::find(there.begin(), there.end(), whole));
     }
-    const int first_child = add(replaced(nodes, edge[1], middle), unrefined, outerOfHalf(nodes, outer, edge[0]));
+    const int first_child = add(replaced(nodes, edge[1], middle), place, outerOfHalf(nodes, outer, edge[0]));
     elements_[whole].first_child = first_child;
-    add(replaced(nodes, edge[0], middle), unrefined, outerOfHalf(nodes, outer, edge[1]));
+    add(replaced(nodes, edge[0], middle), place, outerOfHalf(nodes, outer, edge[1]));
   }
 }
 
@@ -210,8 +251,8 @@ void Bisection::write(BisectedMesh& result) {
   result.surface.clear();
   result.parents = parents_;
   result.patch_of.clear();
-  unrefined_elements_.clear();
-  unrefined_triangles_.clear();
+  element_place_of_.clear();
+  triangle_place_of_.clear();
   patches_ = 0;
   for (const std::vector<int>& patch : base_patches_) {
     int uncut = -1;
@@ -224,8 +265,8 @@ void Bisection::write(BisectedMesh& result) {
       }
     }
   }
-  result.element_places = columns(unrefined_elements_, base_elements_);
-  result.surface_places = columns(unrefined_triangles_, base_triangles_);
+  result.element_places = columns(element_place_of_, element_places_);
+  result.surface_places = columns(triangle_place_of_, triangle_places_);
 }
 
 /// The parts of a cut element, in patches of parts that were one.
@@ -255,9 +296,9 @@ void Bisection::writeLeaves(int element, int patch, BisectedMesh& result) {
       const int triangle = elements_[element].outer[i];
       if (triangle < 0) continue;
       result.surface.push_back(outwardFace(nodes, i));
-      unrefined_triangles_.push_back(triangle);
+      triangle_place_of_.push_back(triangle);
     }
-    unrefined_elements_.push_back(elements_[element].unrefined);
+    element_place_of_.push_back(elements_[element].place);
     result.mesh.tetrahedra.push_back(nodes);
     result.patch_of.push_back(patch);
     return;

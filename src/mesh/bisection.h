@@ -22,8 +22,8 @@ namespace tissue_contact {
 
 /// The longest edge that a tetrahedron with its centroid there may have, m; > 0.
 using EdgeLimit = std::function<double(const Vector3&)>;
-/// Likewise of a tetrahedron by its corners, m.
-using CornersLimit = std::function<double(const std::array<Vector3, 4>&)>;
+/// Likewise of a tetrahedron by its corners, m, and whether one of its faces lies on the surface.
+using CornersLimit = std::function<double(const std::array<Vector3, 4>&, bool)>;
 
 struct BisectedMesh {
   TetMesh mesh;                   ///< nodes of the unrefined mesh first, in its order
@@ -33,11 +33,16 @@ struct BisectedMesh {
   int lasting = 0;  ///< how many of these, the first, every mesh has: Bisection::refineLasting()
   /// Groups of neighbouring tetrahedra as patchesByFaces() makes them. Where two limits make the same elements they are the same.
   std::vector<int> patch_of;
-  /// Per tetrahedron, and per surface triangle: centroid of the one of the unrefined mesh that it is a part of, m. Regions are decided by
-  /// these, so that they do not change with the mesh.
+  /// Per tetrahedron, and per surface triangle: centroid of the one of the mesh with lasting cuts alone that it is a part of, m. Regions
+  /// are decided by these, so that they do not change with the mesh.
   NodalVectors element_places, surface_places;
 
   int unrefinedNodes() const { return static_cast<int>(mesh.positions.cols()) - static_cast<int>(parents.size()); }
+};
+
+/// Centroids of a tetrahedron or outer face that lasting cuts have made, and of the one of the unrefined mesh that it is a part of, m.
+struct LastingPart {
+  Vector3 part, whole;
 };
 
 /// Keeps its memory from call to call.
@@ -51,6 +56,8 @@ class Bisection {
   /// @return false, and there are none, if that would take more than `most_nodes` nodes.
   bool refineLasting(const CornersLimit& limit, std::size_t most_nodes);
 
+  std::vector<LastingPart> lastingParts() const;
+
   /// Refines the unrefined mesh, its lasting cuts kept, until no tetrahedron has an edge beyond the limit at its centroid.
   /// @return false, with `result` as it was, if that would take more than `most_nodes` nodes.
   bool refine(const EdgeLimit& limit, std::size_t most_nodes, BisectedMesh& result);
@@ -63,8 +70,8 @@ class Bisection {
     std::array<int, 2> longest;  ///< its longest edge, lower node first
     double squared_m2;           ///< length of that
     int first_child = -1;        ///< of two that follow one another; -1: not cut
-    int unrefined;               ///< the unrefined element that it is a part of
-    /// Of the face opposite to node i: the unrefined surface triangle that it is a part of; -1: a tetrahedron lies beyond.
+    int place;                   ///< of element_places_: of the one, uncut or lasting, that it is a part of
+    /// Of the face opposite to node i: likewise of triangle_places_; -1: a tetrahedron lies beyond.
     std::array<int, 4> outer;
     int leaves = 1;  ///< scratch: of the mesh, into which it has been cut
   };
@@ -72,10 +79,12 @@ class Bisection {
   std::array<Vector3, 4> corners(const Element& element) const;
   template <typename LimitOf>
   bool cutBeyond(const LimitOf& limit_of, std::size_t most_nodes);
-  int add(const Tetrahedron& nodes, int unrefined, const std::array<int, 4>& outer);
+  int add(const Tetrahedron& nodes, int place, const std::array<int, 4>& outer);
+  void nameParts();
   bool comesBefore(const std::array<int, 2>& a, const std::array<int, 2>& b) const;
   void findLongest(Element& element) const;
   Vector3 centroid(const Element& element) const;
+  Vector3 faceCentroid(const Element& element, std::size_t opposite) const;
   bool cut(int element, std::size_t most_nodes);
   int firstWithLonger(const std::array<int, 2>& edge);
   void cutRing(const std::array<int, 2>& edge);
@@ -86,17 +95,20 @@ class Bisection {
   void joinSmall(int small, int other, BisectedMesh& result);
 
   std::size_t base_nodes_;
-  std::vector<Vector3> base_elements_, base_triangles_;  ///< centroids, m
+  std::size_t base_triangles_ = 0;
+  std::vector<Vector3> element_places_,
+      triangle_places_;  ///< centroids, m: of the unrefined mesh, then of what lasting cuts made
+  std::vector<int> whole_elements_, whole_triangles_;  ///< of the latter: that of the unrefined mesh
   std::vector<int> base_patch_of_;
   std::vector<std::vector<int>> base_patches_;    ///< their elements
   std::size_t lasting_nodes_, lasting_elements_;  ///< with the unrefined ones
   std::vector<Vector3> x_;
-  std::vector<std::array<int, 2>> parents_;                    ///< of nodes beyond the unrefined ones
-  std::vector<Element> elements_;                              ///< unrefined ones first; children after their parents
-  std::vector<std::vector<int>> uncut_at_;                     ///< per node: elements of the mesh as it is
-  std::vector<int> ring_, waiting_;                            ///< scratch
-  int patches_ = 0;                                            ///< written so far
-  std::vector<int> unrefined_elements_, unrefined_triangles_;  ///< of what is written so far
+  std::vector<std::array<int, 2>> parents_;                ///< of nodes beyond the unrefined ones
+  std::vector<Element> elements_;                          ///< unrefined ones first; children after their parents
+  std::vector<std::vector<int>> uncut_at_;                 ///< per node: elements of the mesh as it is
+  std::vector<int> ring_, waiting_;                        ///< scratch
+  int patches_ = 0;                                        ///< written so far
+  std::vector<int> element_place_of_, triangle_place_of_;  ///< of what is written so far
 };
 
 }  // namespace tissue_contact

@@ -123,4 +123,20 @@ std::vector<Region> withPlaces(const std::vector<Region>& regions, const MeshLab
   return resolved;
 }
 
+std::vector<Region> withParts(const std::vector<Region>& regions, const std::vector<LastingPart>& parts,
+                              double rounding) {
+  std::vector<Region> all = regions;
+  for (Region& region : all) {
+    const auto* const wholes = std::get_if<MemberRegion>(&region);
+    if (wholes == nullptr) continue;
+    const std::vector<Region> whole = {region};
+    std::vector<Vector3> places = *wholes->places;
+    for (const LastingPart& part : parts) {
+      if (anyHolds(whole, part.whole, rounding)) places.push_back(part.part);
+    }
+    region = members(wholes->label, std::move(places));
+  }
+  return all;
+}
+
 }  // namespace tissue_contact

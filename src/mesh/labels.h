@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/bisection.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/mesh/region_description.h"
 #include "tissue_contact/mesh/tet_mesh.h"
@@ -39,5 +40,9 @@ bool namesLabels(const std::vector<Region>& regions);
 /// @throws EntryError naming `source`, what there is not and what there is.
 std::vector<Region> withPlaces(const std::vector<Region>& regions, const MeshLabels& labels, const TetMesh& mesh,
                                const std::string& entry, const std::string& source);
+
+/// Of such regions each group and cell data with the parts of what it holds as well.
+std::vector<Region> withParts(const std::vector<Region>& regions, const std::vector<LastingPart>& parts,
+                              double rounding);
 
 }  // namespace tissue_contact

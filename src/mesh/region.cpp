@@ -38,6 +38,21 @@ bool holds(const MemberRegion& members, const Vector3& x, double rounding) {
 bool holds(const GroupRegion&, const Vector3&, double) { return false; }     // they have no places
 bool holds(const CellDataRegion&, const Vector3&, double) { return false; }  // before withPlaces()
 
+/// Whether the nearest point of a region is farther from x than a distance; false where that is not known.
+bool isFarther(const BoxRegion& box, const Vector3& x, double distance) {
+  return (box.min_m - x).cwiseMax(x - box.max_m).maxCoeff() > distance;
+}
+bool isFarther(const PlaneRegion& plane, const Vector3& x, double distance) {
+  return plane.normal.dot(x - plane.point_m) > distance * plane.normal.norm();
+}
+bool isFarther(const SphereRegion& sphere, const Vector3& x, double distance) {
+  return (x - sphere.center_m).norm() > sphere.radius_m + distance;
+}
+template <typename Labelled>
+bool isFarther(const Labelled&, const Vector3&, double) {
+  return false;
+}
+
 bool holds(const Region& region, const Vector3& x, double rounding) {
   return std::visit([&](const auto& shape) { return holds(shape, x, rounding); }, region);
 }
@@ -72,6 +87,34 @@ void describe(const CellDataRegion& data, std::ostream& out) { out << "cell data
   throw EntryError(elementOf(entry, index), source + ": " + message.str());
 }
 
+constexpr int kParts = 8;  // of an edge: what holds no more of it than one holds the corner alone
+
+bool leavesACorner(const std::vector<Region>& regions, const std::array<Vector3, 4>& corners, double rounding) {
+  std::array<bool, 4> held{};
+  for (std::size_t i = 0; i < 4; ++i) held[i] = anyHolds(regions, corners[i], rounding);
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; held[i] && j < 4; ++j) {
+      if (!held[j] && anyHolds(regions, corners[i] + (corners[j] - corners[i]) / kParts, rounding)) return true;
+    }
+  }
+  return false;
+}
+
+bool holdsAPartInside(const std::vector<Region>& regions, const std::array<Vector3, 4>& corners, double rounding) {
+  bool any_held = false, any_free = false;
+  for (int a = 1; a < kParts; ++a) {
+    for (int b = 1; a + b < kParts; ++b) {
+      for (int c = 1; a + b + c < kParts; ++c) {
+        const int d = kParts - a - b - c;
+        const Vector3 place = (a * corners[0] + b * corners[1] + c * corners[2] + d * corners[3]) / kParts;
+        (anyHolds(regions, place, rounding) ? any_held : any_free) = true;
+        if (any_held && any_free) return true;
+      }
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 double roundingDistance(const NodalVectors& x) {
@@ -88,15 +131,12 @@ bool anyHolds(const std::vector<Region>& regions, const Vector3& x, double round
 }
 
 bool bordersIn(const std::vector<Region>& regions, const std::array<Vector3, 4>& corners, double rounding) {
-  constexpr double kCorner = 0.125;  // of an edge: what holds no more of it holds the corner alone
-  std::array<bool, 4> held{};
-  for (std::size_t i = 0; i < 4; ++i) held[i] = anyHolds(regions, corners[i], rounding);
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; held[i] && j < 4; ++j) {
-      if (!held[j] && anyHolds(regions, corners[i] + kCorner * (corners[j] - corners[i]), rounding)) return true;
-    }
-  }
-  return false;
+  double longest = 0.0;
+  for (const Vector3& corner : corners) longest = std::max(longest, (corner - corners[0]).norm());
+  const bool is_far = std::all_of(regions.begin(), regions.end(), [&](const Region& region) {
+    return std::visit([&](const auto& shape) { return isFarther(shape, corners[0], longest + rounding); }, region);
+  });
+  return !is_far && (leavesACorner(regions, corners, rounding) || holdsAPartInside(regions, corners, rounding));
 }
 
 std::vector<bool> heldPoints(const NodalVectors& points, const std::vector<Region>& regions, const std::string& entry,

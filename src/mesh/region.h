@@ -22,8 +22,9 @@ double placeOrder(const Vector3& place);
 /// Whether any of the regions holds the point (m, in T). Boundaries count as inside.
 bool anyHolds(const std::vector<Region>& regions, const Vector3& x, double rounding);
 
-/// Whether the border of what the regions hold runs through a tetrahedron, not only along its faces, as its corners show it: places between
-/// them, and groups, which are nodes alone, have none.
+/// Whether the border of what the regions hold runs through a tetrahedron, not only along its faces: as its corners show it, or 35 places
+/// inside it, an eighth of its height from its faces.
+/// @param regions boxes, planes and spheres; groups and cell data are of whole elements, and are to be left out.
 bool bordersIn(const std::vector<Region>& regions, const std::array<Vector3, 4>& corners, double rounding);
 
 /// For each point (3 x n, m, in T) whether any of the regions holds it.

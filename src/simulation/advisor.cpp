@@ -230,22 +230,35 @@ Advice meshLine(const TissueDescription& tissue, double edge_m, const HalfExtent
                            edge_m, edge_m, shapes);
 }
 
-Advice refinementLine(const TissueDescription& tissue, const std::vector<double>& cells_m, double reach_m,
-                      double growth, int nodes_at_most, int body_nodes, const HalfExtents& shapes) {
+Advice refinementLine(const TissueDescription& tissue, const TissueRefinement& refinement,
+                      const std::vector<double>& cells_m, const HalfExtents& shapes) {
   std::ostringstream line;
+  line.precision(3);
   line << "mesh of tissue " << quoted(tissue.name) << ": ";
-  if (body_nodes > 0) {
-    line << body_nodes << " nodes more than as it came, so that it bends and is held as it should wherever tools are; ";
+  if (refinement.mesh().lasting > 0) {
+    line << refinement.mesh().lasting
+         << " nodes more than as it came, so that it bends, is held and has its regions as it should wherever tools "
+            "are; ";
+  }
+  const bool is_coarse = refinement.bodyCoarsening() > 1.0;
+  if (is_coarse) {
+    line << "for that its cells are " << refinement.bodyCoarsening()
+         << " times as long as they should be, since it may have " << refinement.nodesAtMost()
+         << " nodes: raise refinement.nodes_at_most; ";
   }
   if (cells_m.empty()) {
     line << "stays as it is, since no instrument touches; for other tissues give refinement.cell_m";
-    return {line.str()};
+    return {line.str(), is_coarse};
   }
-  line.precision(3);
-  line << "refined to cells of " << 1e3 * cells_m.front() << " mm, " << 1e3 * reach_m
-       << " mm around what touches it, growing by " << growth
-       << " per length beyond, and moved along with that; at most " << nodes_at_most << " nodes, for which cells grow";
-  return withExpectedError(tissue, line.str(), kEdgePerCell * cells_m.front(), kEdgePerCell * cells_m.back(), shapes);
+  const FineCells& cells = refinement.cells();
+  line << "refined to cells of " << 1e3 * cells_m.front() << " mm, " << 1e3 * cells.reach(cells_m.front())
+       << " mm around what touches it, growing by " << cells.growth()
+       << " per length beyond, and moved along with that; at most " << refinement.nodesAtMost()
+       << " nodes, for which cells grow";
+  Advice advice =
+      withExpectedError(tissue, line.str(), kEdgePerCell * cells_m.front(), kEdgePerCell * cells_m.back(), shapes);
+  advice.is_warning = advice.is_warning || is_coarse;
+  return advice;
 }
 
 std::string coarseCellsText(const Simulator& simulator) {

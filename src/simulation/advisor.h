@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "simulation/fold_watch.h"
+#include "simulation/tissue_refinement.h"
 #include "simulation/touched_places.h"
 #include "tissue_contact/simulation/scene.h"
 #include "tissue_contact/simulation/simulator.h"
@@ -41,10 +42,10 @@ std::optional<Advice> heldDoubt(const TissueDescription& description, const Tiss
 /// @param edge_m of the shorter triangles of the surface.
 Advice meshLine(const TissueDescription& tissue, double edge_m, const HalfExtents& shapes);
 
-/// The same of a mesh that follows. @param cells_m edges of the finest cells under all shapes, ascending; none: nothing asks for any.
-/// @param reach_m of the finest. @param body_nodes that have come for the body itself: BisectedMesh::lasting.
-Advice refinementLine(const TissueDescription& tissue, const std::vector<double>& cells_m, double reach_m,
-                      double growth, int nodes_at_most, int body_nodes, const HalfExtents& shapes);
+/// The same of a mesh that follows. A warning also where the body itself gets too few nodes.
+/// @param cells_m edges of the finest cells under all shapes, ascending; none: nothing asks for any.
+Advice refinementLine(const TissueDescription& tissue, const TissueRefinement& refinement,
+                      const std::vector<double>& cells_m, const HalfExtents& shapes);
 
 /// Of a tenth of the surface's triangles the mean edge is shorter, m.
 double shortSurfaceEdge(const Tissue& tissue);

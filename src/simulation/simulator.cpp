@@ -56,10 +56,7 @@ std::vector<Advice> Simulator::advice() const {
       continue;
     }
     const std::vector<double> cells_m = all.touched_places.cellsOn(static_cast<int>(t));
-    const double cell_m = cells_m.empty() ? 0.0 : cells_m.front();
-    meshes[t].push_back(refinementLine(tissue, cells_m, all.refinements[t]->cells().reach(cell_m),
-                                       all.refinements[t]->cells().growth(), all.refinements[t]->nodesAtMost(),
-                                       all.refinements[t]->mesh().lasting, shapes));
+    meshes[t].push_back(refinementLine(tissue, *all.refinements[t], cells_m, shapes));
   }
   return adviceLines(scene(), all.folds, meshes);
 }

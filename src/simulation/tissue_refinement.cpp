@@ -72,6 +72,7 @@ TissueRefinement::TissueRefinement(RefinableMesh&& mesh, const Pose& X_WT)
       X_WT_(X_WT),
       X_TW_(X_WT.inverse()),
       bisection_(std::move(mesh.bisection)),
+      body_coarsening_(mesh.body_coarsening),
       nodes_at_most_(
           static_cast<int>(mostNodes(description_.refinement, static_cast<std::size_t>(bisection_.unrefinedNodes())))),
       cells_(description_.refinement) {

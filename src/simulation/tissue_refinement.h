@@ -53,6 +53,8 @@ class TissueRefinement {
   const BisectedMesh& mesh() const { return mesh_; }
   int revision() const { return revision_; }  ///< how often the mesh has changed
   int nodesAtMost() const { return nodes_at_most_; }
+  /// By what factor cells where nothing touches are longer than the body wants: 1 or more (tissue/body_edges.h).
+  double bodyCoarsening() const { return body_coarsening_; }
   const FineCells& cells() const { return cells_; }
 
   /// The mesh that is fine around the places. Changes nothing that others of these functions read, but only one plan can be made at a
@@ -78,6 +80,7 @@ class TissueRefinement {
   Pose X_WT_;
   Pose X_TW_;
   Bisection bisection_;
+  double body_coarsening_;
   int nodes_at_most_;
   BisectedMesh mesh_;
   FineCells cells_;

@@ -1,14 +1,110 @@
 #include "tissue/body_edges.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <variant>
+#include <vector>
 
 #include "mesh/region.h"
 
 namespace tissue_contact {
+namespace {
+
+/// Groups and cell data are of whole elements, so that none has their border in it.
+bool isShape(const Region& region) { return !std::holds_alternative<MemberRegion>(region); }
+
+/// How far a sphere or box reaches, m: a diameter, or a box's second longest side, since of flat ones on the surface the third says nothing.
+double extentOf(const Region& region) {
+  if (const auto* sphere = std::get_if<SphereRegion>(&region)) return 2.0 * sphere->radius_m;
+  const auto* const box = std::get_if<BoxRegion>(&region);
+  if (box == nullptr) return std::numeric_limits<double>::infinity();
+  const Vector3 sides = box->max_m - box->min_m;
+  return sides.sum() - sides.maxCoeff() - sides.minCoeff();
+}
+
+/// Whether the middle of a sphere or box lies in a tetrahedron, which may be far larger.
+bool holdsMiddle(const std::array<Vector3, 4>& corners, const Region& region) {
+  Vector3 middle;
+  if (const auto* sphere = std::get_if<SphereRegion>(&region)) {
+    middle = sphere->center_m;
+  } else if (const auto* box = std::get_if<BoxRegion>(&region)) {
+    middle = 0.5 * (box->min_m + box->max_m);
+  } else {
+    return false;
+  }
+  Matrix3 edges;
+  for (int i = 0; i < 3; ++i) edges.col(i) = corners[i + 1] - corners[0];
+  const Vector3 shares = edges.partialPivLu().solve(middle - corners[0]);
+  return shares.minCoeff() >= 0.0 && shares.sum() <= 1.0;  // of a flat one they are no numbers
+}
+
+/// How long edges may be where, as short as the number of nodes allows.
+class BodyEdges {
+ public:
+  BodyEdges(const TissueDescription& tissue, double rounding_m, double edge_m, double shortest_m)
+      : is_block_(std::holds_alternative<BlockDescription>(tissue.geometry)),
+        rounding_m_(rounding_m),
+        edge_m_(edge_m),
+        shortest_m_(shortest_m) {
+    Border fixed{{}, kHalf, false};
+    std::copy_if(tissue.fixed.begin(), tissue.fixed.end(), std::back_inserter(fixed.where), isShape);
+    borders_.push_back(fixed);
+    for (const TissueRegion& region : tissue.regions) addParts(region.where, false);
+    for (const Attachment& attachment : tissue.attachments) addParts(attachment.where, true);
+    if (tissue.pressure_pa != 0.0) addParts(tissue.pressure_where, true);
+  }
+
+  double longest(const std::array<Vector3, 4>& corners, bool at_surface) const {
+    double squared_m2 = 0.0;
+    for (const Vector3& a : corners) {
+      for (const Vector3& b : corners) squared_m2 = std::max(squared_m2, (a - b).squaredNorm());
+    }
+    double most_m = is_block_ ? std::numeric_limits<double>::infinity() : edge_m_;  // its cells are as the scene says
+    for (const Border& border : borders_) {
+      const double edge_m = std::min(0.5 * edge_m_, std::max(border.edge_m, shortest_m_));
+      const bool may_count = edge_m < most_m && squared_m2 > edge_m * edge_m && (at_surface || !border.on_surface);
+      if (may_count && isOn(border, corners)) most_m = edge_m;
+    }
+    return most_m;
+  }
+
+  /// Those of small parts first.
+  void lengthen(double factor) { (shortest_m_ < 0.5 * edge_m_ ? shortest_m_ : edge_m_) *= factor; }
+
+  double elsewhere() const { return edge_m_; }
+
+ private:
+  static constexpr double kHalf = std::numeric_limits<double>::infinity();
+  struct Border {
+    std::vector<Region> where;
+    double edge_m;  ///< wanted; kHalf: half of what is wanted elsewhere
+    bool on_surface;
+  };
+
+  void addParts(const std::vector<Region>& where, bool on_surface) {
+    // Three cells across: so the element in the middle of a ball has its centroid, at most 3/4 of its longest edge from there, in it.
+    for (const Region& part : where) {
+      if (isShape(part)) borders_.push_back({{part}, std::sqrt(3.0) / 3.0 * extentOf(part), on_surface});
+    }
+  }
+
+  bool isOn(const Border& border, const std::array<Vector3, 4>& corners) const {
+    return bordersIn(border.where, corners, rounding_m_) ||
+           (border.edge_m != kHalf && holdsMiddle(corners, border.where.front()));
+  }
+
+  bool is_block_;
+  double rounding_m_;
+  double edge_m_;      ///< anywhere; half of it on borders
+  double shortest_m_;  ///< on any border
+  std::vector<Border> borders_;
+};
+
+}  // namespace
 
 double longestBodyEdge(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
                        const RefinementDescription& refinement) {
@@ -17,27 +113,21 @@ double longestBodyEdge(const NodalVectors& rest, const std::vector<Tetrahedron>&
   return std::sqrt(3.0) * std::cbrt(volume_m3) / refinement.choice().cells_along_body;
 }
 
-void refineBody(const TetMesh& mesh, const TissueDescription& tissue, Bisection& bisection) {
+double refineBody(const TetMesh& mesh, const TissueDescription& tissue, Bisection& bisection) {
   constexpr double kLonger = 1.4142135623730951;
-  constexpr double kShortest = 1e-3;  // of the mesh's size: of flat bodies, so that few attempts find what fits
+  constexpr double kShortest = 1e-3;  // of the mesh's size, and of edges elsewhere: so that few attempts find what fits
   const auto unrefined = static_cast<std::size_t>(mesh.positions.cols());
   const std::size_t most_nodes = mostNodes(tissue.refinement, unrefined);
-  if (most_nodes <= unrefined) return;
-  const bool is_block = std::holds_alternative<BlockDescription>(tissue.geometry);  // its cells are as the scene says
-  const double rounding = roundingDistance(mesh.positions);
   const double size_m = (mesh.positions.rowwise().maxCoeff() - mesh.positions.rowwise().minCoeff()).norm();
-  double edge_m = std::max(longestBodyEdge(mesh.positions, mesh.tetrahedra, tissue.refinement), kShortest * size_m);
-  if (!(edge_m > 0.0)) return;  // lengths whose products underflow
-  const auto limit = [&](const std::array<Vector3, 4>& corners) {
-    double squared_m2 = 0.0;
-    for (const Vector3& a : corners) {
-      for (const Vector3& b : corners) squared_m2 = std::max(squared_m2, (a - b).squaredNorm());
-    }
-    const bool may_be_cut = squared_m2 > 0.25 * edge_m * edge_m;  // spares looking at the places of `fixed`
-    if (may_be_cut && bordersIn(tissue.fixed, corners, rounding)) return 0.5 * edge_m;
-    return is_block ? std::numeric_limits<double>::infinity() : edge_m;
+  const double asked_m =
+      std::max(longestBodyEdge(mesh.positions, mesh.tetrahedra, tissue.refinement), kShortest * size_m);
+  if (most_nodes <= unrefined || !(asked_m > 0.0)) return 1.0;  // 0: lengths whose products underflow
+  BodyEdges edges(tissue, roundingDistance(mesh.positions), asked_m, kShortest * asked_m);
+  const auto limit = [&edges](const std::array<Vector3, 4>& corners, bool at_surface) {
+    return edges.longest(corners, at_surface);
   };
-  while (!bisection.refineLasting(limit, unrefined + (most_nodes - unrefined) / 2)) edge_m *= kLonger;
+  while (!bisection.refineLasting(limit, unrefined + (most_nodes - unrefined) / 2)) edges.lengthen(kLonger);
+  return edges.elsewhere() / asked_m;
 }
 
 }  // namespace tissue_contact

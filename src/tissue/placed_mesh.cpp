@@ -165,7 +165,8 @@ void setRegions(const TissueDescription& description, const std::string& source,
     message << source << ": region '" << description.regions[r].name
             << "' holds no element's centroid (or later regions hold them all); the mesh lies within ("
             << placed.rest.rowwise().minCoeff().transpose() << ") to (" << placed.rest.rowwise().maxCoeff().transpose()
-            << ") m of the tissue frame: move or enlarge the region, or refine the mesh";
+            << ") m of the tissue frame: move or enlarge the region, or give the tissue a finer mesh or `refinement`, "
+               "which is fine around regions";
     throw EntryError(elementOf("regions", r) + ".where", message.str());
   }
 }
@@ -302,8 +303,14 @@ RefinableMesh refinableMesh(const TissueDescription& description, const MeshSize
                             const MeshPreparation& preparation) {
   checkTissue(description);
   const VolumeMesh made = volumeMesh(description, tissueLabel(description), on_size, preparation);
-  RefinableMesh refinable{withPlaces(description, made.labels, made.mesh), Bisection(made.mesh, made.patch_of)};
-  refineBody(made.mesh, refinable.description, refinable.bisection);
+  RefinableMesh refinable{withPlaces(description, made.labels, made.mesh), Bisection(made.mesh, made.patch_of), 1.0};
+  refinable.body_coarsening = refineBody(made.mesh, refinable.description, refinable.bisection);
+  const std::vector<LastingPart> parts = refinable.bisection.lastingParts();
+  const double rounding = roundingDistance(made.mesh.positions);
+  const auto addParts = [&](std::vector<Region>& regions) { regions = withParts(regions, parts, rounding); };
+  addParts(refinable.description.pressure_where);
+  for (TissueRegion& region : refinable.description.regions) addParts(region.where);
+  for (Attachment& attachment : refinable.description.attachments) addParts(attachment.where);
   return refinable;
 }
 

@@ -41,6 +41,7 @@ PlacedMesh placeMesh(const TissueDescription& description, const Pose& X_WT, con
 struct RefinableMesh {
   TissueDescription description;  ///< with groups and cell data as the places they are
   Bisection bisection;
+  double body_coarsening;  ///< refineBody()
 };
 
 /// The mesh that a volume's description asks for, to be refined. A block's cells are split into six tetrahedra.

@@ -179,6 +179,9 @@ TEST(Region, HasABorderInATetrahedronThatItCutsAndNotInOneThatItTouches) {
   EXPECT_FALSE(bordersIn({SphereRegion{{0, 0, 1}, 0.1}}, corners, 1e-9)) << "as good as the corner alone";
   EXPECT_FALSE(bordersIn({below(0.5), below(2.0)}, corners, 1e-9)) << "all of it is held";
   EXPECT_FALSE(bordersIn({}, corners, 1e-9));
+  EXPECT_TRUE(bordersIn({BoxRegion{{-1, -1, 0.2}, {1, 1, 0.3}}}, corners, 1e-9)) << "no corner shows it";
+  EXPECT_FALSE(bordersIn({BoxRegion{{-1, -1, -0.2}, {1, 1, 0.05}}}, corners, 1e-9)) << "as good as a face";
+  EXPECT_FALSE(bordersIn({SphereRegion{{3, 0, 0}, 1.5}, BoxRegion{{2, 0, 0}, {3, 1, 1}}, below(-1.0)}, corners, 1e-9));
 }
 
 TEST(FixedNodes, NamesTheRegionThatHoldsNoNodeAndTheMesh) {

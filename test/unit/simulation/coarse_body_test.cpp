@@ -97,6 +97,8 @@ TEST_F(Pillar, ThatIsHeldByFewNodesIsWarnedOf) {
   const Simulator simulator = pillar("auto", "model: corotational");
   const std::string more = std::to_string(simulator.tissues()[0].nodeCount() - 24) + " nodes more than as it came";
   const std::vector<Advice> advice = simulator.advice();
+  expectContains(warnings("{cell_m: 0.002, nodes_at_most: 60}"),
+                 {"tissue 'pillar'", "times as long", "60 nodes", "nodes_at_most"});
   EXPECT_TRUE(std::any_of(advice.begin(), advice.end(),
                           [&](const Advice& line) { return line.text.find(more) != std::string::npos; }));
 }
