@@ -1,12 +1,15 @@
 /// @file
 /// Tetrahedral meshes: Gmsh .msh and legacy VTK, as a tissue reads them.
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "fuzz/fuzz_support.h"
 #include "mesh/labels.h"
+#include "tissue/placed_mesh.h"
 #include "tissue_contact/mesh/tet_mesh.h"
 
 using namespace tissue_contact;
@@ -25,6 +28,29 @@ void use(const TetMesh& mesh) {
   checkTetMesh(mesh, "input");
   const std::vector<Triangle> surface = boundaryTriangles(mesh.tetrahedra);
   fuzz::require(!surface.empty(), "a checked mesh has a surface");
+}
+
+/// A tissue of the mesh that follows tools, held and with a region somewhere in it.
+void follow(const MeshDescription& file, const TetMesh& mesh) {
+  const Vector3 low = mesh.positions.rowwise().minCoeff();
+  const Vector3 middle = 0.5 * (low + mesh.positions.rowwise().maxCoeff());
+  TissueDescription tissue;
+  tissue.name = "input";
+  tissue.geometry = file;
+  tissue.refinement.mode = RefinementDescription::Mode::kAuto;
+  tissue.fixed = {PlaneRegion{0.7 * low + 0.3 * middle, Vector3(0.0, 0.2, 1.0)}};
+  TissueRegion part;
+  part.name = "part";
+  part.where = {SphereRegion{middle, 0.1 * (middle - low).norm()}};
+  part.material = tissue.material;
+  tissue.regions = {part};
+  RefinableMesh made = refinableMesh(tissue, nullptr, {});
+  BisectedMesh refined;
+  const auto most = static_cast<std::size_t>(std::max(3000L, static_cast<long>(mesh.positions.cols()) * 3 / 2));
+  const auto unlimited = [](const Vector3&) { return std::numeric_limits<double>::infinity(); };
+  fuzz::require(made.bisection.refine(unlimited, most, refined), "the mesh that nothing touches has nodes to spare");
+  fuzz::require(made.body_coarsening >= 1.0, "cells are as long as asked for or longer");
+  placeMesh(made.description, Pose::Identity(), refined);
 }
 
 /// What the file calls its parts, as regions of a scene would name them: some hold a node, others are refused.
@@ -62,6 +88,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       use(mesh);
       MeshLabels labels;
       useLabels(loadTetMesh(description, {}, &labels), labels);
+      follow(description, mesh);
     } catch (const std::invalid_argument&) {
     }
   }

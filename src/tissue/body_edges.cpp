@@ -14,6 +14,8 @@
 namespace tissue_contact {
 namespace {
 
+constexpr double kDiagonal = 1.7320508075688772;  // of a cube over its side: the longest edge of a cell's tetrahedra
+
 /// Groups and cell data are of whole elements, so that none has their border in it.
 bool isShape(const Region& region) { return !std::holds_alternative<MemberRegion>(region); }
 
@@ -48,6 +50,8 @@ class BodyEdges {
   BodyEdges(const TissueDescription& tissue, double rounding_m, double edge_m, double shortest_m)
       : is_block_(std::holds_alternative<BlockDescription>(tissue.geometry)),
         rounding_m_(rounding_m),
+        cells_across_(tissue.refinement.choice().cells_across),
+        asked_m_(edge_m),
         edge_m_(edge_m),
         shortest_m_(shortest_m) {
     Border fixed{{}, kHalf, false};
@@ -65,7 +69,7 @@ class BodyEdges {
     }
     double most_m = is_block_ ? std::numeric_limits<double>::infinity() : edge_m_;  // its cells are as the scene says
     for (const Border& border : borders_) {
-      const double edge_m = std::min(0.5 * edge_m_, std::max(border.edge_m, shortest_m_));
+      const double edge_m = onBorder(border);
       const bool may_count = edge_m < most_m && squared_m2 > edge_m * edge_m && (at_surface || !border.on_surface);
       if (may_count && isOn(border, corners)) most_m = edge_m;
     }
@@ -75,7 +79,13 @@ class BodyEdges {
   /// Those of small parts first.
   void lengthen(double factor) { (shortest_m_ < 0.5 * edge_m_ ? shortest_m_ : edge_m_) *= factor; }
 
-  double elsewhere() const { return edge_m_; }
+  /// By what factor edges are longer than at first, at most.
+  double coarsening() const {
+    double most = edge_m_ / asked_m_;
+    for (const Border& border : borders_)
+      most = std::max(most, onBorder(border) / std::min(0.5 * asked_m_, border.edge_m));
+    return most;
+  }
 
  private:
   static constexpr double kHalf = std::numeric_limits<double>::infinity();
@@ -86,11 +96,13 @@ class BodyEdges {
   };
 
   void addParts(const std::vector<Region>& where, bool on_surface) {
-    // Three cells across: so the element in the middle of a ball has its centroid, at most 3/4 of its longest edge from there, in it.
     for (const Region& part : where) {
-      if (isShape(part)) borders_.push_back({{part}, std::sqrt(3.0) / 3.0 * extentOf(part), on_surface});
+      if (isShape(part))
+        borders_.push_back({{part}, std::max(kDiagonal / cells_across_ * extentOf(part), shortest_m_), on_surface});
     }
   }
+
+  double onBorder(const Border& border) const { return std::min(0.5 * edge_m_, std::max(border.edge_m, shortest_m_)); }
 
   bool isOn(const Border& border, const std::array<Vector3, 4>& corners) const {
     return bordersIn(border.where, corners, rounding_m_) ||
@@ -99,6 +111,8 @@ class BodyEdges {
 
   bool is_block_;
   double rounding_m_;
+  double cells_across_;
+  double asked_m_;
   double edge_m_;      ///< anywhere; half of it on borders
   double shortest_m_;  ///< on any border
   std::vector<Border> borders_;
@@ -110,7 +124,7 @@ double longestBodyEdge(const NodalVectors& rest, const std::vector<Tetrahedron>&
                        const RefinementDescription& refinement) {
   double volume_m3 = 0.0;
   for (const Tetrahedron& nodes : tetrahedra) volume_m3 += signedVolume(rest, nodes);
-  return std::sqrt(3.0) * std::cbrt(volume_m3) / refinement.choice().cells_along_body;
+  return kDiagonal * std::cbrt(volume_m3) / refinement.choice().cells_across;
 }
 
 double refineBody(const TetMesh& mesh, const TissueDescription& tissue, Bisection& bisection) {
@@ -127,7 +141,7 @@ double refineBody(const TetMesh& mesh, const TissueDescription& tissue, Bisectio
     return edges.longest(corners, at_surface);
   };
   while (!bisection.refineLasting(limit, unrefined + (most_nodes - unrefined) / 2)) edges.lengthen(kLonger);
-  return edges.elsewhere() / asked_m;
+  return edges.coarsening();
 }
 
 }  // namespace tissue_contact

@@ -14,13 +14,13 @@
 
 namespace tissue_contact {
 
-/// The longest edge that elements may have where nothing touches, m: the diagonal of a cube of V^(1/3) / cells_along_body
+/// The longest edge that elements may have where nothing touches, m: the diagonal of a cube of V^(1/3) / cells_across
 /// (RefinementDescription::Choice).
 double longestBodyEdge(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
                        const RefinementDescription& refinement);
 
 /// Cuts the elements of a mesh from a file until none has a longer edge than that, and of any mesh those that the border of `fixed`, of an
-/// attachment, of `pressure_where` or of a region runs through until none has one of half of it, or of what shows a small region. Longer
+/// attachment, of `pressure_where` or of a region runs through until none has one of half of it, or of cells_across of a region that is smaller. Longer
 /// ones if that takes more than half of the nodes that may come: of small regions first, then all alike.
 /// @param tissue with groups and cell data as the places they are.
 /// @return by what factor they are longer: 1 or more.

@@ -25,8 +25,8 @@ struct RefinementDescription {
     double cells_per_half_extent;  ///< along the smallest half extent of a shape
     double growth;
     int nodes_at_most;  ///< or one and a half times those of the unrefined mesh if that is more
-    /// Where no tool is, along the side of a cube of the body's volume (doc/accuracy.md, "Coarse organs of others").
-    double cells_along_body;
+    /// Where no tool is, along the side of a cube of the body's volume and across a region (doc/accuracy.md, "Coarse organs of others").
+    double cells_across;
   };
   Choice choice() const { return mode == Mode::kFine ? Choice{8.0, 0.2, 20000, 12.0} : Choice{3.4, 0.5, 3000, 6.0}; }
 };

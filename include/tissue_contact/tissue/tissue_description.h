@@ -16,7 +16,7 @@
 namespace tissue_contact {
 
 /// A named part of a tissue with a material, damping, fibre direction or friction of its own: the elements (and surface
-/// triangles) of the unrefined mesh whose centroid lies in any of `where`. Where several regions hold an element, the last one counts.
+/// triangles) of the mesh that nothing touches whose centroid lies in any of `where`. Where several regions hold an element, the last one counts.
 struct TissueRegion {
   std::string name;                  ///< unique in its tissue
   std::vector<Region> where;         ///< in the tissue frame T, at rest

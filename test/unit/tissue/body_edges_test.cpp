@@ -81,7 +81,7 @@ TEST_F(CoarseBody, HasARegionSmallerThanItsCells) {
     tissue_.regions.clear();
     addRegion(SphereRegion{{0.001, 0.002, 0.021}, radius});
     const double exact = 4.0 / 3.0 * kPi * radius * radius * radius;
-    EXPECT_NEAR(volumeOfRegion(placed()) / exact, 1.0, 0.25) << radius;
+    EXPECT_NEAR(volumeOfRegion(placed()) / exact, 1.0, 0.1) << radius;  // 0.035 RMS over 90 places
   }
 }
 
