@@ -70,6 +70,16 @@ def test_press_curve(tmp_path):
     assert (tmp_path / "curve.png").stat().st_size > 10000
 
 
+def test_draw_drag(tmp_path):
+    config = EXAMPLES.parents[1] / "config"
+    said = run("draw_drag.py", config / "press_drag.yaml", config / "press_drag.bag", "--at", "1.0", "--output", "drag.png", cwd=tmp_path)
+    replayed = tc.replay(config / "press_drag.yaml", config / "press_drag.bag", duration_s=1.1)
+    stamps = replayed.stamps("probe")
+    force = replayed.wrenches("probe")[abs(stamps - stamps[0] - 1.0).argmin(), :3]
+    assert abs(float(said.split()[0]) - (force @ force) ** 0.5) < 2e-3
+    assert (tmp_path / "drag.png").stat().st_size > 30000
+
+
 def test_gym_loop(tmp_path):
     first, second = run("gym_loop.py", cwd=tmp_path).splitlines()
     assert first.split(": ")[1] == second.split(": ")[1]  # the same bits
