@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "mesh/fill/run_program.h"
 #include "tissue_contact/core/read_file.h"
@@ -29,6 +30,21 @@ constexpr double kGrowth = 0.5;  // length that cells gain per length away from 
       "filling a surface with tetrahedra takes the program gmsh, which is not installed; install it (apt-get install "
       "gmsh), "
       "or fill the surface elsewhere and name the .msh or .vtk file");
+}
+
+/// The same surface, each triangle in three around its centroid.
+TriangleMesh inThirds(const TriangleMesh& surface) {
+  TriangleMesh parts;
+  const Eigen::Index corners = surface.vertices.cols();
+  parts.vertices.resize(3, corners + static_cast<Eigen::Index>(surface.triangles.size()));
+  parts.vertices.leftCols(corners) = surface.vertices;
+  for (const auto& [a, b, c] : surface.triangles) {
+    const int middle = static_cast<int>(corners) + static_cast<int>(parts.triangles.size()) / 3;
+    parts.vertices.col(middle) = (surface.vertices.col(a) + surface.vertices.col(b) + surface.vertices.col(c)) / 3.0;
+    for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+      parts.triangles.push_back({p, q, middle});
+  }
+  return parts;
 }
 
 /// In units of a cell: gmsh has absolute tolerances.
@@ -64,7 +80,9 @@ std::string errorsIn(const std::string& output) {
 
 GmshResult attempt(const TriangleMesh& surface, const FillOptions& options, double edge_angle) {
   const ScratchFolder folder;
-  writeSurface(surface, options.cell_m, folder.path("surface.msh"));
+  constexpr std::size_t kTetrahedron = 4;  // gmsh 4.8 never ends cutting the surface of one into patches
+  writeSurface(surface.triangles.size() == kTetrahedron ? inThirds(surface) : surface, options.cell_m,
+               folder.path("surface.msh"));
   std::ofstream(folder.path("fill.geo")) << gmshScript(options, edge_angle);
   const ProgramEnd end =
       runProgram({"gmsh", "-3", "fill.geo", "-o", "filled.msh", "-nt", "1", "-v", "3"}, folder.path(), kLimits);

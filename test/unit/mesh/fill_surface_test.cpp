@@ -166,6 +166,17 @@ TEST_F(FillSurface, ABallOfEveryFormat) {
   }
 }
 
+// Of its four triangles alone gmsh 4.8 makes nothing, for as long as it may.
+TEST_F(FillSurface, ATetrahedron) {
+  TriangleMesh mesh;
+  mesh.vertices.resize(3, 4);
+  mesh.vertices << 0, 40, 0, 0, 0, 0, 40, 0, 0, 0, 0, 40;
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  const TetMesh filled = fill(mesh);
+  EXPECT_GT(filled.tetrahedra.size(), 50U);
+  EXPECT_NEAR(volumeOf(filled), 0.04 * 0.04 * 0.04 / 6.0, 1e-12);
+}
+
 TEST_F(FillSurface, TheSameBitsEveryTime) {
   const TetMesh first = fill(ball(20.0));
   const TetMesh second = fill(ball(20.0));
