@@ -191,10 +191,12 @@ std::string implausibleLoadText(const Simulator& simulator) {
   text << "tissue '" << simulator.tissues()[load.tissue].name() << "' cannot bear what " << by << " does to it at ("
        << load.p_W.x() << ", " << load.p_W.y() << ", " << load.p_W.z() << ") m: ";
   if (load.inverted_elements > 0) text << load.inverted_elements << " elements turned inside out, ";
+  const bool is_for_large_strain = simulator.scene().tissues[load.tissue].material.model == ElasticModel::kNeoHookean;
   text
       << "mean contact pressure " << load.pressure_pa << " Pa at a Young's modulus of " << load.modulus_pa
       << " Pa; the forces are not to be trusted. Check where the tool is (base_pose, joint_names, units); deep or wide "
-         "motion needs material.model neo_hookean and smaller cells under the tool";
+         "motion needs "
+      << (is_for_large_strain ? "" : "material.model neo_hookean and ") << "smaller cells under the tool";
   return text.str();
 }
 

@@ -121,7 +121,8 @@ void requireFittingCells(const ClosedSurface& surface, const MeshDescription& de
     message << ": " << crossingText(crossings);
   } else {
     message << " with cells of cell_size_m " << description.cell_size_m
-            << " m; where it is thinner than a cell, a smaller one helps; else fill it by hand and name the .msh";
+            << " m; where it is thinner than a cell, a smaller one helps, and sometimes slightly other ones do; else "
+               "mesh the surface anew (MeshLab: Isotropic Explicit Remeshing), or fill it by hand and name the .msh";
   }
   message << (complaint.empty() ? "" : " (gmsh: " + complaint + ")");
   throw std::invalid_argument(message.str());
