@@ -131,7 +131,7 @@ bool Bisection::cutBeyond(const LimitOf& limit_of, std::size_t most_nodes) {
   return true;
 }
 
-bool Bisection::refineLasting(const CornersLimit& limit, std::size_t most_nodes) {
+bool Bisection::refineLasting(const PartLimit& limit, std::size_t most_nodes) {
   lasting_nodes_ = base_nodes_;
   lasting_elements_ = base_patch_of_.size();
   element_places_.resize(lasting_elements_);
@@ -141,7 +141,7 @@ bool Bisection::refineLasting(const CornersLimit& limit, std::size_t most_nodes)
   start();
   const auto limit_of = [&](const Element& element) {
     const bool at_surface = std::any_of(element.outer.begin(), element.outer.end(), [](int face) { return face >= 0; });
-    return limit(corners(element), at_surface);
+    return limit({corners(element), at_surface, static_cast<std::size_t>(element.place)});  // until nameParts()
   };
   if (!cutBeyond(limit_of, most_nodes)) return false;
   lasting_nodes_ = x_.size();

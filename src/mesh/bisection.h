@@ -22,8 +22,14 @@ namespace tissue_contact {
 
 /// The longest edge that a tetrahedron with its centroid there may have, m; > 0.
 using EdgeLimit = std::function<double(const Vector3&)>;
-/// Likewise of a tetrahedron by its corners, m, and whether one of its faces lies on the surface.
-using CornersLimit = std::function<double(const std::array<Vector3, 4>&, bool)>;
+/// A tetrahedron of the unrefined mesh, or a part of one.
+struct ElementPart {
+  std::array<Vector3, 4> corners;  ///< m
+  bool at_surface;                 ///< whether one of its faces lies there
+  std::size_t unrefined;           ///< index of that tetrahedron
+};
+/// Likewise the longest edge that it may have.
+using PartLimit = std::function<double(const ElementPart&)>;
 
 struct BisectedMesh {
   TetMesh mesh;                   ///< nodes of the unrefined mesh first, in its order
@@ -54,7 +60,7 @@ class Bisection {
 
   /// From now on every mesh has these cuts, before its own: until no tetrahedron has an edge beyond the limit.
   /// @return false, and there are none, if that would take more than `most_nodes` nodes.
-  bool refineLasting(const CornersLimit& limit, std::size_t most_nodes);
+  bool refineLasting(const PartLimit& limit, std::size_t most_nodes);
 
   std::vector<LastingPart> lastingParts() const;
 

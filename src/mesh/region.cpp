@@ -130,13 +130,17 @@ bool anyHolds(const std::vector<Region>& regions, const Vector3& x, double round
   return std::any_of(regions.begin(), regions.end(), [&](const Region& region) { return holds(region, x, rounding); });
 }
 
+bool mayHoldWithin(const Region& region, const Vector3& x, double distance) {
+  return std::visit([&](const auto& shape) { return !isFarther(shape, x, distance); }, region);
+}
+
 bool bordersIn(const std::vector<Region>& regions, const std::array<Vector3, 4>& corners, double rounding) {
   double longest = 0.0;
   for (const Vector3& corner : corners) longest = std::max(longest, (corner - corners[0]).norm());
-  const bool is_far = std::all_of(regions.begin(), regions.end(), [&](const Region& region) {
-    return std::visit([&](const auto& shape) { return isFarther(shape, corners[0], longest + rounding); }, region);
+  const bool is_near = std::any_of(regions.begin(), regions.end(), [&](const Region& region) {
+    return mayHoldWithin(region, corners[0], longest + rounding);
   });
-  return !is_far && (leavesACorner(regions, corners, rounding) || holdsAPartInside(regions, corners, rounding));
+  return is_near && (leavesACorner(regions, corners, rounding) || holdsAPartInside(regions, corners, rounding));
 }
 
 std::vector<bool> heldPoints(const NodalVectors& points, const std::vector<Region>& regions, const std::string& entry,

@@ -22,6 +22,9 @@ double placeOrder(const Vector3& place);
 /// Whether any of the regions holds the point (m, in T). Boundaries count as inside.
 bool anyHolds(const std::vector<Region>& regions, const Vector3& x, double rounding);
 
+/// Whether a region may hold a point within a distance (m) of x: true as well where that is not known, of groups and cell data.
+bool mayHoldWithin(const Region& region, const Vector3& x, double distance);
+
 /// Whether the border of what the regions hold runs through a tetrahedron, not only along its faces: as its corners show it, or 35 places
 /// inside it, an eighth of its height from its faces.
 /// @param regions boxes, planes and spheres; groups and cell data are of whole elements, and are to be left out.

@@ -47,9 +47,10 @@ bool holdsMiddle(const std::array<Vector3, 4>& corners, const Region& region) {
 /// How long edges may be where, as short as the number of nodes allows.
 class BodyEdges {
  public:
-  BodyEdges(const TissueDescription& tissue, double rounding_m, double edge_m, double shortest_m)
+  /// @param shortest_m on any border.
+  BodyEdges(const TetMesh& mesh, const TissueDescription& tissue, double edge_m, double shortest_m)
       : is_block_(std::holds_alternative<BlockDescription>(tissue.geometry)),
-        rounding_m_(rounding_m),
+        rounding_m_(roundingDistance(mesh.positions)),
         cells_across_(tissue.refinement.choice().cells_across),
         asked_m_(edge_m),
         edge_m_(edge_m),
@@ -60,18 +61,23 @@ class BodyEdges {
     for (const TissueRegion& region : tissue.regions) addParts(region.where, false);
     for (const Attachment& attachment : tissue.attachments) addParts(attachment.where, true);
     if (tissue.pressure_pa != 0.0) addParts(tissue.pressure_where, true);
+    double smallest_m = kHalf;
+    for (const Border& border : borders_) smallest_m = std::min(smallest_m, border.edge_m);
+    shortest_m_ = std::min(smallest_m, 0.5 * edge_m_);
+    findNear(mesh);
   }
 
-  double longest(const std::array<Vector3, 4>& corners, bool at_surface) const {
+  double longest(const ElementPart& part) const {
     double squared_m2 = 0.0;
-    for (const Vector3& a : corners) {
-      for (const Vector3& b : corners) squared_m2 = std::max(squared_m2, (a - b).squaredNorm());
+    for (const Vector3& a : part.corners) {
+      for (const Vector3& b : part.corners) squared_m2 = std::max(squared_m2, (a - b).squaredNorm());
     }
     double most_m = is_block_ ? std::numeric_limits<double>::infinity() : edge_m_;  // its cells are as the scene says
-    for (const Border& border : borders_) {
+    for (std::size_t i = first_near_[part.unrefined]; i < first_near_[part.unrefined + 1]; ++i) {
+      const Border& border = borders_[near_[i]];
       const double edge_m = onBorder(border);
-      const bool may_count = edge_m < most_m && squared_m2 > edge_m * edge_m && (at_surface || !border.on_surface);
-      if (may_count && isOn(border, corners)) most_m = edge_m;
+      const bool may_count = edge_m < most_m && squared_m2 > edge_m * edge_m && (part.at_surface || !border.on_surface);
+      if (may_count && isOn(border, part.corners)) most_m = edge_m;
     }
     return most_m;
   }
@@ -82,8 +88,9 @@ class BodyEdges {
   /// By what factor edges are longer than at first, at most.
   double coarsening() const {
     double most = edge_m_ / asked_m_;
-    for (const Border& border : borders_)
+    for (const Border& border : borders_) {
       most = std::max(most, onBorder(border) / std::min(0.5 * asked_m_, border.edge_m));
+    }
     return most;
   }
 
@@ -97,8 +104,24 @@ class BodyEdges {
 
   void addParts(const std::vector<Region>& where, bool on_surface) {
     for (const Region& part : where) {
-      if (isShape(part))
-        borders_.push_back({{part}, std::max(kDiagonal / cells_across_ * extentOf(part), shortest_m_), on_surface});
+      if (!isShape(part)) continue;
+      borders_.push_back({{part}, std::max(kDiagonal / cells_across_ * extentOf(part), shortest_m_), on_surface});
+    }
+  }
+
+  /// So that many regions cost no more than a look at each from each element.
+  void findNear(const TetMesh& mesh) {
+    first_near_.push_back(0);
+    for (const Tetrahedron& nodes : mesh.tetrahedra) {
+      const Vector3 corner = mesh.positions.col(nodes[0]);
+      double size_m = rounding_m_;
+      for (const int node : nodes) size_m = std::max(size_m, (mesh.positions.col(node) - corner).norm() + rounding_m_);
+      for (std::size_t b = 0; b < borders_.size(); ++b) {
+        const std::vector<Region>& where = borders_[b].where;
+        const auto is_near = [&](const Region& region) { return mayHoldWithin(region, corner, size_m); };
+        if (std::any_of(where.begin(), where.end(), is_near)) near_.push_back(b);
+      }
+      first_near_.push_back(near_.size());
     }
   }
 
@@ -116,6 +139,8 @@ class BodyEdges {
   double edge_m_;      ///< anywhere; half of it on borders
   double shortest_m_;  ///< on any border
   std::vector<Border> borders_;
+  std::vector<std::size_t> near_;        ///< per element of the unrefined mesh: borders that may run through it,
+  std::vector<std::size_t> first_near_;  ///< from here on
 };
 
 }  // namespace
@@ -136,10 +161,8 @@ double refineBody(const TetMesh& mesh, const TissueDescription& tissue, Bisectio
   const double asked_m =
       std::max(longestBodyEdge(mesh.positions, mesh.tetrahedra, tissue.refinement), kShortest * size_m);
   if (most_nodes <= unrefined || !(asked_m > 0.0)) return 1.0;  // 0: lengths whose products underflow
-  BodyEdges edges(tissue, roundingDistance(mesh.positions), asked_m, kShortest * asked_m);
-  const auto limit = [&edges](const std::array<Vector3, 4>& corners, bool at_surface) {
-    return edges.longest(corners, at_surface);
-  };
+  BodyEdges edges(mesh, tissue, asked_m, kShortest * asked_m);
+  const auto limit = [&edges](const ElementPart& part) { return edges.longest(part); };
   while (!bisection.refineLasting(limit, unrefined + (most_nodes - unrefined) / 2)) edges.lengthen(kLonger);
   return edges.coarsening();
 }

@@ -165,8 +165,8 @@ void setRegions(const TissueDescription& description, const std::string& source,
     message << source << ": region '" << description.regions[r].name
             << "' holds no element's centroid (or later regions hold them all); the mesh lies within ("
             << placed.rest.rowwise().minCoeff().transpose() << ") to (" << placed.rest.rowwise().maxCoeff().transpose()
-            << ") m of the tissue frame: move or enlarge the region, or give the tissue a finer mesh or `refinement`, "
-               "which is fine around regions";
+            << ") m of the tissue frame: move or enlarge the region, or give the tissue a finer mesh, or `refinement`, "
+               "which is fine around regions (where it is: more nodes_at_most)";
     throw EntryError(elementOf("regions", r) + ".where", message.str());
   }
 }

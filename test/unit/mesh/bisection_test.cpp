@@ -194,8 +194,9 @@ TEST(Bisection, EndsWhereItMayHaveNoMoreNodes) {
 TEST(Bisection, LastingCutsComeFirstInEveryMesh) {
   Bisection bisection = bisectionOf(cube(2));
   const auto below = [](double height) {
-    return [height](const std::array<Vector3, 4>& corners, bool) {
-      const bool any = std::any_of(corners.begin(), corners.end(), [&](const Vector3& x) { return x.z() < height; });
+    return [height](const ElementPart& part) {
+      const bool any =
+          std::any_of(part.corners.begin(), part.corners.end(), [&](const Vector3& x) { return x.z() < height; });
       return any ? 0.02 : 1.0;
     };
   };
