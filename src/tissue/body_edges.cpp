@@ -153,7 +153,7 @@ double longestBodyEdge(const NodalVectors& rest, const std::vector<Tetrahedron>&
 }
 
 double refineBody(const TetMesh& mesh, const TissueDescription& tissue, Bisection& bisection) {
-  constexpr double kLonger = 1.4142135623730951;
+  constexpr double kLonger = 1.189207115002721;  // fourth root of 2
   constexpr double kShortest = 1e-3;  // of the mesh's size, and of edges elsewhere: so that few attempts find what fits
   const auto unrefined = static_cast<std::size_t>(mesh.positions.cols());
   const std::size_t most_nodes = mostNodes(tissue.refinement, unrefined);
