@@ -37,6 +37,7 @@ void follow(const MeshDescription& file, const TetMesh& mesh) {
   TissueDescription tissue;
   tissue.name = "input";
   tissue.geometry = file;
+  tissue.material = {ElasticModel::kCorotational, 5e3, 0.45, 1000.0};
   tissue.refinement.mode = RefinementDescription::Mode::kAuto;
   tissue.fixed = {PlaneRegion{0.7 * low + 0.3 * middle, Vector3(0.0, 0.2, 1.0)}};
   TissueRegion part;

@@ -95,13 +95,14 @@ def draw(arguments):
     shown = min(np.searchsorted(times, seconds), len(times) - 1)
     tip = poses[shown, :3]
     triangles, moved = mesh_at(arguments.scene, arguments.bag, seconds)
+    most_m = moved.max() or 1e-3  # before anything has moved
     near = np.linalg.norm(triangles.mean(axis=1) - tip, axis=1) < NEAR_M
     figure = plt.figure(figsize=(15.0, 5.0), constrained_layout=True)
     whole, close, curve = [figure.add_subplot(1, 3, 1 + k, **({"projection": "3d"} if k < 2 else {})) for k in range(3)]
     for axes, part, arrow_m in ((whole, slice(None), 0.05), (close, near, 0.5 * NEAR_M)):
         if np.any(near) or axes is whole:
-            draw_mesh(axes, triangles[part], moved[part], moved.max(), tip, arguments.ball_m, forces[shown], arrow_m, arguments.azimuth)
-    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0.0, 1e3 * moved.max()), COLOURS)
+            draw_mesh(axes, triangles[part], moved[part], most_m, tip, arguments.ball_m, forces[shown], arrow_m, arguments.azimuth)
+    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0.0, 1e3 * most_m), COLOURS)
     figure.colorbar(scale, ax=whole, label="moved (mm)", location="left", shrink=0.5)
     curve.fill_between(times, sizes - errors, sizes + errors, color="0.85", label="|F|, its likely error")
     curve.plot(times, sizes, color="black", linewidth=2.0, label="|F|")
@@ -112,7 +113,7 @@ def draw(arguments):
     curve.grid(alpha=0.3)
     curve.legend(loc="best")
     figure.savefig(arguments.output, dpi=100)
-    print("%.3f N (%.3f N likely off) at %.2f s, %d triangles" % (sizes[shown], errors[shown], seconds, len(triangles)))
+    print("%.3f N (%.3f N likely off) at %.2f s; the surface has moved by %.2f mm at most" % (sizes[shown], errors[shown], seconds, 1e3 * moved.max()))
 
 
 def main():

@@ -71,11 +71,12 @@ void Bisection::start() {
   }
 }
 
-/// Of edges of one length: by where their middles are.
+/// Of edges of one length: by where their middles are, and by their nodes where coordinates cannot tell.
 bool Bisection::comesBefore(const std::array<int, 2>& a, const std::array<int, 2>& b) const {
   const Vector3 p = x_[a[0]] + x_[a[1]];
   const Vector3 q = x_[b[0]] + x_[b[1]];
-  return std::make_tuple(p.x(), p.y(), p.z()) < std::make_tuple(q.x(), q.y(), q.z());
+  return std::make_tuple(p.x(), p.y(), p.z(), std::minmax(a[0], a[1])) <
+         std::make_tuple(q.x(), q.y(), q.z(), std::minmax(b[0], b[1]));
 }
 
 /// By a total order, so that neighbours agree.

@@ -102,8 +102,8 @@ class Bisection {
 
   std::size_t base_nodes_;
   std::size_t base_triangles_ = 0;
-  std::vector<Vector3> element_places_,
-      triangle_places_;  ///< centroids, m: of the unrefined mesh, then of what lasting cuts made
+  std::vector<Vector3> element_places_;   ///< centroids, m: of the unrefined mesh, then of what lasting cuts made
+  std::vector<Vector3> triangle_places_;  ///< likewise of the surface
   std::vector<int> whole_elements_, whole_triangles_;  ///< of the latter: that of the unrefined mesh
   std::vector<int> base_patch_of_;
   std::vector<std::vector<int>> base_patches_;    ///< their elements

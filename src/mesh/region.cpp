@@ -53,9 +53,13 @@ bool isFarther(const Labelled&, const Vector3&, double) {
   return false;
 }
 
+}  // namespace
+
 bool holds(const Region& region, const Vector3& x, double rounding) {
   return std::visit([&](const auto& shape) { return holds(shape, x, rounding); }, region);
 }
+
+namespace {
 
 void describe(const BoxRegion& box, std::ostream& out) {
   out << "box from (" << box.min_m.transpose() << ") to (" << box.max_m.transpose() << ") m";

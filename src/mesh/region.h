@@ -22,6 +22,9 @@ double placeOrder(const Vector3& place);
 /// Whether any of the regions holds the point (m, in T). Boundaries count as inside.
 bool anyHolds(const std::vector<Region>& regions, const Vector3& x, double rounding);
 
+/// Whether a region holds the point (m, in T), its boundary included.
+bool holds(const Region& region, const Vector3& x, double rounding);
+
 /// Whether a region may hold a point within a distance (m) of x: true as well where that is not known, of groups and cell data.
 bool mayHoldWithin(const Region& region, const Vector3& x, double distance);
 

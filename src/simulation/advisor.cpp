@@ -242,7 +242,7 @@ Advice refinementLine(const TissueDescription& tissue, const TissueRefinement& r
   }
   const bool is_coarse = refinement.bodyCoarsening() > 1.0;
   if (is_coarse) {
-    line << "for that its cells are " << refinement.bodyCoarsening()
+    line << "where nothing touches, its cells or those at the border of a part are " << refinement.bodyCoarsening()
          << " times as long as they should be, since it may have " << refinement.nodesAtMost()
          << " nodes: raise refinement.nodes_at_most; ";
   }

@@ -40,8 +40,9 @@ bool holdsMiddle(const std::array<Vector3, 4>& corners, const Region& region) {
   }
   Matrix3 edges;
   for (int i = 0; i < 3; ++i) edges.col(i) = corners[i + 1] - corners[0];
+  constexpr double kRounding = 1e-9;  // a patch on the surface has its middle on a face
   const Vector3 shares = edges.partialPivLu().solve(middle - corners[0]);
-  return shares.minCoeff() >= 0.0 && shares.sum() <= 1.0;  // of a flat one they are no numbers
+  return shares.minCoeff() >= -kRounding && shares.sum() <= 1.0 + kRounding;  // of a flat one they are no numbers
 }
 
 /// How long edges may be where, as short as the number of nodes allows.
@@ -61,10 +62,10 @@ class BodyEdges {
     for (const TissueRegion& region : tissue.regions) addParts(region.where, false);
     for (const Attachment& attachment : tissue.attachments) addParts(attachment.where, true);
     if (tissue.pressure_pa != 0.0) addParts(tissue.pressure_where, true);
-    double smallest_m = kHalf;
-    for (const Border& border : borders_) smallest_m = std::min(smallest_m, border.edge_m);
-    shortest_m_ = std::min(smallest_m, 0.5 * edge_m_);
     findNear(mesh);
+    double smallest_m = 0.5 * edge_m_;
+    for (const Border& border : borders_) smallest_m = std::min(smallest_m, border.edge_m);
+    shortest_m_ = smallest_m;
   }
 
   double longest(const ElementPart& part) const {
@@ -82,8 +83,11 @@ class BodyEdges {
     return most_m;
   }
 
-  /// Those of small parts first.
-  void lengthen(double factor) { (shortest_m_ < 0.5 * edge_m_ ? shortest_m_ : edge_m_) *= factor; }
+  /// Those of small parts first, then all.
+  void lengthen(double factor) {
+    if (shortest_m_ >= 0.5 * edge_m_) edge_m_ *= factor;
+    shortest_m_ *= factor;
+  }
 
   /// By what factor edges are longer than at first, at most.
   double coarsening() const {
@@ -109,8 +113,9 @@ class BodyEdges {
     }
   }
 
-  /// So that many regions cost no more than a look at each from each element.
+  /// So that many regions cost no more than a look at each from each element. What is near none asks for no cells.
   void findNear(const TetMesh& mesh) {
+    std::vector<bool> is_near_any(borders_.size(), false);
     first_near_.push_back(0);
     for (const Tetrahedron& nodes : mesh.tetrahedra) {
       const Vector3 corner = mesh.positions.col(nodes[0]);
@@ -119,9 +124,20 @@ class BodyEdges {
       for (std::size_t b = 0; b < borders_.size(); ++b) {
         const std::vector<Region>& where = borders_[b].where;
         const auto is_near = [&](const Region& region) { return mayHoldWithin(region, corner, size_m); };
-        if (std::any_of(where.begin(), where.end(), is_near)) near_.push_back(b);
+        const auto holds_all = [&](const Region& region) {  // shapes are convex: no border runs through it then
+          return std::all_of(nodes.begin(), nodes.end(),
+                             [&](int node) { return holds(region, mesh.positions.col(node), rounding_m_); });
+        };
+        if (std::none_of(where.begin(), where.end(), is_near) || std::any_of(where.begin(), where.end(), holds_all)) {
+          continue;
+        }
+        is_near_any[b] = true;
+        near_.push_back(b);
       }
       first_near_.push_back(near_.size());
+    }
+    for (std::size_t b = 0; b < borders_.size(); ++b) {
+      if (!is_near_any[b]) borders_[b].edge_m = kHalf;
     }
   }
 
@@ -156,11 +172,11 @@ double refineBody(const TetMesh& mesh, const TissueDescription& tissue, Bisectio
   constexpr double kLonger = 1.189207115002721;  // fourth root of 2
   constexpr double kShortest = 1e-3;  // of the mesh's size, and of edges elsewhere: so that few attempts find what fits
   const auto unrefined = static_cast<std::size_t>(mesh.positions.cols());
-  const std::size_t most_nodes = mostNodes(tissue.refinement, unrefined);
+  const std::size_t most_nodes = std::max(mostNodes(tissue.refinement, unrefined), unrefined);
   const double size_m = (mesh.positions.rowwise().maxCoeff() - mesh.positions.rowwise().minCoeff()).norm();
   const double asked_m =
       std::max(longestBodyEdge(mesh.positions, mesh.tetrahedra, tissue.refinement), kShortest * size_m);
-  if (most_nodes <= unrefined || !(asked_m > 0.0)) return 1.0;  // 0: lengths whose products underflow
+  if (!(asked_m > 0.0)) return 1.0;  // lengths whose products underflow
   BodyEdges edges(mesh, tissue, asked_m, kShortest * asked_m);
   const auto limit = [&edges](const ElementPart& part) { return edges.longest(part); };
   while (!bisection.refineLasting(limit, unrefined + (most_nodes - unrefined) / 2)) edges.lengthen(kLonger);

@@ -77,6 +77,7 @@ def test_draw_drag(tmp_path):
     stamps = replayed.stamps("probe")
     force = replayed.wrenches("probe")[abs(stamps - stamps[0] - 1.0).argmin(), :3]
     assert abs(float(said.split()[0]) - (force @ force) ** 0.5) < 2e-3
+    assert 2.0 < float(said.split("moved by ")[1].split()[0]) < 4.5  # mm: of triangles under a ball that is 4 mm deep
     assert (tmp_path / "drag.png").stat().st_size > 30000
 
 

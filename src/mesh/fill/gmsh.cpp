@@ -81,8 +81,12 @@ std::string errorsIn(const std::string& output) {
 GmshResult attempt(const TriangleMesh& surface, const FillOptions& options, double edge_angle) {
   const ScratchFolder folder;
   constexpr std::size_t kTetrahedron = 4;  // gmsh 4.8 never ends cutting the surface of one into patches
-  writeSurface(surface.triangles.size() == kTetrahedron ? inThirds(surface) : surface, options.cell_m,
-               folder.path("surface.msh"));
+  const std::string path = folder.path("surface.msh");
+  if (surface.triangles.size() == kTetrahedron) {
+    writeSurface(inThirds(surface), options.cell_m, path);
+  } else {
+    writeSurface(surface, options.cell_m, path);
+  }
   std::ofstream(folder.path("fill.geo")) << gmshScript(options, edge_angle);
   const ProgramEnd end =
       runProgram({"gmsh", "-3", "fill.geo", "-o", "filled.msh", "-nt", "1", "-v", "3"}, folder.path(), kLimits);

@@ -99,6 +99,7 @@ TEST_F(Pillar, ThatIsHeldByFewNodesIsWarnedOf) {
   const std::vector<Advice> advice = simulator.advice();
   expectContains(warnings("{cell_m: 0.002, nodes_at_most: 60}"),
                  {"tissue 'pillar'", "times as long", "60 nodes", "nodes_at_most"});
+  expectContains(warnings("{cell_m: 0.002, nodes_at_most: 20}"), {"times as long", "20 nodes"});
   EXPECT_TRUE(std::any_of(advice.begin(), advice.end(),
                           [&](const Advice& line) { return line.text.find(more) != std::string::npos; }));
 }

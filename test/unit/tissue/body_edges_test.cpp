@@ -75,7 +75,7 @@ class CoarseBody : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-// A tumour of a sixth of the cells' volume, between their centroids: the file's elements cannot show it at all.
+// Between the centroids of cells of 20 mm: the file's elements cannot show it at all.
 TEST_F(CoarseBody, HasARegionSmallerThanItsCells) {
   for (const double radius : {0.003, 0.005, 0.009}) {
     tissue_.regions.clear();
@@ -107,6 +107,19 @@ TEST_F(CoarseBody, IsAttachedAndPressedWhereTheSceneSays) {
   for (const NodeSpring& spring : mesh.springs) stiffness += spring.stiffness;
   EXPECT_NEAR(stiffness / (1e6 * exact), 1.0, 0.05);
   EXPECT_NEAR(pressedArea(mesh) / exact, 1.0, 0.05);
+}
+
+// The middle of a patch on the surface lies in no element but on its face, by rounding on either side.
+TEST_F(CoarseBody, IsPressedOnASmallPatchAnywhere) {
+  tissue_.pressure_pa = 1600.0;
+  for (int k = 0; k < 200; ++k) {
+    const Vector3 middle(0.0001 * (k * 37 % 361) - 0.018, 0.0001 * (k * 53 % 359) - 0.018, 0.06);
+    const Vector3 half(0.001, 0.001, 0.0);
+    tissue_.pressure_where = {BoxRegion{middle - half, middle + half}};
+    EXPECT_NO_THROW(EXPECT_GT(pressedArea(placed()), 0.0)) << middle.transpose();
+    tissue_.pressure_where = {SphereRegion{middle, 0.001}};
+    EXPECT_NO_THROW(EXPECT_GT(pressedArea(placed()), 0.0)) << middle.transpose();
+  }
 }
 
 // Labels are of whole elements, which hold their parts and nothing else.
