@@ -55,7 +55,7 @@ class Tissue {
   double thickness() const { return thickness_; }
 
   /// Per surface triangle: index into TissueDescription::regions (by the triangle's own centroid; in a refined mesh that of the
-  /// triangle it is a part of), -1 where none.
+  /// triangle it is a part of in the mesh that nothing touches), -1 where none.
   /// Empty: the tissue has no regions.
   const std::vector<int>& surfaceRegions() const { return surface_regions_; }
   /// Likewise per element.
