@@ -20,6 +20,9 @@ struct alignas(32) PaddedVector {
 using PaddedVectors = std::vector<PaddedVector>;
 
 inline Eigen::Map<Vector3> vectorOf(PaddedVector& vector) { return Eigen::Map<Vector3>(vector.at.data()); }
+inline Eigen::Map<const Vector3> vectorOf(const PaddedVector& vector) {
+  return Eigen::Map<const Vector3>(vector.at.data());
+}
 
 /// Allocates only for another number of nodes than before.
 inline void pad(const NodalVectors& from, PaddedVectors& to) {

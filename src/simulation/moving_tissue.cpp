@@ -85,6 +85,8 @@ void MovingTissue::makeState() {
   system_.K = &elastic_state_->stiffness;
   system_.D = elastic_state_->damping.rows() > 0 ? &elastic_state_->damping : nullptr;
   system_.fixed = sleep_ ? &sleep_->still() : &tissue_.fixed();
+  system_.stiff_parts = &tissue_.stiffParts();
+  system_.x = &x_;
 }
 
 void MovingTissue::wake(const std::vector<int>& touched) {

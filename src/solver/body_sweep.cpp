@@ -192,6 +192,7 @@ void BodySweep::prepare(const BodySystem& body) {
   v_.resize(lower_.size());
   prepareSlices();
   deflation_.beginStep(v_.size());
+  rigid_motions_.none();
   invertAll(diagonal_, free_, inverse_);
 }
 
@@ -241,6 +242,7 @@ void BodySweep::follow(int node, const Vector3& change) {
       const Vector3 added = matrix.block(place).transpose() * scaled;  // A is symmetric
       vectorOf(lower_[j]) += added;
       deflation_.follow(j, added);
+      rigid_motions_.follow(j, added);
     });
   };
   add(*body_->K, body_->stiffness_scale);
@@ -268,10 +270,16 @@ Deflation::Products BodySweep::measure(PaddedVectors& u, PaddedVectors& lower) c
   return found;
 }
 
+void BodySweep::beginRigidMotions(const std::vector<int>& excluded) {
+  if (body_->stiff_parts != nullptr && !body_->stiff_parts->empty()) rigid_motions_.begin(*body_, excluded);
+}
+
 void BodySweep::deflate(NodalVectors& v) {
   pad(v, v_);
+  rigid_motions_.correct(deflation_.begun(), v_, lower_,
+                         [this](int j, const Vector3& changed) { deflation_.follow(j, changed); });
   deflation_.correct(v_, lower_);
-  if (deflation_.hasAlong()) unpad(v_, v);
+  if (deflation_.hasAlong() || rigid_motions_.any()) unpad(v_, v);
 }
 
 void BodySweep::finish(bool forth, const NodalVectors& v, NodalVectors& u) {

@@ -14,6 +14,7 @@
 
 #include "core/slice_product.h"
 #include "solver/deflation.h"
+#include "solver/rigid_motions.h"
 #include "tissue_contact/solver/contact_problem.h"
 
 namespace tissue_contact {
@@ -48,10 +49,14 @@ class BodySweep {
   /// size. @param excluded nodes that contacts may move.
   void beginDeflation(const NodalVectors& u, const std::vector<int>& excluded);
 
+  /// After a sweep forth, before follow(): from now on deflate() moves the body's stiff parts as well. @param excluded nodes that contacts
+  /// may move, ascending.
+  void beginRigidMotions(const std::vector<int>& excluded);
+
   /// A contact has moved a node by `change` (m/s) since the sweep forth.
   void follow(int node, const Vector3& change);
 
-  /// Between a sweep forth and the sweep back, with what contacts moved followed (Deflation). @param v m/s.
+  /// Between a sweep forth and the sweep back, with what contacts moved followed (Deflation, RigidMotions). @param v m/s.
   void deflate(NodalVectors& v);
 
   /// Ends a step. @param forth the last sweep was one forth; what contacts moved since counts as found by it.
@@ -66,6 +71,7 @@ class BodySweep {
     if (forward) std::fill(lower_.begin(), lower_.end(), PaddedVector{});
     pad(v, v_);
     if (forward) deflation_.beginForth(v_);
+    if (forward) rigid_motions_.beginForth();
     const int slices = pattern().slices();
     int begin = 0;  // of what is left
     int end = slices;
@@ -119,6 +125,7 @@ class BodySweep {
   std::vector<unsigned char> moves_;              ///< some row of the slice is free
   PaddedVectors lower_;                           ///< sum_{j<i} A_ij v_j after the sweep forth, N s
   Deflation deflation_;
+  RigidMotions rigid_motions_;
   PaddedVectors v_;  ///< scratch: what a sweep works on, m/s
 };
 

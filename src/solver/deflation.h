@@ -34,6 +34,9 @@ class Deflation {
   /// A sweep forth begins. @param v m/s.
   void beginForth(const PaddedVectors& v);
 
+  /// Where the last sweep forth began, m/s, until correct().
+  const PaddedVectors& begun() const { return begun_; }
+
   /// Between the first sweep forth of a step and what follows it, where there is a u (m/s).
   void beginAlong(const NodalVectors& u, const std::vector<bool>& fixed);
   void exclude(int node) { u_[static_cast<std::size_t>(node)] = {}; }
@@ -46,7 +49,8 @@ class Deflation {
     energy_ = found.energy;
   }
 
-  /// A contact has moved a node since the sweep forth, which changes L v of node j by `added`, N s.
+  /// A node has moved since the sweep forth, which changes L v of node j by `added`, N s; beyond contacts, which have no part in u, of A v
+  /// but for what is above the diagonal.
   void follow(int j, const Vector3& added) {
     if (along_) followed_ += added.dot(vectorOf(u_[static_cast<std::size_t>(j)]));
   }

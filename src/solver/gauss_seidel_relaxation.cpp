@@ -46,6 +46,9 @@ class GaussSeidelRelaxation : public Relaxation {
   void findNodeContacts(const ContactProblem& problem);
   void findTouched(const ContactProblem& problem);
   void beginDeflation(const ContactProblem& problem, ContactSolution& solution);
+  void beginRigidMotions(const ContactProblem& problem);
+  template <class Begin>
+  void forEachAwake(const ContactProblem& problem, const Begin& begin);
   void deflate(const ContactProblem& problem, std::vector<NodalVectors>& v);
   void followTouched(const ContactProblem& problem, const std::vector<NodalVectors>& v);
   bool contactsActOn(int body) const;
@@ -165,11 +168,21 @@ void GaussSeidelRelaxation::followTouched(const ContactProblem& problem, const s
 
 void GaussSeidelRelaxation::beginDeflation(const ContactProblem& problem, ContactSolution& solution) {
   solution.slow_changes.resize(bodies_.size());
+  forEachAwake(problem, [&](std::size_t k) { bodies_[k].beginDeflation(solution.slow_changes[k], excluded_); });
+}
+
+void GaussSeidelRelaxation::beginRigidMotions(const ContactProblem& problem) {
+  forEachAwake(problem, [&](std::size_t k) { bodies_[k].beginRigidMotions(excluded_); });
+}
+
+/// @param begin called with each body that is awake; excluded_ has its nodes that contacts may move.
+template <class Begin>
+void GaussSeidelRelaxation::forEachAwake(const ContactProblem& problem, const Begin& begin) {
   auto at = touched_.begin();
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     excluded_.clear();
     for (; at != touched_.end() && at->body == static_cast<int>(k); ++at) excluded_.push_back(at->node);
-    if (!problem.bodies[k].asleep) bodies_[k].beginDeflation(solution.slow_changes[k], excluded_);
+    if (!problem.bodies[k].asleep) begin(k);
   }
 }
 
@@ -220,6 +233,7 @@ MomentumDefect GaussSeidelRelaxation::relax(const ContactProblem& problem, int i
   if (iteration == kPlainIterations) beginMixing(problem, solution.v);
   if (forward && iteration > kPlainIterations) mix(solution.v);
   if (iteration == 1) beginDeflation(problem, solution);
+  if (iteration == kPlainIterations + 1) beginRigidMotions(problem);
   if (!forward) {
     followTouched(problem, solution.v);
     deflate(problem, solution.v);

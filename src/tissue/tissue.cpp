@@ -7,6 +7,7 @@
 #include "tissue/attached_elasticity.h"
 #include "tissue/membrane.h"
 #include "tissue/placed_mesh.h"
+#include "tissue/stiff_parts.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/mesh/tet_mesh.h"
@@ -263,6 +264,7 @@ void Tissue::changeMaterials(const TissueDescription& description) {
   const bool is_uniform = parts_->springs.empty() || materials.dampingOf(0) == description.damping.stiffness_s;
   damping_ = {description.damping.mass_per_s, is_uniform ? takeUniformDamping(elements, materials) : 0.0};
   masses_ = lumpedMasses(*this, materials);
+  stiff_parts_ = findStiffParts(tetrahedra_, materials, rest_.cols());
   if (!tetrahedra_.empty()) {
     elasticity_ = makeVolumeElasticity(rest_, tetrahedra_, fixed_, materials, parts_->patch_of);
   } else {

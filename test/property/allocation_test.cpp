@@ -67,6 +67,10 @@ constexpr const char* kAttachedAndPressed =
     "    attachments: [{where: [{plane: {point_m: [0.03, 0, 0], normal: [-1, 0, 0]}}], stiffness_pa_per_m: 1e5}]\n"
     "    pressure_pa: 200\n";
 
+constexpr const char* kStiffNodule =
+    "    regions: [{name: nodule, where: [{sphere: {center_m: [0, 0, 0.01], radius_m: 0.01}}],\n"
+    "               material: {youngs_modulus_pa: 1e5}}]\n";
+
 void PrintTo(const Case& value, std::ostream* out) { *out << value.name; }
 
 /// Before a test: a sanitizer has a malloc of its own, so that nothing would be counted.
@@ -127,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"Linear", ", model: linear", ""},                                       //
                     Case{"MassSpring", ", model: mass_spring", ""},                              //
                     Case{"NeverAsleep", "", "advisor: {sleep: never}\n"},
-                    Case{"AttachedAndPressed", "", "", kAttachedAndPressed},
+                    Case{"AttachedAndPressed", "", "", kAttachedAndPressed}, Case{"StiffNodule", "", "", kStiffNodule},
                     Case{"Viscoelastic", ", prony_series: [{modulus_ratio: 1, time_s: 0.1}]", ""},
                     Case{"FrictionOverPressure", "", "", "", ", pressures_pa: [0, 5000], pressure_factors: [1, 0.8]"},
                     Case{"FrictionOverSpeed", "", "", "", ", speeds_m_per_s: [0, 0.05], speed_factors: [1, 0.8]"},

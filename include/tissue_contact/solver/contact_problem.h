@@ -25,10 +25,14 @@ struct BodySystem {
   /// All nodes rest in this step: b = 0, v = 0 is the answer, the rest of this may be old. For solvers that carry
   /// something from step to step; the others may go by `fixed` alone.
   bool asleep = false;
-  double stiffness_scale = 0.0;  ///< s^2
-  double damping_scale = 0.0;    ///< s: dt where there is a D
-  VectorX mass;                  ///< kg, per node
-  NodalVectors b;                ///< N s; finite, of fixed nodes too
+  /// Nodes of each part that is far stiffer than what is around it, ascending, none in two parts; null: there is none. For solvers that look
+  /// for the rigid motions of such parts; answers do not depend on it beyond their tolerance.
+  const std::vector<std::vector<int>>* stiff_parts = nullptr;
+  const NodalVectors* x = nullptr;  ///< where the nodes are, m; needed with stiff_parts alone
+  double stiffness_scale = 0.0;     ///< s^2
+  double damping_scale = 0.0;       ///< s: dt where there is a D
+  VectorX mass;                     ///< kg, per node
+  NodalVectors b;                   ///< N s; finite, of fixed nodes too
 };
 
 /// A node a contact acts on.

@@ -60,6 +60,8 @@ class Tissue {
   const std::vector<int>& surfaceRegions() const { return surface_regions_; }
   /// Likewise per element.
   const std::vector<int>& elementRegions() const { return element_regions_; }
+  /// Nodes of each connected part of a volume whose regions are far stiffer than the tissue's own material, ascending.
+  const std::vector<std::vector<int>>& stiffParts() const { return stiff_parts_; }
 
   /// Per surface triangle: the fibre direction at rest, projected into it, as coefficients over its edges (x1 - x0,
   /// x2 - x0); applied to the deformed edges they give the carried direction, of length 1 at rest. Zero where fibres
@@ -94,6 +96,7 @@ class Tissue {
   DampingDescription damping_;
   double thickness_ = 0.0;
   std::vector<int> surface_regions_, element_regions_;
+  std::vector<std::vector<int>> stiff_parts_;
   std::vector<Vector2> surface_fibres_;
   std::shared_ptr<const ElasticParts> parts_;  ///< what else elasticity_ is made from
   std::unique_ptr<const Elasticity> elasticity_;

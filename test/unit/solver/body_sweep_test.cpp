@@ -339,6 +339,112 @@ TEST(BodySweep, DeflationLeavesWhatHasNextToNoEnergy) {
   }
 }
 
+/// Two parts that move as one, with nodes 0, 7, 11 and 12 of the body fixed; contacts may move nodes 3 and 20, and move 3.
+class StiffParts : public ::testing::TestWithParam<bool> {
+ protected:
+  StiffParts() : body_(30, 0.2, {0, 7}, {11, 12}, GetParam()), x_(0.01 * randomVectors(body_)) {
+    body_.system.stiff_parts = &parts_;
+    body_.system.x = &x_;
+  }
+
+  /// A sweep forth, and what contacts move then. @return how the parts, and v along u, move the nodes.
+  NodalVectors moved(const NodalVectors& u, BodySweep& sweeps, NodalVectors& v) {
+    sweeps.prepare(body_.system);
+    sweeps.sweep(true, {}, v, kHoldsNothing);
+    sweeps.beginDeflation(u, {3, 20});
+    sweeps.beginRigidMotions({3, 20});
+    const Vector3 by(0.01, -0.02, 0.03);
+    v.col(3) += by;
+    sweeps.follow(3, by);
+    const NodalVectors before = v;
+    sweeps.deflate(v);
+    return v - before;
+  }
+
+  /// A shift or a turn of what is free of a part, 3 x nodes.
+  NodalVectors motion(const std::vector<int>& part, int k) const {
+    NodalVectors way = NodalVectors::Zero(3, 30);
+    for (const int node : part) {
+      if (node == 3 || node == 12) continue;
+      way.col(node) = k < 3 ? Vector3(Vector3::Unit(k)) : Vector3(Vector3::Unit(k - 3).cross(x_.col(node)));
+    }
+    return way;
+  }
+
+  std::vector<std::vector<int>> parts_ = {{3, 4, 9, 15, 16, 22}, {1, 2, 12, 21, 25, 26, 27}};
+  std::vector<std::vector<int>> only_;
+  RandomBody body_;
+  NodalVectors x_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Damped, StiffParts, ::testing::Bool());
+
+TEST_P(StiffParts, MoveToWhereTheEnergyIsLeast) {
+  for (const std::size_t alone : {0, 1}) {
+    const std::vector<int> part = parts_[alone];
+    body_.system.stiff_parts = &only_;
+    only_ = {part};
+    BodySweep sweeps;
+    NodalVectors v = NodalVectors::Zero(3, 30);
+    const NodalVectors way = moved(NodalVectors(3, 0), sweeps, v);
+    ASSERT_GT(way.norm(), 1e-3 * v.norm());
+    for (int i = 0; i < 30; ++i) {
+      const bool is_of_it = std::count(part.begin(), part.end(), i) > 0 && i != 3 && i != 12;
+      EXPECT_EQ(!way.col(i).isZero(0.0), is_of_it) << i;
+    }
+    for (int k = 0; k < 6; ++k) {
+      const NodalVectors along = motion(part, k);
+      // Round-off of sums of some hundred terms.
+      EXPECT_LE(std::abs(workLeft(body_.system, along, v)), 1e-13 * along.norm() * body_.system.b.norm()) << k;
+    }
+  }
+}
+
+/// Of two parts that blocks join, and v along u, the later ones know where the earlier have gone; so does the sweep back.
+TEST_P(StiffParts, KnowOfEachOtherAndAreKnownOf) {
+  BodySweep sweeps;
+  NodalVectors v = NodalVectors::Zero(3, 30);
+  moved(NodalVectors(3, 0), sweeps, v);
+  for (int k = 0; k < 6; ++k) {
+    const NodalVectors along = motion(parts_[1], k);
+    EXPECT_LE(std::abs(workLeft(body_.system, along, v)), 1e-13 * along.norm() * body_.system.b.norm()) << k;
+  }
+  NodalVectors u = randomVectors(body_);
+  v.setZero();
+  moved(u, sweeps, v);
+  for (const int node : {0, 3, 7, 11, 12, 20}) u.col(node).setZero();
+  EXPECT_LE(std::abs(workLeft(body_.system, u, v)), 1e-13 * u.norm() * body_.system.b.norm());
+  NodalVectors expected = v;
+  plainSweep(body_.system, NodalVectors::Zero(3, 30), false, std::vector<bool>(30, false), {}, expected);
+  sweeps.sweep(false, {}, v, kHoldsNothing);
+  EXPECT_LE((v - expected).norm(), 1e-14 * expected.norm());
+  // And in the next pair of sweeps, from where that one has led.
+  sweeps.sweep(true, {}, v, kHoldsNothing);
+  sweeps.deflate(v);
+  EXPECT_LE(std::abs(workLeft(body_.system, u, v)), 1e-13 * u.norm() * body_.system.b.norm());
+}
+
+/// All fixed, in a line, all in one place, or none of them free of contacts: such parts have no motions.
+TEST_P(StiffParts, WithoutMotionsOfTheirOwnStay) {
+  body_.system.stiff_parts = &only_;
+  const auto moves = [&](const std::vector<int>& part) {
+    only_ = {part};
+    BodySweep sweeps;
+    NodalVectors v = NodalVectors::Zero(3, 30);
+    return !moved(NodalVectors(3, 0), sweeps, v).isZero(0.0);
+  };
+  EXPECT_TRUE(moves({1, 2, 4, 5}));
+  EXPECT_FALSE(moves({0, 7, 11, 12}));
+  EXPECT_FALSE(moves({3, 20}));
+  EXPECT_FALSE(moves({}));
+  EXPECT_FALSE(moves({5}));
+  const Vector3 from(0.1, 0.2, 0.3);
+  for (const int node : {1, 2, 4, 5}) x_.col(node) = from + node * Vector3(1e-3, 2e-3, -1e-3);
+  EXPECT_FALSE(moves({1, 2, 4, 5}));
+  for (const int node : {1, 2, 4, 5}) x_.col(node) = from;
+  EXPECT_FALSE(moves({1, 2, 4, 5}));
+}
+
 /// What sweeps found after the first one forth, with what moved between; where that is all, what was known stays.
 TEST(BodySweep, WhatIsKeptIsWhatTheFirstSweepForthDidNotFind) {
   RandomBody body(30, 0.2, {0, 7}, {}, false);
