@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Makes a scene of an organ from its surface: a probe presses the highest point and drags over it.
+"""Makes a scene of an organ from its surface or its tetrahedra: a probe presses the highest point and drags over it.
 
 Writes a folder with
-  scene.yaml  the organ, filled with tetrahedra when the scene is first run, held at its lowest part; every choice explained
+  scene.yaml  the organ, a surface filled with tetrahedra when the scene is first run, held at its lowest part; every choice explained
   probe.bag   joint states of urdf/probe.urdf: press, drag, lift
 and prints the command that turns both into forces. Edit the scene, or record your own robot over it.
 """
@@ -27,6 +27,7 @@ CLEARANCE_M = 0.005
 SPEED_M_PER_S = 0.02
 HOLD_S = 0.2
 HELD = 0.15  # of the height
+SURFACES, TETRAHEDRA = (".stl", ".obj", ".ply"), (".msh", ".vtk")
 LONGEST_M, SHORTEST_M = 2.0, 0.002  # of an organ
 
 SCENE = """\
@@ -38,8 +39,7 @@ tissues:
     mesh:
       file: {quoted}
       scale_m_per_unit: {scale:g}  # it then is {size[0]:.3g} x {size[1]:.3g} x {size[2]:.3g} m
-      cell_size_m: {cell:.3g}  # edge of the tetrahedra: half of it has eight times as many
-    refinement: {{cell_m: {fine:.3g}}}  # and fine ones where the probe is, a third of its ball's radius at most
+{cells}
     material: {{preset: {material}, model: neo_hookean}}  # doc/organ.md; or youngs_modulus_pa, poissons_ratio, density_kg_per_m3
     fixed:
       - plane: {{point_m: [0, 0, {held:.4f}], normal: [0, 0, 1]}}  # the lowest {part:.0f} % of its height
@@ -63,6 +63,13 @@ step:
 publish:
   tf: true
 """
+
+
+SURFACE_CELLS = """\
+      cell_size_m: {cell:.3g}  # edge of the tetrahedra: half of it has eight times as many
+    refinement: {{cell_m: {fine:.3g}}}  # and fine ones where the probe is, a third of its ball's radius at most"""
+TETRAHEDRA_CELLS = "    refinement: auto  # cut finer where the probe is, and elsewhere where the file's are too coarse to bend"
+UNREFERENCED = "remove_unreferenced_nodes"  # a key of a mesh
 
 
 def fail(message):
@@ -116,6 +123,46 @@ def position_at(rows, time):
     return [float(numpy.interp(time, times, [row[1][axis] for row in rows])) for axis in range(3)]
 
 
+def read_tetrahedra(path, scale):
+    """Corners of the surface of a tetrahedral mesh, n x 3 x 3, m, and more lines for the mesh; by the simulator, for all that it checks."""
+    if not os.path.isfile(path):
+        fail("%s is no file" % path)
+    import tissue_contact  # needed for these files alone, and built where pybind11 is installed
+
+    for key in ("", "%s: true" % UNREFERENCED):
+        mesh = "{file: %s, scale_m_per_unit: %r%s}" % (json.dumps(path), scale, key and ", " + key)
+        try:
+            scene = tissue_contact.parse_scene("tissues: [{name: organ, mesh: %s, material: liver}]" % mesh)
+            topology = tissue_contact.Simulator(scene).topology("organ")
+        except ImportError as error:
+            fail("reading tetrahedra takes the package's Python module: %s" % error)
+        except ValueError as error:
+            if UNREFERENCED in str(error) and not key:
+                continue
+            fail(str(error).split("mesh.file: ", 1)[-1])
+        more = "      %s  # it has some\n" % key if key else ""
+        return topology.rest_positions[topology.triangles], more
+
+
+def read_organ(arguments):
+    """Corners of the surface, m, and how the scene says what cells the organ has."""
+    ending = os.path.splitext(arguments.organ)[1].lower()
+    if ending not in SURFACES + TETRAHEDRA:
+        fail("%s has none of the endings %s; to convert tetrahedra of other programs: meshio convert FILE organ.vtk" %
+             (arguments.organ, ", ".join(SURFACES + TETRAHEDRA)))
+    if ending in TETRAHEDRA:
+        if arguments.cell_size:
+            fail("--cell-size is for surfaces: the tetrahedra of %s are in the file" % arguments.organ)
+        corners, more = read_tetrahedra(os.path.abspath(arguments.organ), arguments.scale)
+        return corners, more + TETRAHEDRA_CELLS
+    try:
+        corners = read_surface(arguments.organ) * arguments.scale
+    except SurfaceError as error:
+        fail(str(error))
+    cell = arguments.cell_size or numpy.ptp(corners.reshape(-1, 3), axis=0).max() / 25.0
+    return corners, SURFACE_CELLS.format(cell=cell, fine=min(0.3 * BALL_M, 0.5 * cell))
+
+
 def require_organ_size(size, scale):
     advice = "give --scale, metres per unit of the file: 0.001 for millimetres, 1 for metres"
     if not size.max() <= LONGEST_M:
@@ -132,10 +179,10 @@ def parse_arguments():
         return value
 
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("surface", help="closed surface: .stl, .obj or .ply")
+    parser.add_argument("organ", help="closed surface: .stl, .obj or .ply; or tetrahedra: .msh (Gmsh) or .vtk (legacy)")
     parser.add_argument("--out", required=True, help="folder for the scene and the recording; made if it does not exist")
     parser.add_argument("--scale", type=positive, default=1.0, help="metres per unit of the file, default: %(default)s")
-    parser.add_argument("--cell-size", type=positive, help="edge of the tetrahedra, m; default: a 25th of the longest side")
+    parser.add_argument("--cell-size", type=positive, help="edge of the tetrahedra that fill a surface, m; default: a 25th of the longest side")
     parser.add_argument("--material", default="liver", help="a name of doc/organ.md, default: %(default)s")
     parser.add_argument("--depth", type=positive, help="how far the ball presses, m; default: 5 mm, a tenth of the height at most")
     return parser.parse_args()
@@ -145,34 +192,30 @@ def main():
     arguments = parse_arguments()
     if not re.fullmatch("[a-z][a-z0-9_]*", arguments.material):
         fail("--material %r is no name of a material; names: doc/organ.md" % arguments.material)
-    try:
-        corners = read_surface(arguments.surface) * arguments.scale
-    except SurfaceError as error:
-        fail(str(error))
+    corners, cells = read_organ(arguments)
     low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
     size = high - low
     require_organ_size(size, arguments.scale)
-    cell = arguments.cell_size or size.max() / 25.0
     depth = arguments.depth or min(0.005, 0.1 * size[2])
     path = drag_path(corners, depth, min(0.02, 0.2 * size[:2].max()))
     rows = timed(path)
 
-    name = re.sub("[^a-z0-9_]", "_", os.path.splitext(os.path.basename(arguments.surface))[0].lower())
+    name = re.sub("[^a-z0-9_]", "_", os.path.splitext(os.path.basename(arguments.organ))[0].lower())
     folder = os.path.abspath(arguments.out)
     scene, bag = os.path.join(folder, "scene.yaml"), os.path.join(folder, "probe.bag")
     text = SCENE.format(
-        name=name if name[0].isalpha() else "organ_" + name, file=json.dumps(os.path.basename(arguments.surface)),
-        quoted=json.dumps(os.path.abspath(arguments.surface)), scale=arguments.scale, size=size, cell=cell,
-        fine=min(0.3 * BALL_M, 0.5 * cell), material=arguments.material, held=low[2] + HELD * size[2], part=100 * HELD,
+        name=name if name[0].isalpha() else "organ_" + name, file=json.dumps(os.path.basename(arguments.organ)),
+        quoted=json.dumps(os.path.abspath(arguments.organ)), scale=arguments.scale, size=size, cells=cells,
+        material=arguments.material, held=low[2] + HELD * size[2], part=100 * HELD,
         start=path[0], clearance=1e3 * CLEARANCE_M, topic=TOPIC)
     try:
         os.makedirs(folder, exist_ok=True)
-        with whole_file(scene, [arguments.surface]) as part, open(part, "w", encoding="utf-8") as stream:
+        with whole_file(scene, [arguments.organ]) as part, open(part, "w", encoding="utf-8") as stream:
             stream.write(text)
     except OSError as error:
         fail("cannot write %s: %s" % (scene, error.strerror))
     print("%s: the %s, pressed %.1f mm" % (scene, name, 1e3 * depth))
-    write(bag, {TOPIC: list(enumerate("xyz"))}, lambda time: position_at(rows, time), rows[-1][0], [arguments.surface])
+    write(bag, {TOPIC: list(enumerate("xyz"))}, lambda time: position_at(rows, time), rows[-1][0], [arguments.organ])
     print("forces, with plots:\n  rosrun tissue_contact run_launch.py scene.launch scene:=%s bag:=%s output:=%s rate:=0.25" %
           tuple(map(shlex.quote, (scene, bag, os.path.join(folder, "plots")))))
 

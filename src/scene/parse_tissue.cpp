@@ -71,7 +71,8 @@ void requireCells(const YamlMap& map, const std::string& file) {
 MeshDescription parseMesh(const YamlCursor& cursor, const PathContext& paths) {
   const YamlMap map = cursor.map();
   MeshDescription mesh;
-  mesh.file = parseFile(map.get("file"), paths, {".msh", ".vtk", ".stl", ".obj", ".ply"});
+  mesh.file = parseFile(map.get("file"), paths, {".msh", ".vtk", ".stl", ".obj", ".ply"},
+                        "; to convert tetrahedra of other programs: meshio convert FILE organ.vtk");
   requireCells(map, mesh.file);
   if (const YamlCursor* value = map.find("scale_m_per_unit")) mesh.scale_m_per_unit = value->number(kScaleRange);
   if (const YamlCursor* value = map.find("remove_unreferenced_nodes")) {

@@ -87,7 +87,8 @@ std::string parseFrame(const YamlCursor& cursor) {
   return frame;
 }
 
-std::string parseFile(const YamlCursor& cursor, const PathContext& paths, const std::vector<std::string>& extensions) {
+std::string parseFile(const YamlCursor& cursor, const PathContext& paths, const std::vector<std::string>& extensions,
+                      const std::string& advice) {
   const std::string uri = cursor.text();
   std::string file;
   try {
@@ -102,7 +103,7 @@ std::string parseFile(const YamlCursor& cursor, const PathContext& paths, const 
                   (lowerExtension(urdf) == ".urdf" ? "" : ".urdf") +
                   ", or name none and load its output into the parameter robot_description");
     }
-    cursor.fail("file " + inQuotes(uri) + " has none of the allowed endings: " + joined(extensions));
+    cursor.fail("file " + inQuotes(uri) + " has none of the allowed endings: " + joined(extensions) + advice);
   }
   try {
     requireRegularFile(file, "file");

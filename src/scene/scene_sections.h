@@ -45,7 +45,9 @@ std::string parseRosName(const YamlCursor& cursor);
 /// A tf frame: not beginning with '/' (tf2 refuses that), without spaces.
 std::string parseFrame(const YamlCursor& cursor);
 /// Absolute path of a regular file that exists and whose name ends in one of `extensions` (lower case, with the dot).
-std::string parseFile(const YamlCursor& cursor, const PathContext& paths, const std::vector<std::string>& extensions);
+/// @param advice what to tell who names a file with another one.
+std::string parseFile(const YamlCursor& cursor, const PathContext& paths, const std::vector<std::string>& extensions,
+                      const std::string& advice = "");
 /// Ending of a file name, with the dot.
 std::string lowerExtension(const std::string& file);
 PoseDescription parsePose(const YamlCursor& cursor);

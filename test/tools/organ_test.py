@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""From a surface to forces: make_scene.py and a replay of what it writes; surfaces it refuses.
+"""From a surface, or tetrahedra, to forces: make_scene.py and a replay of what it writes; what it refuses.
 
 usage: organ_test.py SOURCE_DIRECTORY PROGRAM_DIRECTORY      (in the environment of the package: PROGRAM_DIRECTORY/../../env.sh)
 """
 import csv
+import itertools
 import math
 import os
 import re
@@ -61,6 +62,37 @@ def ply(vertices, triangles):
               "element face %d\nproperty list uchar int vertex_indices\nend_header\n" % (len(vertices), len(triangles)))
     return (header.encode() + b"".join(struct.pack("<3f", *v) for v in vertices) +
             b"".join(struct.pack("<B3i", 3, *t) for t in triangles))
+
+
+def tetrahedra(extra_nodes=()):
+    """A legacy VTK file, mm: a block of 80 x 80 x 40 mm in cells of 20 mm, six tetrahedra each."""
+    cells = (4, 4, 2)
+    nodes = [(20.0 * i, 20.0 * j, 20.0 * k) for k in range(cells[2] + 1) for j in range(cells[1] + 1) for i in range(cells[0] + 1)]
+    nodes += extra_nodes
+
+    def at(corner):
+        return corner[0] + (cells[0] + 1) * (corner[1] + (cells[1] + 1) * corner[2])
+
+    found = []
+    for cell in itertools.product(*map(range, cells)):
+        for axes in itertools.permutations(range(3)):  # from a corner to the one opposite, along an axis after the other
+            way = [list(cell)]
+            for axis in axes:
+                way.append([c + (k == axis) for k, c in enumerate(way[-1])])
+            a, b, c, d = map(at, way)
+            found.append((a, b, c, d) if axes in ((0, 1, 2), (1, 2, 0), (2, 0, 1)) else (a, c, b, d))
+    lines = ["# vtk DataFile Version 3.0", "block", "ASCII", "DATASET UNSTRUCTURED_GRID", "POINTS %d double" % len(nodes)]
+    lines += ["%g %g %g" % node for node in nodes] + ["CELLS %d %d" % (len(found), 5 * len(found))]
+    lines += ["4 %d %d %d %d" % tet for tet in found] + ["CELL_TYPES %d" % len(found)] + ["10"] * len(found)
+    return "\n".join(lines + [""]).encode()
+
+
+def has_simulator():
+    try:
+        import tissue_contact
+        return bool(tissue_contact.Simulator)
+    except ImportError:
+        return False
 
 
 class OrganTest(unittest.TestCase):
@@ -139,6 +171,63 @@ class OrganTest(unittest.TestCase):
         for name in ("a.stl", "tool.stl"):
             self.write(name, obj(*ball()))
         self.assertEqual(run(*check).stdout.count(".stl: has another content"), 2)
+
+    @unittest.skipUnless(has_simulator(), "the package's Python module is not built")
+    def test_tetrahedra_are_taken_as_they_are(self):
+        hertz = 4.0 / 3.0 * 5400.0 / (1.0 - 0.45 ** 2) * math.sqrt(0.005) * 0.003 ** 1.5
+        made = self.make(self.write("block.vtk", tetrahedra()), "--scale", 0.001, "--depth", 0.003)
+        self.assertEqual(made.returncode, 0, made.stdout)
+        with open(self.path("made/scene.yaml"), encoding="utf-8") as stream:
+            tissue, = yaml.safe_load(stream)["tissues"]
+        self.assertEqual(tissue["mesh"], {"file": self.path("block.vtk"), "scale_m_per_unit": 0.001})
+        self.assertEqual(tissue["refinement"], "auto")
+        self.assertEqual(tissue["fixed"], [{"plane": {"point_m": [0, 0, 0.006], "normal": [0, 0, 1]}}])
+        forces, _ = self.replay()
+        self.assertGreater(max(forces), 0.7 * hertz)  # at its rim half of the block is missing
+        self.assertLess(max(forces), 1.3 * hertz)
+        self.assertEqual(forces[-1], 0.0, "lifted")
+
+    @unittest.skipUnless(has_simulator(), "the package's Python module is not built")
+    def test_nodes_without_tetrahedra_are_left_out_and_said(self):
+        made = self.make(self.write("block.vtk", tetrahedra([(0.0, 0.0, 500.0)])), "--scale", 0.001)
+        self.assertEqual(made.returncode, 0, made.stdout)
+        with open(self.path("made/scene.yaml"), encoding="utf-8") as stream:
+            text = stream.read()
+        self.assertIs(yaml.safe_load(text)["tissues"][0]["mesh"]["remove_unreferenced_nodes"], True)
+        self.assertIn("it then is 0.08 x 0.08 x 0.04 m", text)
+
+    @unittest.skipUnless(has_simulator(), "the package's Python module is not built")
+    def test_what_holds_no_tetrahedra_is_refused_in_a_line(self):
+        good = tetrahedra().decode()
+        cases = {"cut.vtk": (good[:len(good) // 2], "cut.vtk"), "none.msh": ("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n", "none.msh"),
+                 "other.msh": ("(1 \"of another program\")\n", "meshio convert FILE organ.vtk"),
+                 "other.vtu": ("<VTKFile/>", "meshio convert FILE organ.vtk")}
+        for name, (content, words) in cases.items():
+            with self.subTest(name):
+                made = self.make(self.write(name, content.encode()), "--scale", 0.001)
+                self.assertEqual(made.returncode, 1, made.stdout)
+                self.assertIn(name, made.stdout)
+                self.assertIn(words, made.stdout)
+                self.assertEqual(made.stdout.count("\n"), 1, made.stdout)
+        made = self.make(self.write("block.vtk", tetrahedra()), "--scale", 0.001, "--cell-size", 0.01)
+        self.assertIn("--cell-size is for surfaces", made.stdout)
+        self.assertIn("is no file", self.make(self.path("nowhere.vtk")).stdout)
+
+    @unittest.skipUnless(shutil.which("meshio") and has_simulator(), "meshio, or the package's Python module, is not installed")
+    def test_tetrahedra_of_other_programs_are_converted_by_what_is_advised(self):
+        self.write("block.vtk", tetrahedra())
+        forces = {}
+        for ending in ("vtu", "inp", "vtk"):
+            if ending != "vtk":
+                for command in ("block.vtk other." + ending, "other.%s organ.vtk" % ending):
+                    done = run("/bin/sh", "-c", "meshio convert " + command, cwd=self.folder)
+                    self.assertEqual(done.returncode, 0, done.stdout)
+            made = self.make(self.path("block.vtk" if ending == "vtk" else "organ.vtk"), "--scale", 0.001)
+            self.assertEqual(made.returncode, 0, made.stdout)
+            forces[ending], _ = self.replay("--set", "tissues.0.refinement=never")
+        self.assertGreater(max(forces["vtk"]), 0.0)
+        self.assertEqual(forces["vtu"], forces["vtk"])
+        self.assertEqual(forces["inp"], forces["vtk"])
 
     def test_units_are_asked_for(self):
         surface = self.write("a.stl", stl(*ball()))

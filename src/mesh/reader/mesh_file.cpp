@@ -38,7 +38,7 @@ MeshFileContents readContents(const std::string& file, bool with_labels) {
   if (in.atEnd()) in.fail("the file is empty; it must hold a Gmsh .msh or a legacy VTK mesh");
   in.fail("the file starts with " + start +
           ", which is neither Gmsh .msh ('$MeshFormat' or '$NOD') nor legacy VTK ('# vtk DataFile Version')" +
-          (xml ? "; XML (.vtu) is not read: save it as legacy VTK" : "; convert it to one of these"));
+          (xml ? "; XML is not read" : "") + "; convert it, for instance: meshio convert FILE organ.vtk");
 }
 
 /// In metres, from the file's unit.

@@ -159,6 +159,7 @@ INSTANTIATE_TEST_SUITE_P(Names, BadSceneTest, testing::ValuesIn(kNames));
 const BadScene kFiles[] = {
     {"file: organ.vtk", "file: other.vtk", "29: tissues[1].mesh.file", "other.vtk' does not exist"},
     {"file: organ.vtk", "file: organ.step", "29: tissues[1].mesh.file", "allowed endings: .msh, .vtk"},
+    {"file: organ.vtk", "file: organ.vtu", "29: tissues[1].mesh.file", "meshio convert FILE organ.vtk"},
     {"urdf: package://tissue_contact/arm.urdf", "urdf: package://tissue_contact/leg.urdf", "36: instruments[0].urdf",
      "leg.urdf' does not exist"},
     {"urdf: package://tissue_contact/arm.urdf", "urdf: arm.urdf.xacro", "36: instruments[0].urdf",
