@@ -52,7 +52,8 @@ TEST(MeshFile, RefusesWhatIsNoMesh) {
   expectRefused("", {"empty"});
   expectRefused(" \n\n", {"empty"});
   expectRefused("solid liver\nfacet normal\n", {":1: ", "'solid liver'", "neither Gmsh", "legacy VTK"});
-  expectRefused("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\">", {"XML is not read", "meshio convert FILE organ.vtk"});
+  expectRefused("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\">",
+                {"XML is not read", "meshio convert FILE organ.vtk"});
   expectRefused(std::string("\0\xff\x7f garbage", 11), {"'???"});
   expectRefused("$", {"expected $MeshFormat"});
 }
