@@ -25,10 +25,14 @@ inline TriangleMesh separateTriangles(const std::vector<Vector3>& points) {
   return mesh;
 }
 
-/// Drops nodes that no element uses and renumbers the elements.
+/// Drops nodes that no element uses and renumbers the elements. @param among not null: of these nodes alone.
 template <std::size_t N>
-void dropUnusedNodes(NodalVectors& nodes, std::vector<std::array<int, N>>& elements) {
-  std::vector<int> new_index(static_cast<std::size_t>(nodes.cols()), -1);
+void dropUnusedNodes(NodalVectors& nodes, std::vector<std::array<int, N>>& elements,
+                     const std::vector<int>* among = nullptr) {
+  std::vector<int> new_index(static_cast<std::size_t>(nodes.cols()), among == nullptr ? -1 : 0);
+  if (among != nullptr) {
+    for (const int node : *among) new_index[static_cast<std::size_t>(node)] = -1;
+  }
   for (const auto& element : elements) {
     for (const int node : element) new_index[static_cast<std::size_t>(node)] = 0;
   }

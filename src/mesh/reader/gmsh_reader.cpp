@@ -21,10 +21,6 @@ namespace {
 constexpr int kDouble = 8;        // bytes
 constexpr int kGmshIntBytes = 4;  // bytes
 constexpr int kCount = 8;         // bytes of `unsigned long` (4.0) and `size_t` (4.1)
-constexpr int kTetrahedron = 4;   // element types
-constexpr int kLine = 1;
-constexpr int kTriangle = 2;
-constexpr int kPoint = 15;
 constexpr std::size_t kMostGroups = 16;
 constexpr std::size_t kLongestName =
     64;  // of a section: its end is searched for, at the cost of the name's length times the file's
@@ -49,6 +45,7 @@ class GmshReader {
   void readBinaryElements2(std::size_t count);
   void readElements4();
   void readElement(std::int64_t tag, std::int64_t type, int tag_bytes);
+  void readTetrahedron(std::int64_t tag, int count, int tag_bytes);
   void readTags2(std::size_t count);
   void readPhysicalNames();
   void readEntities();
@@ -324,41 +321,72 @@ int GmshReader::nodeCount(std::int64_t type, std::int64_t tag) const {
   // By element type: nodes of lines, triangles, quadrangles, hexahedra, prisms, pyramids and points, up to fifth order.
   static constexpr std::array<int, 32> kNodes = {0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
                                                  8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
-  const bool high_order_tetrahedron = type == 11 || (type >= 29 && type <= 33) || (type >= 71 && type <= 75) ||
-                                      (type >= 79 && type <= 83) || type == 137;
-  if (high_order_tetrahedron) {
-    in_.fail("element " + std::to_string(tag) + " is a tetrahedron of higher order (type " + std::to_string(type) +
-             "); only those with 4 nodes (type 4) are read: save the mesh with gmsh -order 1");
-  }
   if (type < 1 || type >= static_cast<std::int64_t>(kNodes.size())) {
     in_.fail("element " + std::to_string(tag) + " has the type " + std::to_string(type) +
-             ", whose number of nodes is not known here (1 to 31 are): save the mesh with gmsh -order 1");
+             ", whose number of nodes is not known here (1 to 31 are): export the mesh with linear elements");
   }
   return kNodes[static_cast<std::size_t>(type)];
 }
 
+/// Dimension of points, lines, triangles and tetrahedra up to fifth order, whose corners are their first nodes; -1: something else.
+int simplexDimension(std::int64_t type) {
+  switch (type) {
+    case 15:
+      return 0;
+    case 1:
+    case 8:
+    case 26:
+    case 27:
+    case 28:
+      return 1;
+    case 2:
+    case 9:
+    case 20:
+    case 21:
+    case 22:
+    case 23:
+    case 24:
+    case 25:
+      return 2;
+    case 4:
+    case 11:
+    case 29:
+    case 30:
+    case 31:
+      return 3;
+    default:
+      return -1;
+  }
+}
+
 void GmshReader::readElement(std::int64_t tag, std::int64_t type, int tag_bytes) {
   const int count = nodeCount(type, tag);
-  if (type != kTetrahedron) {
-    const bool is_kept = with_labels_ && (type == kPoint || type == kLine || type == kTriangle);
-    std::array<int, 4> nodes = {-1, -1, -1, -1};
-    for (int i = 0; i < count; ++i) {
-      const std::int64_t node_tag = in_.integer(tag_bytes, "a node tag of an element");
-      if (is_kept) nodes[static_cast<std::size_t>(i)] = tags_.find(node_tag);
-    }
-    if (is_kept) addToGroups(nodes, count - 1);
-    ++contents_.other_elements;
-    return;
-  }
-  Tetrahedron tet;
-  for (int& node : tet) {
+  const int dimension = simplexDimension(type);
+  if (dimension == 3) return readTetrahedron(tag, count, tag_bytes);
+  const bool is_kept = with_labels_ && dimension >= 0;
+  std::array<int, 4> nodes = {-1, -1, -1, -1};
+  for (int i = 0; i < count; ++i) {
     const std::int64_t node_tag = in_.integer(tag_bytes, "a node tag of an element");
-    node = tags_.find(node_tag);
+    if (is_kept && i <= dimension) nodes[static_cast<std::size_t>(i)] = tags_.find(node_tag);
+  }
+  if (is_kept) addToGroups(nodes, dimension);
+  ++contents_.other_elements;
+}
+
+void GmshReader::readTetrahedron(std::int64_t tag, int count, int tag_bytes) {
+  const auto readNodeIndex = [&] {
+    const std::int64_t node_tag = in_.integer(tag_bytes, "a node tag of an element");
+    const int node = tags_.find(node_tag);
     if (node < 0) {
       in_.fail("element " + std::to_string(tag) + " refers to node tag " + std::to_string(node_tag) + ", which " +
                nodesSection() + " does not define; export the mesh again with all its nodes");
     }
-  }
+    return node;
+  };
+  Tetrahedron tet;
+  for (int& node : tet) node = readNodeIndex();
+  for (int i = 4; i < count; ++i) contents_.between_corners.push_back(readNodeIndex());
+  if (count > 4) ++contents_.higher_order;
   contents_.tetrahedra.push_back(tet);
   if (with_labels_) addToGroups(tet, 3);
 }

@@ -81,7 +81,15 @@ TetMesh loadTetMesh(const MeshDescription& description, const MeshPreparation& p
     *labels = {mesh.positions * description.scale_m_per_unit, std::move(contents.groups),
                std::move(contents.cell_data)};
   }
-  if (description.remove_unreferenced_nodes) dropUnusedNodes(mesh.positions, mesh.tetrahedra);
+  if (description.remove_unreferenced_nodes) {
+    dropUnusedNodes(mesh.positions, mesh.tetrahedra);
+  } else if (!contents.between_corners.empty()) {
+    dropUnusedNodes(mesh.positions, mesh.tetrahedra, &contents.between_corners);
+  }
+  if (contents.higher_order > 0 && preparation.say) {
+    preparation.say("mesh file '" + description.file + "': " + std::to_string(contents.higher_order) +
+                    " tetrahedra of higher order are taken by their corners, with straight edges");
+  }
   scale(description, mesh.positions);
   return mesh;
 }

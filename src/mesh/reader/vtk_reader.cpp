@@ -18,6 +18,9 @@ namespace {
 constexpr int kVtkIntBytes = 4;  // bytes of `int` and `vtkIdType` in a binary file
 constexpr std::int64_t kTetra = 10;
 
+/// Quadratic, Lagrange and Bezier: their corners are their first points.
+bool isHighOrderTetrahedron(std::int64_t type) { return type == 24 || type == 71 || type == 78; }
+
 std::string upperCase(std::string_view text) {
   std::string out(text);
   for (char& c : out) c = (c >= 'a' && c <= 'z') ? static_cast<char>(c - 'a' + 'A') : c;
@@ -88,6 +91,7 @@ class VtkReader {
   IntegerArray readNamedIntegers(const char* name, std::size_t count);
   std::int64_t readTotal(const char* what, ItemSize item);
   Tetrahedron tetrahedron(std::size_t cell);
+  int point(std::size_t cell, std::size_t k);
   [[noreturn]] void failAt(const IntegerArray& array, std::size_t index, const std::string& message);
 
   MeshFileCursor& in_;
@@ -272,19 +276,19 @@ void VtkReader::readCellTypes() {
   const IntegerArray types = readIntegers(count, kVtkIntBytes, "cell types");
   for (std::size_t i = 0; i < count; ++i) {
     const std::int64_t type = types.values[i];
-    const bool high_order =
-        type == 24 || type == 64 || type == 71 || type == 78;  // quadratic, parametric, Lagrange, Bezier
+    const bool high_order = isHighOrderTetrahedron(type);
+    const std::size_t size = cells_[i].size;
+    if ((type == kTetra && size != 4) || (high_order && size < 10)) {
+      failAt(types, i,
+             "cell " + std::to_string(i) + " is a tetrahedron (type " + std::to_string(type) + ") with " +
+                 std::to_string(size) + " points; it must have " + (high_order ? "10 or more" : "4") +
+                 ": export the file again");
+    }
     if (high_order) {
-      failAt(types, i,
-             "cell " + std::to_string(i) + " is a tetrahedron of higher order (type " + std::to_string(type) +
-                 "); only those with 4 points (type 10) are read: export the mesh with linear elements");
+      ++contents_.higher_order;
+      for (std::size_t k = 4; k < size; ++k) contents_.between_corners.push_back(point(i, k));
     }
-    if (type == kTetra && cells_[i].size != 4) {
-      failAt(types, i,
-             "cell " + std::to_string(i) + " is a tetrahedron (type 10) with " + std::to_string(cells_[i].size) +
-                 " points; it must have 4: export the file again");
-    }
-    if (type == kTetra) {
+    if (type == kTetra || high_order) {
       contents_.tetrahedra.push_back(tetrahedron(i));
       tetrahedra_.push_back(i);
     } else {
@@ -295,18 +299,21 @@ void VtkReader::readCellTypes() {
 }
 
 Tetrahedron VtkReader::tetrahedron(std::size_t cell) {
-  const std::size_t first = cells_[cell].first;
   Tetrahedron tet{};
-  for (std::size_t i = 0; i < tet.size(); ++i) {
-    const std::int64_t point = connectivity_.values[first + i];
-    if (point < 0 || static_cast<std::uint64_t>(point) >= contents_.nodes.size()) {
-      failAt(connectivity_, first + i,
-             "cell " + std::to_string(cell) + " refers to point " + std::to_string(point) + ", but there are " +
-                 std::to_string(contents_.nodes.size()) + " points (numbered from 0): export the file again");
-    }
-    tet[i] = static_cast<int>(point);
-  }
+  for (std::size_t k = 0; k < tet.size(); ++k) tet[k] = point(cell, k);
   return tet;
+}
+
+/// Index of the k-th point of a cell.
+int VtkReader::point(std::size_t cell, std::size_t k) {
+  const std::size_t at = cells_[cell].first + k;
+  const std::int64_t point = connectivity_.values[at];
+  if (point < 0 || static_cast<std::uint64_t>(point) >= contents_.nodes.size()) {
+    failAt(connectivity_, at,
+           "cell " + std::to_string(cell) + " refers to point " + std::to_string(point) + ", but there are " +
+               std::to_string(contents_.nodes.size()) + " points (numbered from 0): export the file again");
+  }
+  return static_cast<int>(point);
 }
 
 void VtkReader::skipMetadata() {

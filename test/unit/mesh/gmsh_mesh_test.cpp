@@ -73,10 +73,35 @@ TEST(GmshMesh, BinaryOfEveryVersionInBothByteOrders) {
   }
 }
 
-TEST(GmshMesh, HigherOrderIsRefusedInWords) {
-  expectRefused(readBytes(fixturePath("box_v41_binary_order2.msh")),
-                {"byte ", "tetrahedron of higher order (type 11)", "-order 1"});
-  expectRefused(replaced(kText22, "8 4 4", "8 11 4"), {":20: element 8 is a tetrahedron of higher order"});
+/// As Gmsh writes them; the nodes between corners are gone, those that nothing refers to stay an error.
+TEST(GmshMesh, TetrahedraOfHigherOrderAreTakenByTheirCorners) {
+  MeshPreparation preparation;
+  std::string said;
+  preparation.say = [&](const std::string& line) { said += line; };
+  const TetMesh mesh = loadTetMesh(meshFile(fixturePath("box_v41_binary_order2.msh")), preparation);
+  checkTetMesh(mesh, "box");
+  const TetMesh linear = loadTetMesh(meshFile(fixturePath("box_v41.msh")));
+  EXPECT_EQ(mesh.positions.cols(), 14);
+  double volume = 0.0;
+  for (const Tetrahedron& tet : mesh.tetrahedra) volume += signedVolume(mesh.positions, tet);
+  double expected = 0.0;
+  for (const Tetrahedron& tet : linear.tetrahedra) expected += signedVolume(linear.positions, tet);
+  EXPECT_NEAR(volume, expected, 1e-14);  // of the same box
+  EXPECT_NE(said.find(std::to_string(mesh.tetrahedra.size()) + " tetrahedra of higher order"), std::string::npos);
+
+  // One quadratic tetrahedron, a second that is linear and shares one of its middle nodes as a corner, and a node of nothing.
+  const std::string text =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n12\n1 0 0 0\n2 2 0 0\n3 0 2 0\n4 0 0 2\n5 1 0 0\n6 1 1 0\n7 0 1 "
+      "0\n"
+      "8 0 0 1\n9 0 1 1\n10 1 0 1\n11 3 3 3\n12 9 9 9\n$EndNodes\n$Elements\n2\n1 11 2 0 1 1 2 3 4 5 6 7 8 9 10\n"
+      "2 4 2 0 1 2 3 6 11\n$EndElements\n";
+  const TetMesh mixed = loadBytes(text);
+  EXPECT_EQ(mixed.positions.cols(), 7);  // four corners, 6, 11 and 12
+  EXPECT_EQ(mixed.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {1, 2, 4, 5}}));
+  EXPECT_EQ(Vector3(mixed.positions.col(4)), Vector3(1.0, 1.0, 0.0));
+  expectRefused(replaced(text, "5 6 7 8 9 10", "5 6 7 8 9 13"),
+                {"element 1 refers to node tag 13, which $Nodes does not define"});
+  expectRefused(replaced(kText22, "8 4 4", "8 71 4"), {":20: element 8 has the type 71", "linear elements"});
 }
 
 TEST(GmshMesh, EveryPrefixOfAFileIsRefused) {
@@ -133,7 +158,7 @@ TEST(GmshMesh, NamesWhatIsWrongInTheFirstFormat) {
   expectRefused(replaced(text, "9 4 7 1 4", "9 4 7 1 3"),
                 {":13: element 9 has 3 nodes; its type 4 must have 4", "export the mesh again"});
   expectRefused(replaced(text, "9 4 7 1 4", "9 4 7 1 -4"), {":13: element 9 has -4 nodes"});
-  expectRefused(replaced(text, "9 4 7 1 4", "9 11 7 1 4"), {":13: element 9 is a tetrahedron of higher order"});
+  expectRefused(replaced(text, "9 4 7 1 4", "9 11 7 1 4"), {":13: element 9 has 4 nodes; its type 11 must have 10"});
   expectRefused(replaced(text, "3 41 5\n$ENDELM", "3 41 6\n$ENDELM"),
                 {":14: element 8 refers to node tag 6, which $NOD does not define"});
 }

@@ -92,6 +92,21 @@ TEST(MeshLabels, PhysicalGroupsOfEveryVersion) {
   }
 }
 
+/// Of quadratic elements the corners: nodes 6 to 14 are the middles of edges, the group's triangle has three of them.
+TEST(MeshLabels, PhysicalGroupsOfElementsOfHigherOrder) {
+  std::string text(kGroups22);
+  text = replaced(text, "$Nodes\n5\n",
+                  "$Nodes\n14\n6 .5 0 0\n7 0 .5 0\n8 0 0 .5\n9 .5 .5 0\n10 0 .5 .5\n11 .5 0 .5\n12 1 .5 .5\n13 .5 1 "
+                  ".5\n14 .5 .5 1\n");
+  text = replaced(text, "2 2 2 9 1 3 4 5", "2 9 2 9 1 3 4 5 10 14 13");
+  text = replaced(text, "3 4 2 6 1 1 2 3 4", "3 11 2 6 1 1 2 3 4 6 9 7 8 10 11");
+  text = replaced(text, "4 4 2 7 1 2 3 4 5", "4 11 2 7 1 2 3 4 5 9 10 11 12 14 13");
+  const Loaded loaded = load(text);
+  expectSameMesh(loaded.mesh, twoTetrahedra());
+  EXPECT_EQ(heldElements(loaded, GroupRegion{"tumour"}), (std::vector<bool>{false, true}));
+  EXPECT_EQ(heldNodes(loaded, GroupRegion{"free end"}), (std::vector<bool>{false, false, true, true, true}));
+}
+
 TEST(MeshLabels, UnknownGroupsAreToldWhatThereIs) {
   const Loaded loaded = load(kGroups22);
   expectRefusal([&] { heldNodes(loaded, GroupRegion{"tumor"}); },

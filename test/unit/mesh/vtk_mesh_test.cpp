@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/labels.h"
 #include "mesh_writers.h"
 
 namespace tissue_contact {
@@ -137,10 +138,30 @@ TEST(VtkMesh, NamesValuesThatAreWrong) {
   expectRefused(replaced(kText5, "1 2 3 4", "1 2 3 9223372036854775807"),
                 {":15: cell 2 refers to point 9223372036854775807"});
   expectRefused(replaced(kText3, "\n5\n10\n", "\n10\n10\n"), {":15: cell 0 is a tetrahedron (type 10) with 3 points"});
-  for (const char* type : {"24", "64", "71", "78"}) {
+  for (const char* type : {"24", "71", "78"}) {
     expectRefused(replaced(kText3, "\n5\n10\n10", "\n5\n10\n" + std::string(type)),
-                  {":17: cell 2 is a tetrahedron of higher order", type, "linear"});
+                  {":17: cell 2 is a tetrahedron", type, "with 4 points; it must have 10 or more"});
   }
+}
+
+/// Quadratic, Lagrange and Bezier ones; the nodes between corners are gone.
+TEST(VtkMesh, TetrahedraOfHigherOrderAreTakenByTheirCorners) {
+  const std::string text =
+      "# vtk DataFile Version 3.0\nof ten\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 11 float\n1 0 0 0 0 0 2 0 0 0 2 0 "
+      "0 0 2\n"
+      "1 1 0 0 1 0 0 0 1 0 1 1 1 0 1 3 3 3\nCELLS 2 16\n10 1 2 3 4 0 5 6 7 8 9\n4 2 3 5 10\nCELL_TYPES 2\nKIND\n10\n"
+      "CELL_DATA 2\nSCALARS part int\nLOOKUP_TABLE default\n7 8\n";
+  for (const char* type : {"24", "71", "78"}) {
+    const TetMesh mesh = loadBytes(replaced(text, "KIND", type));
+    EXPECT_EQ(mesh.positions.cols(), 6);
+    EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {1, 2, 4, 5}}));
+    EXPECT_EQ(Vector3(mesh.positions.col(4)), Vector3(1.0, 1.0, 0.0));
+    const FileOfBytes file(replaced(text, "KIND", type));
+    MeshLabels labels;
+    loadTetMesh(meshFile(file.path()), {}, &labels);
+    EXPECT_EQ(labels.cell_data.at(0).values, (std::vector<double>{7.0, 8.0}));
+  }
+  expectRefused(replaced(replaced(text, "KIND", "24"), "5 6 7 8 9\n", "5 6 7 8 11\n"), {"cell 0 refers to point 11"});
 }
 
 TEST(VtkMesh, BinaryPlacesAreBytes) {
