@@ -328,40 +328,14 @@ int GmshReader::nodeCount(std::int64_t type, std::int64_t tag) const {
   return kNodes[static_cast<std::size_t>(type)];
 }
 
-/// Dimension of points, lines, triangles and tetrahedra up to fifth order, whose corners are their first nodes; -1: something else.
-int simplexDimension(std::int64_t type) {
-  switch (type) {
-    case 15:
-      return 0;
-    case 1:
-    case 8:
-    case 26:
-    case 27:
-    case 28:
-      return 1;
-    case 2:
-    case 9:
-    case 20:
-    case 21:
-    case 22:
-    case 23:
-    case 24:
-    case 25:
-      return 2;
-    case 4:
-    case 11:
-    case 29:
-    case 30:
-    case 31:
-      return 3;
-    default:
-      return -1;
-  }
-}
+/// Of element types 0 to 31: the dimension of points, lines, triangles and tetrahedra, whose corners are their first nodes; else -1 for
+/// a surface, -3 for a volume.
+constexpr std::array<int, 32> kSimplexDimension = {-1, 1,  2,  -1, 3, -3, -3, -3, 1, 2, -1, 3, -3, -3, -3, 0,
+                                                   -1, -3, -3, -3, 2, 2,  2,  2,  2, 2, 1,  1, 1,  3,  3,  3};
 
 void GmshReader::readElement(std::int64_t tag, std::int64_t type, int tag_bytes) {
   const int count = nodeCount(type, tag);
-  const int dimension = simplexDimension(type);
+  const int dimension = kSimplexDimension[static_cast<std::size_t>(type)];
   if (dimension == 3) return readTetrahedron(tag, count, tag_bytes);
   const bool is_kept = with_labels_ && dimension >= 0;
   std::array<int, 4> nodes = {-1, -1, -1, -1};
@@ -371,6 +345,7 @@ void GmshReader::readElement(std::int64_t tag, std::int64_t type, int tag_bytes)
   }
   if (is_kept) addToGroups(nodes, dimension);
   ++contents_.other_elements;
+  if (dimension == -3) ++contents_.other_volumes;
 }
 
 void GmshReader::readTetrahedron(std::int64_t tag, int count, int tag_bytes) {

@@ -41,6 +41,20 @@ MeshFileContents readContents(const std::string& file, bool with_labels) {
           (xml ? "; XML is not read" : "") + "; convert it, for instance: meshio convert FILE organ.vtk");
 }
 
+void requireTetrahedra(const MeshFileContents& contents, const std::string& file) {
+  if (contents.other_volumes > 0) {
+    throw std::invalid_argument(
+        "mesh file '" + file + "' holds " + std::to_string(contents.other_volumes) +
+        " hexahedra, prisms or pyramids, which would be missing; split them into tetrahedra, for "
+        "instance with ParaView's filter Tetrahedralize");
+  }
+  if (!contents.tetrahedra.empty()) return;
+  throw std::invalid_argument("mesh file '" + file + "' holds no tetrahedra (" + std::to_string(contents.nodes.size()) +
+                              " nodes, " + std::to_string(contents.other_elements) +
+                              " elements of other kinds); mesh its volume, or save a closed surface as .stl (meshio "
+                              "convert FILE organ.stl), which is filled");
+}
+
 /// In metres, from the file's unit.
 void scale(const MeshDescription& description, NodalVectors& positions) {
   positions *= description.scale_m_per_unit;
@@ -70,12 +84,7 @@ TetMesh loadTetMesh(const MeshDescription& description, const MeshPreparation& p
   if (description.cell_size_m != 0.0) return fillSurface(description, preparation);
   requirePositive("scale_m_per_unit of mesh file '" + description.file + "'", description.scale_m_per_unit, "m");
   MeshFileContents contents = readContents(description.file, labels != nullptr);
-  if (contents.tetrahedra.empty()) {
-    throw std::invalid_argument("mesh file '" + description.file + "' holds no tetrahedra (" +
-                                std::to_string(contents.nodes.size()) + " nodes, " +
-                                std::to_string(contents.other_elements) +
-                                " elements of other kinds); mesh its volume, for instance with gmsh -3");
-  }
+  requireTetrahedra(contents, description.file);
   TetMesh mesh{columnsOf(contents.nodes), std::move(contents.tetrahedra)};
   if (labels != nullptr) {
     *labels = {mesh.positions * description.scale_m_per_unit, std::move(contents.groups),

@@ -16,6 +16,7 @@ struct MeshFileContents {
   std::vector<Vector3> nodes;
   std::vector<Tetrahedron> tetrahedra;
   std::size_t other_elements = 0;         ///< elements skipped because they are no tetrahedra
+  std::size_t other_volumes = 0;          ///< of these: hexahedra, prisms and pyramids
   std::size_t higher_order = 0;           ///< tetrahedra that had more nodes than their corners
   std::vector<int> between_corners;       ///< those nodes, as often as such a tetrahedron has them
   std::vector<MeshLabels::Group> groups;  ///< none unless asked for

@@ -18,6 +18,13 @@ namespace {
 constexpr int kVtkIntBytes = 4;  // bytes of `int` and `vtkIdType` in a binary file
 constexpr std::int64_t kTetra = 10;
 
+/// Voxels, hexahedra, wedges, pyramids, prisms, polyhedra; quadratic, of several kinds; Lagrange and Bezier.
+bool isOtherVolume(std::int64_t type) {
+  static constexpr std::int64_t kTypes[] = {11, 12, 13, 14, 15, 16, 25, 26, 27, 29, 31,
+                                            32, 33, 37, 42, 72, 73, 74, 79, 80, 81};
+  return std::find(std::begin(kTypes), std::end(kTypes), type) != std::end(kTypes);
+}
+
 /// Quadratic, Lagrange and Bezier: their corners are their first points.
 bool isHighOrderTetrahedron(std::int64_t type) { return type == 24 || type == 71 || type == 78; }
 
@@ -293,6 +300,7 @@ void VtkReader::readCellTypes() {
       tetrahedra_.push_back(i);
     } else {
       ++contents_.other_elements;
+      if (isOtherVolume(type)) ++contents_.other_volumes;
     }
   }
   have_types_ = true;

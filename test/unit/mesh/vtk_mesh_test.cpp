@@ -144,6 +144,13 @@ TEST(VtkMesh, NamesValuesThatAreWrong) {
   }
 }
 
+TEST(VtkMesh, OtherVolumesAreRefusedBesideTetrahedra) {
+  for (const char* type : {"11", "12", "13", "14", "25", "42", "72", "81"}) {
+    expectRefused(replaced(kText3, "\n5\n10\n10", "\n" + std::string(type) + "\n10\n10"),
+                  {"holds 1 hexahedra, prisms or pyramids", "split them into tetrahedra"});
+  }
+}
+
 /// Quadratic, Lagrange and Bezier ones; the nodes between corners are gone.
 TEST(VtkMesh, TetrahedraOfHigherOrderAreTakenByTheirCorners) {
   const std::string text =
