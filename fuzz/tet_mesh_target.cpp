@@ -30,12 +30,15 @@ void use(const TetMesh& mesh) {
   fuzz::require(!surface.empty(), "a checked mesh has a surface");
 }
 
-/// Meshes get through or are refused, but of many that were read some must get through: or else this target tests nothing of what follows.
+/// Meshes get through or are refused, but of many that were read (38 times in the corpus, all of which get through) some must get through:
+/// or else this target tests nothing of what follows.
 struct Counts {
   int read = 0;
   int followed = 0;
 
-  ~Counts() { fuzz::require(read < 20 || followed > 0, "some of the meshes that were read follow tools"); }
+  ~Counts() {
+    fuzz::require(read < 30 || followed > read / 20, "a twentieth of the meshes that were read follow tools");
+  }
 };
 
 /// A tissue of the mesh that follows tools, held and with a region somewhere in it.

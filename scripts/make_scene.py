@@ -15,6 +15,8 @@ import shlex
 import sys
 
 import numpy
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
 from make_joint_bag import write
@@ -126,22 +128,35 @@ def position_at(rows, time):
 def read_tetrahedra(path, scale):
     """Corners of the surface of a tetrahedral mesh, n x 3 x 3, m, and more lines for the mesh; by the simulator, for all that it checks."""
     if not os.path.isfile(path):
-        fail("%s is no file" % path)
-    import tissue_contact  # needed for these files alone, and built where pybind11 is installed
-
+        fail("%r is no file" % path)
+    if not path.isprintable():
+        fail("the name of the file, %r, has characters that a scene cannot hold; rename it" % path)
     for key in ("", "%s: true" % UNREFERENCED):
         mesh = "{file: %s, scale_m_per_unit: %r%s}" % (json.dumps(path), scale, key and ", " + key)
         try:
+            import tissue_contact  # needed for these files alone, and built where pybind11 is installed
             scene = tissue_contact.parse_scene("tissues: [{name: organ, mesh: %s, material: liver}]" % mesh)
             topology = tissue_contact.Simulator(scene).topology("organ")
         except ImportError as error:
-            fail("reading tetrahedra takes the package's Python module: %s" % error)
+            fail("reading tetrahedra takes the package's Python module, of scripts/env.bash or an install space: %s" % error)
         except ValueError as error:
             if UNREFERENCED in str(error) and not key:
                 continue
-            fail(str(error).split("mesh.file: ", 1)[-1])
+            fail(re.sub(r"^scene\.yaml:[0-9]+: tissues\[0\]\.mesh\.(file: )?", "", str(error)))
+        require_one_body(topology)
         more = "      %s  # it has some\n" % key if key else ""
         return topology.rest_positions[topology.triangles], more
+
+
+def require_one_body(topology):
+    corners, others = topology.tetrahedra[:, [0, 0, 0]].ravel(), topology.tetrahedra[:, 1:].ravel()
+    nodes = len(topology.rest_positions)
+    joined = coo_matrix((numpy.ones(len(corners)), (corners, others)), shape=(nodes, nodes))
+    parts, part_of = connected_components(joined, directed=False)
+    if parts > 1:
+        place = topology.rest_positions[part_of == part_of.max()].mean(axis=0)
+        fail("it has %d separate parts, one of them around (%.3g, %.3g, %.3g) m; a tissue is one body: keep the one you want" %
+             (parts, *place))
 
 
 def read_organ(arguments):

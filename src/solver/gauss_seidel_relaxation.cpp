@@ -14,6 +14,10 @@ namespace {
 constexpr int kPlainIterations = 2;
 static_assert(kPlainIterations % 2 == 0, "pairs of sweeps are mixed: forth and back");
 
+/// Iteration, one back, before which stiff parts are first moved as one.
+constexpr int kFirstRigidMotion = 3;
+static_assert(kFirstRigidMotion % 2 == 1, "between a sweep forth and the sweep back");
+
 /// Pairs of sweeps mixed. With 3 a grasp keeps twice the momentum defect, with 7 no scene gets faster.
 constexpr int kMixedPairs = 5;
 
@@ -233,7 +237,7 @@ MomentumDefect GaussSeidelRelaxation::relax(const ContactProblem& problem, int i
   if (iteration == kPlainIterations) beginMixing(problem, solution.v);
   if (forward && iteration > kPlainIterations) mix(solution.v);
   if (iteration == 1) beginDeflation(problem, solution);
-  if (iteration == kPlainIterations + 1) beginRigidMotions(problem);
+  if (iteration == kFirstRigidMotion) beginRigidMotions(problem);
   if (!forward) {
     followTouched(problem, solution.v);
     deflate(problem, solution.v);

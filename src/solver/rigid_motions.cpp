@@ -48,12 +48,15 @@ bool RigidMotions::measure(const std::vector<int>& nodes, const std::vector<int>
     part.members.push_back({node, body_->x->col(node)});
     middle += body_->x->col(node);
   }
+  constexpr std::size_t kLeastNodes = 3;  // two turn about their line for nothing
+  if (part.members.size() < kLeastNodes) return false;
   middle /= static_cast<double>(part.members.size());
   double radius = 0.0;
   for (Member& member : part.members) {
     member.arm -= middle;
     radius = std::max(radius, member.arm.norm());
   }
+  if (!(radius > 0.0)) return false;
   for (Member& member : part.members) member.arm /= radius;
   part.rows.clear();
   for (const Member& member : part.members) addBelow(member, part);
@@ -124,8 +127,7 @@ void RigidMotions::beginForth() {
   for (std::size_t p = 0; p < used_; ++p) parts_[p].followed.setZero();
 }
 
-void RigidMotions::follow(int j, const Vector3& added) {
-  if (used_ == 0) return;
+void RigidMotions::followInParts(int j, const Vector3& added) {
   const Place& place = place_of_[static_cast<std::size_t>(j)];
   if (place.part < 0) return;
   Part& part = parts_[static_cast<std::size_t>(place.part)];

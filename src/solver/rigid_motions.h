@@ -21,7 +21,7 @@ namespace tissue_contact {
 /// Nodes that contacts may move have no part in it (Deflation): the rest of the part moves beside them.
 class RigidMotions {
  public:
-  /// Of a step. Allocates only what it has not needed before.
+  /// Of a step. Allocates only for more parts, or larger ones in their places, than before.
   /// @param body with stiff parts; stays until the next begin() or none().
   /// @param excluded nodes that contacts may move, ascending.
   void begin(const BodySystem& body, const std::vector<int>& excluded);
@@ -32,7 +32,9 @@ class RigidMotions {
   void beginForth();
 
   /// A node has moved since the sweep forth, which changes L v of node j by `added`, N s.
-  void follow(int j, const Vector3& added);
+  void follow(int j, const Vector3& added) {
+    if (used_ > 0) followInParts(j, added);
+  }
 
   /// With what else moved followed. Moves v (m/s) and `lower`, L v (N s).
   /// @param begun where the sweep forth began, m/s.
@@ -92,6 +94,7 @@ class RigidMotions {
   void use();
   void addBelow(const Member& member, Part& part);
   bool factor(Part& part) const;
+  void followInParts(int j, const Vector3& added);
   Matrix3 ownBlock(int node) const;
   Vector3 ownProduct(int node, const Vector3& v) const { return ownBlock(node) * v; }
   Vector6 wanted(const Part& part, const PaddedVectors& begun, const PaddedVectors& v) const;

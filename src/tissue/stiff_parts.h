@@ -1,5 +1,6 @@
 /// @file
-/// Room `tissue`, private: parts of a volume that are far stiffer than the rest, such as a tumour or a vessel, for solvers that move each as one.
+/// Room `tissue`, private: parts of a volume that are far stiffer than most of it, such as a tumour or a vessel, for solvers that move each
+/// as one.
 #pragma once
 
 #include <vector>
@@ -10,11 +11,12 @@
 
 namespace tissue_contact {
 
-/// How many times the shear modulus of the tissue's own material, the first, makes a part stiff (doc/method.md).
+/// How many times the shear modulus that half of the volume does not exceed makes an element stiff (doc/method.md).
 constexpr double kStiffRatio = 4.0;
 
+/// @param x where the nodes are at rest, m.
 /// @return nodes of the stiff elements that shared nodes connect, ascending; parts in order of their first node.
-std::vector<std::vector<int>> findStiffParts(const std::vector<Tetrahedron>& tetrahedra, const ElementMaterials& materials,
-                                         Eigen::Index nodes);
+std::vector<std::vector<int>> findStiffParts(const NodalVectors& x, const std::vector<Tetrahedron>& tetrahedra,
+                                             const ElementMaterials& materials);
 
 }  // namespace tissue_contact

@@ -264,7 +264,7 @@ void Tissue::changeMaterials(const TissueDescription& description) {
   const bool is_uniform = parts_->springs.empty() || materials.dampingOf(0) == description.damping.stiffness_s;
   damping_ = {description.damping.mass_per_s, is_uniform ? takeUniformDamping(elements, materials) : 0.0};
   masses_ = lumpedMasses(*this, materials);
-  stiff_parts_ = findStiffParts(tetrahedra_, materials, rest_.cols());
+  stiff_parts_ = findStiffParts(rest_, tetrahedra_, materials);
   if (!tetrahedra_.empty()) {
     elasticity_ = makeVolumeElasticity(rest_, tetrahedra_, fixed_, materials, parts_->patch_of);
   } else {

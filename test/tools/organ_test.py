@@ -64,8 +64,9 @@ def ply(vertices, triangles):
             b"".join(struct.pack("<B3i", 3, *t) for t in triangles))
 
 
-def tetrahedra(extra_nodes=()):
-    """A legacy VTK file, mm: a block of 80 x 80 x 40 mm in cells of 20 mm, six tetrahedra each."""
+def tetrahedra(extra_nodes=(), twice=False, ascending=False):
+    """A legacy VTK file, mm: a block of 80 x 80 x 40 mm in cells of 20 mm, six tetrahedra each. Twice: a second one above it.
+    Ascending: nodes of tetrahedra in that order, whichever way round they are then."""
     cells = (4, 4, 2)
     nodes = [(20.0 * i, 20.0 * j, 20.0 * k) for k in range(cells[2] + 1) for j in range(cells[1] + 1) for i in range(cells[0] + 1)]
     nodes += extra_nodes
@@ -81,6 +82,11 @@ def tetrahedra(extra_nodes=()):
                 way.append([c + (k == axis) for k, c in enumerate(way[-1])])
             a, b, c, d = map(at, way)
             found.append((a, b, c, d) if axes in ((0, 1, 2), (1, 2, 0), (2, 0, 1)) else (a, c, b, d))
+    if ascending:
+        found = [tuple(sorted(tet)) for tet in found]
+    if twice:
+        found += [tuple(node + len(nodes) for node in tet) for tet in found]
+        nodes += [(x, y, z + 100.0) for x, y, z in nodes]
     lines = ["# vtk DataFile Version 3.0", "block", "ASCII", "DATASET UNSTRUCTURED_GRID", "POINTS %d double" % len(nodes)]
     lines += ["%g %g %g" % node for node in nodes] + ["CELLS %d %d" % (len(found), 5 * len(found))]
     lines += ["4 %d %d %d %d" % tet for tet in found] + ["CELL_TYPES %d" % len(found)] + ["10"] * len(found)
@@ -186,6 +192,10 @@ class OrganTest(unittest.TestCase):
         self.assertGreater(max(forces), 0.7 * hertz)  # at its rim half of the block is missing
         self.assertLess(max(forces), 1.3 * hertz)
         self.assertEqual(forces[-1], 0.0, "lifted")
+        self.write("block.vtk", tetrahedra(ascending=True))  # as FEniCS numbers them
+        again, said = self.replay()
+        self.assertIn("96 of 192 tetrahedra are numbered the other way round, and turned", said)
+        self.assertLess(max(abs(a - b) for a, b in zip(again, forces)), 0.02 * max(forces))
 
     @unittest.skipUnless(has_simulator(), "the package's Python module is not built")
     def test_nodes_without_tetrahedra_are_left_out_and_said(self):
@@ -209,6 +219,19 @@ class OrganTest(unittest.TestCase):
                 self.assertIn(name, made.stdout)
                 self.assertIn(words, made.stdout)
                 self.assertEqual(made.stdout.count("\n"), 1, made.stdout)
+        made = self.make(self.write("two.vtk", tetrahedra(twice=True)), "--scale", 0.001)
+        self.assertEqual((made.returncode, made.stdout.count("\n")), (1, 1), made.stdout)
+        self.assertIn("2 separate parts, one of them around (0.04, 0.04, 0.12) m", made.stdout)
+        made = self.make(self.write("new\nline.vtk", tetrahedra()), "--scale", 0.001)
+        self.assertEqual((made.returncode, made.stdout.count("\n")), (1, 1), made.stdout)
+        self.assertIn("rename it", made.stdout)
+        made = run(sys.executable, os.path.join(SOURCE, "scripts", "make_scene.py"), self.write("block.vtk", tetrahedra()), "--out",
+                   self.path("made"), env={key: value for key, value in os.environ.items() if key != "PYTHONPATH"})
+        self.assertEqual((made.returncode, made.stdout.count("\n")), (1, 1), made.stdout)
+        self.assertIn("scripts/env.bash", made.stdout)
+        made = self.make(self.path("block.vtk"), "--scale", 1e9)
+        self.assertEqual((made.returncode, made.stdout.count("\n")), (1, 1), made.stdout)
+        self.assertNotIn("scene.yaml", made.stdout)
         made = self.make(self.write("block.vtk", tetrahedra()), "--scale", 0.001, "--cell-size", 0.01)
         self.assertIn("--cell-size is for surfaces", made.stdout)
         self.assertIn("is no file", self.make(self.path("nowhere.vtk")).stdout)

@@ -25,7 +25,7 @@ struct BodySystem {
   /// All nodes rest in this step: b = 0, v = 0 is the answer, the rest of this may be old. For solvers that carry
   /// something from step to step; the others may go by `fixed` alone.
   bool asleep = false;
-  /// Nodes of each part that is far stiffer than what is around it, ascending, none in two parts; null: there is none. For solvers that look
+  /// Nodes of each part that is far stiffer than most of the body, ascending, none in two parts; null: there is none. For solvers that look
   /// for the rigid motions of such parts; answers do not depend on it beyond their tolerance.
   const std::vector<std::vector<int>>* stiff_parts = nullptr;
   const NodalVectors* x = nullptr;  ///< where the nodes are, m; needed with stiff_parts alone

@@ -60,7 +60,7 @@ class Tissue {
   const std::vector<int>& surfaceRegions() const { return surface_regions_; }
   /// Likewise per element.
   const std::vector<int>& elementRegions() const { return element_regions_; }
-  /// Nodes of each connected part of a volume whose regions are far stiffer than the tissue's own material, ascending.
+  /// Nodes of each connected part of a volume that is far stiffer than most of it, ascending.
   const std::vector<std::vector<int>>& stiffParts() const { return stiff_parts_; }
 
   /// Per surface triangle: the fibre direction at rest, projected into it, as coefficients over its edges (x1 - x0,

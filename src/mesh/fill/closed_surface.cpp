@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 
+#include "core/disjoint_sets.h"
 #include "mesh/edge_table.h"
 #include "mesh/fill/crossing_triangles.h"
 #include "mesh/nodes.h"
@@ -52,20 +52,13 @@ void dropDuplicates(TriangleMesh& mesh, std::vector<std::string>& notes) {
 
 /// Per vertex the smallest of its part's vertices; parts are what edges connect.
 std::vector<int> partsOf(const TriangleMesh& mesh) {
-  std::vector<int> root(static_cast<std::size_t>(mesh.vertices.cols()));
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](int v) {
-    while (root[v] != v) v = root[v] = root[root[v]];
-    return v;
-  };
+  const auto vertices = static_cast<std::size_t>(mesh.vertices.cols());
+  DisjointSets joined(vertices);
   for (const Triangle& t : mesh.triangles) {
-    for (const int other : {t[1], t[2]}) {
-      const int a = find(t[0]);
-      const int b = find(other);
-      root[std::max(a, b)] = std::min(a, b);
-    }
+    for (const int other : {t[1], t[2]}) joined.join(t[0], other);
   }
-  for (int v = 0; v < static_cast<int>(root.size()); ++v) root[v] = find(v);
+  std::vector<int> root(vertices);
+  for (std::size_t v = 0; v < vertices; ++v) root[v] = joined.first(static_cast<int>(v));
   return root;
 }
 

@@ -92,8 +92,13 @@ MeshFileContents GmshReader::read() {
   return std::move(contents_);
 }
 
+/// $NOD and $ELM, in capitals. To these Gmsh adds sections of later formats where it writes the first one, such as $Periodic.
+bool isOfFirstFormat(const std::string& section) {
+  return std::none_of(section.begin(), section.end(), [](char c) { return c >= 'a' && c <= 'z'; });
+}
+
 void GmshReader::readSection(const std::string& name) {
-  const std::string end = (version_ == Version::k1 ? "$END" : "$End") + name.substr(1);
+  const std::string end = (isOfFirstFormat(name) ? "$END" : "$End") + name.substr(1);
   if (name == "$ParametricNodes") in_.fail("$ParametricNodes is not read; save without Mesh.SaveParametric");
   if (with_labels_ && name == "$PhysicalNames") readPhysicalNames();
   if (with_labels_ && name == "$Entities" && (version_ == Version::k40 || version_ == Version::k41)) readEntities();

@@ -15,6 +15,7 @@
 
 #include "mesh/fill/fill_surface.h"
 #include "mesh/nodes.h"
+#include "mesh/orientation.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/read_file.h"
 #include "tissue_contact/mesh/tet_mesh.h"
@@ -95,11 +96,15 @@ TetMesh loadTetMesh(const MeshDescription& description, const MeshPreparation& p
   } else if (!contents.between_corners.empty()) {
     dropUnusedNodes(mesh.positions, mesh.tetrahedra, &contents.between_corners);
   }
-  if (contents.higher_order > 0 && preparation.say) {
-    preparation.say("mesh file '" + description.file + "': " + std::to_string(contents.higher_order) +
-                    " tetrahedra of higher order are taken by their corners, with straight edges");
-  }
   scale(description, mesh.positions);
+  const std::size_t turned = turnTetrahedra(mesh);
+  const auto say = [&](std::size_t count, const char* what) {
+    if (count == 0 || !preparation.say) return;
+    preparation.say("mesh file '" + description.file + "': " + std::to_string(count) + " of " +
+                    std::to_string(mesh.tetrahedra.size()) + " tetrahedra " + what);
+  };
+  say(contents.higher_order, "are of higher order; their corners are taken, with straight edges");
+  say(turned, "are numbered the other way round, and turned");
   return mesh;
 }
 

@@ -100,10 +100,13 @@ TEST(MeshFile, RemovesUnreferencedNodesOnRequestOnly) {
   EXPECT_NO_THROW(checkTetMesh(used, "mesh"));
 }
 
+/// The second lies on the first.
 TEST(MeshFile, KeepsAnInvertedElementForCheckTetMeshToName) {
-  const TetMesh mesh = loadBytes(replaced(kUnreferenced, "4 1 2 4 5", "4 2 1 4 5"));
-  EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{2, 1, 4, 5}}));
-  expectRefusal([&] { checkTetMesh(mesh, "mesh"); }, {"tetrahedron 0 (nodes 2, 1, 4, 5) is inverted"});
+  const TetMesh mesh = loadBytes(
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 .1 .1 .1\n$EndNodes\n"
+      "$Elements\n2\n1 4 0 1 2 3 4\n2 4 0 2 3 4 5\n$EndElements\n");
+  EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
+  expectRefusal([&] { checkTetMesh(mesh, "mesh"); }, {"tetrahedron 1 (nodes 1, 2, 3, 4) is inverted"});
 }
 
 /// Real meshes. The volumes were computed from the files' bytes by a separate Python script in exact rational

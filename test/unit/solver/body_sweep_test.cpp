@@ -424,6 +424,42 @@ TEST_P(StiffParts, KnowOfEachOtherAndAreKnownOf) {
   EXPECT_LE(std::abs(workLeft(body_.system, u, v)), 1e-13 * u.norm() * body_.system.b.norm());
 }
 
+/// The next step knows of none, of a smaller body.
+TEST_P(StiffParts, AreForgottenInTheNextStep) {
+  BodySweep sweeps;
+  NodalVectors v = NodalVectors::Zero(3, 30);
+  ASSERT_FALSE(moved(NodalVectors(3, 0), sweeps, v).isZero(0.0));
+  RandomBody smaller(10, 0.3, {1}, {4}, GetParam());
+  sweeps.prepare(smaller.system);
+  v = NodalVectors::Zero(3, 10);
+  sweeps.sweep(true, {}, v, kHoldsNothing);
+  sweeps.follow(2, Vector3(0.01, -0.02, 0.03));
+  const NodalVectors before = v;
+  sweeps.deflate(v);
+  EXPECT_EQ(v, before);
+}
+
+/// Where K takes nearly all from the energy that mass has.
+TEST_P(StiffParts, WithNextToNoEnergyStay) {
+  body_.system.stiff_parts = &only_;
+  only_ = {{4, 9, 15, 16, 22}};
+  for (const double left : {0.9, 0.1}) {
+    body_.D.setZero();
+    for (BlockLanes& entry : body_.K.values) {
+      for (auto& lanes : entry.at) {
+        for (double& value : lanes) value *= 1e-2;
+      }
+    }
+    for (int i = 0; i < 30; ++i) {
+      body_.K.diagonal[static_cast<std::size_t>(i)] =
+          -(1.0 - left) * body_.system.mass[i] / body_.system.stiffness_scale * Matrix3::Identity();
+    }
+    BodySweep sweeps;
+    NodalVectors v = NodalVectors::Zero(3, 30);
+    EXPECT_EQ(!moved(NodalVectors(3, 0), sweeps, v).isZero(0.0), left > 0.5) << left;
+  }
+}
+
 /// All fixed, in a line, all in one place, or none of them free of contacts: such parts have no motions.
 TEST_P(StiffParts, WithoutMotionsOfTheirOwnStay) {
   body_.system.stiff_parts = &only_;

@@ -93,7 +93,7 @@ struct BlockWithInclusion {
       for (const int node : element) middle += 0.25 * mesh.positions.col(node);
       materials.of_element.push_back((middle - Vector3(0.02, 0.02, 0.012)).norm() < 0.006 ? 1 : 0);
     }
-    parts = findStiffParts(mesh.tetrahedra, materials, mesh.positions.cols());
+    parts = findStiffParts(mesh.positions, mesh.tetrahedra, materials);
     state = TetElasticity(mesh.positions, mesh.tetrahedra, fixed, materials).makeState();
     BodySystem body;
     body.K = &state->stiffness;

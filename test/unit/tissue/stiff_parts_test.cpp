@@ -60,7 +60,7 @@ TEST_F(TwoLumps, AreOneWhereStiffTissueJoinsThem) {
   EXPECT_EQ(tissue.stiffParts()[0].size(), 3u * 3u * 7u);  // the whole length of the block
 }
 
-/// By shear modulus against the tissue's own material; materials that change change them.
+/// By shear modulus against that of most of the volume; materials that change change them.
 TEST_F(TwoLumps, ArePartsWhereTheyAreStiffEnough) {
   description_.regions[0].material.youngs_modulus_pa = 1.01 * kStiffRatio * 5e3;
   description_.regions[1].material.youngs_modulus_pa = 0.99 * kStiffRatio * 5e3;
@@ -72,6 +72,27 @@ TEST_F(TwoLumps, ArePartsWhereTheyAreStiffEnough) {
   description_.material.youngs_modulus_pa *= 0.9;
   tissue.changeMaterials(description_);
   EXPECT_EQ(tissue.stiffParts().size(), 2u);
+}
+
+/// Of a mesh whose every part is a region, where the tissue's own material is nowhere.
+TEST_F(TwoLumps, ArePartsBesideARegionThatHoldsTheRest) {
+  for (const double own_pa : {500.0, 5e3, 5e5}) {
+    TissueDescription description = description_;
+    TissueRegion rest = description.regions[0];
+    rest.name = "rest";
+    rest.where = {BoxRegion{Vector3(-1.0, -1.0, -1.0), Vector3(1.0, 1.0, 1.0)}};
+    rest.material.youngs_modulus_pa = 5e3;
+    description.regions.insert(description.regions.begin(), rest);
+    description.material.youngs_modulus_pa = own_pa;
+    const Tissue tissue(description, Pose::Identity());
+    EXPECT_EQ(tissue.stiffParts(), (std::vector<std::vector<int>>{around(-0.02, tissue), around(0.02, tissue)}));
+  }
+}
+
+/// Where most of it is stiff, it is what is soft that is small: nothing moves as one.
+TEST_F(TwoLumps, AreNoPartsWhereTheyAreSoft) {
+  for (TissueRegion& lump : description_.regions) lump.material.youngs_modulus_pa = 500.0;
+  EXPECT_TRUE(Tissue(description_, Pose::Identity()).stiffParts().empty());
 }
 
 }  // namespace stiff_parts_test
