@@ -41,7 +41,7 @@ void checkElement(const TetMesh& mesh, std::size_t index, const std::string& sou
   // NaN (all four nodes in one place) counts as zero volume.
   if (volume < -kZeroVolume) {
     message << ") is inverted, of volume " << signedVolume(mesh.positions, tet)
-            << " m^3; it must be positive: swap two of its nodes or repair the mesh";
+            << " m^3; it must be positive; the mesh is folded there: repair it";
   } else {
     message << ") has no volume (it is flat to 1e-12 of its longest edge cubed); remesh or remove it";
   }
