@@ -223,7 +223,7 @@ bool NarrowPhase::add(int triangle, const Vector3& weights, int corner, const Ve
   if (!(gap <= call_.margin)) return false;
   ShapeContact contact;
   contact.feature = call_.surface->featureOf(triangle, weights);
-  if (call_.surface->isFixed(contact.feature)) return false;
+  if (call_.surface->isHeld(call_.surface->triangles()[triangle], weights)) return false;
   const auto faces = [&](int other) { return normal_S.dot(triangleNormalOf(other)) < -kFacing; };
   if (call_.surface->isVolume() && !call_.surface->anyTriangleOf(contact.feature, faces)) return false;
 

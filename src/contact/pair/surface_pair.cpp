@@ -23,7 +23,7 @@ bool SurfacePair::nearAtRest(const SurfacePoint& on_own, const SurfacePoint& on_
 void SurfacePair::add(const SurfaceFeature& own_feature, const SurfacePoint& on_own,
                       const SurfaceFeature& other_feature, const SurfacePoint& on_other, const Vector3& n,
                       double distance, std::vector<Contact>& contacts) const {
-  if (own.isFixed(own_feature) && other.isFixed(other_feature)) return;
+  if (own.isHeld(on_own.nodes, on_own.weights) && other.isHeld(on_other.nodes, on_other.weights)) return;
   Contact& contact = contacts.emplace_back();
   contact.key.tissue = own.tissue();
   contact.key.feature = own_feature;

@@ -91,8 +91,13 @@ void MovingSurface::measureAtRest() {
   if (isVolume() && !nodes_.empty()) smallest_extent_ = box.sizes().minCoeff();
 }
 
-bool MovingSurface::isFixed(const SurfaceFeature& feature) const {
-  return std::all_of(feature.begin(), feature.end(), [&](int node) { return node < 0 || fixed_[node]; });
+bool MovingSurface::isHeld(const Triangle& nodes, const Vector3& weights) const {
+  constexpr double kLeastMoving = 0.25;
+  double moving = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    if (weights[i] != 0.0 && !fixed_[nodes[i]]) moving += weights[i];
+  }
+  return moving < kLeastMoving;
 }
 
 SurfaceFeature MovingSurface::featureOf(int triangle, const Vector3& weights) const {

@@ -36,8 +36,9 @@ class MovingSurface {
   const std::vector<int>& nodes() const { return nodes_; }  ///< those that triangles use, ascending
   int nodeCount() const { return static_cast<int>(rest_.cols()); }
 
-  /// Whether no node of the feature can move.
-  bool isFixed(const SurfaceFeature& feature) const;
+  /// Whether a point of these nodes belongs to what is fixed: less than a quarter of it is of nodes that can move, which would have to go
+  /// more than four times as far as the point is to, and without bound where it is nearly a fixed node.
+  bool isHeld(const Triangle& nodes, const Vector3& weights) const;
   /// The feature that the corners of non-zero weight make up.
   SurfaceFeature featureOf(int triangle, const Vector3& weights) const;
   /// Calls `visit(triangle)` for the triangles that contain the feature, ascending, until it returns true.
