@@ -71,7 +71,9 @@ SURFACE_CELLS = """\
       cell_size_m: {cell:.3g}  # edge of the tetrahedra: half of it has eight times as many
     refinement: {{cell_m: {fine:.3g}}}  # and fine ones where the probe is, a third of its ball's radius at most"""
 TETRAHEDRA_CELLS = "    refinement: auto  # cut finer where the probe is, and elsewhere where the file's are too coarse to bend"
-UNREFERENCED = "remove_unreferenced_nodes"  # a key of a mesh
+# Keys that a mesh of a file may need, by the word of the error that asks for one: value, and why it is there.
+MESH_KEYS = {"remove_unreferenced_nodes": ("true", "it has some"),
+             "coincident_nodes": ("merge", "some lay in the place of others; keep: where that is a cut")}
 
 
 def fail(message):
@@ -125,14 +127,21 @@ def position_at(rows, time):
     return [float(numpy.interp(time, times, [row[1][axis] for row in rows])) for axis in range(3)]
 
 
+def quoted(text):
+    """As a scene can hold it."""
+    return json.dumps(text, ensure_ascii=False)
+
+
 def read_tetrahedra(path, scale):
     """Corners of the surface of a tetrahedral mesh, n x 3 x 3, m, and more lines for the mesh; by the simulator, for all that it checks."""
     if not os.path.isfile(path):
         fail("%r is no file" % path)
     if not path.isprintable():
         fail("the name of the file, %r, has characters that a scene cannot hold; rename it" % path)
-    for key in ("", "%s: true" % UNREFERENCED):
-        mesh = "{file: %s, scale_m_per_unit: %r%s}" % (json.dumps(path), scale, key and ", " + key)
+    keys = []
+    while True:
+        mesh = "{file: %s, scale_m_per_unit: %r%s}" % (
+            quoted(path), scale, "".join(", %s: %s" % (key, MESH_KEYS[key][0]) for key in keys))
         try:
             import tissue_contact  # needed for these files alone, and built where pybind11 is installed
             scene = tissue_contact.parse_scene("tissues: [{name: organ, mesh: %s, material: liver}]" % mesh)
@@ -140,11 +149,13 @@ def read_tetrahedra(path, scale):
         except ImportError as error:
             fail("reading tetrahedra takes the package's Python module, of scripts/env.bash or an install space: %s" % error)
         except ValueError as error:
-            if UNREFERENCED in str(error) and not key:
+            asked = [key for key in MESH_KEYS if key in str(error) and key not in keys]
+            if asked:
+                keys += asked
                 continue
             fail(re.sub(r"^scene\.yaml:[0-9]+: tissues\[0\]\.mesh\.(file: )?", "", str(error)))
         require_one_body(topology)
-        more = "      %s  # it has some\n" % key if key else ""
+        more = "".join("      %s: %s  # %s\n" % (key, *MESH_KEYS[key]) for key in keys)
         return topology.rest_positions[topology.triangles], more
 
 
@@ -219,8 +230,8 @@ def main():
     folder = os.path.abspath(arguments.out)
     scene, bag = os.path.join(folder, "scene.yaml"), os.path.join(folder, "probe.bag")
     text = SCENE.format(
-        name=name if name[0].isalpha() else "organ_" + name, file=json.dumps(os.path.basename(arguments.organ)),
-        quoted=json.dumps(os.path.abspath(arguments.organ)), scale=arguments.scale, size=size, cells=cells,
+        name=name if name[0].isalpha() else "organ_" + name, file=quoted(os.path.basename(arguments.organ)),
+        quoted=quoted(os.path.abspath(arguments.organ)), scale=arguments.scale, size=size, cells=cells,
         material=arguments.material, held=low[2] + HELD * size[2], part=100 * HELD,
         start=path[0], clearance=1e3 * CLEARANCE_M, topic=TOPIC)
     try:

@@ -58,15 +58,33 @@ std::string groupNames(const MeshLabels& labels) {
                        : "there are: " + listOf(names);
 }
 
-MemberRegion membersOf(const GroupRegion& region, const MeshLabels& labels) {
-  std::vector<Vector3> places;
+/// The group that is meant. Gmsh numbers groups of each dimension by themselves, and keeps the name of one without elements.
+const MeshLabels::Group& groupOf(const GroupRegion& region, const MeshLabels& labels) {
+  static constexpr const char* kThings[] = {"points", "curves", "surfaces", "volumes"};
+  const MeshLabels::Group* found = nullptr;
   bool is_known = false;
   for (const MeshLabels::Group& group : labels.groups) {
     if (!isCalled(group, region.name)) continue;
     is_known = true;
-    for (const std::array<int, 4>& element : group.elements) addPlaces(labels.nodes, element, places);
+    if (group.elements.empty()) continue;
+    if (found != nullptr) {
+      throw std::invalid_argument("group " + inQuotes(region.name) + " is one of " + kThings[found->dimension] +
+                                  " and one of " + kThings[group.dimension] + "; give each a name or number of its own");
+    }
+    found = &group;
   }
+  if (found != nullptr) return *found;
   if (!is_known) throw std::invalid_argument("there is no group " + inQuotes(region.name) + "; " + groupNames(labels));
+  throw std::invalid_argument("group " + inQuotes(region.name) +
+                              " has no elements in the file; Gmsh leaves them out of partitioned meshes and with "
+                              "Mesh.SaveAll: save it without");
+}
+
+MemberRegion membersOf(const GroupRegion& region, const MeshLabels& labels) {
+  std::vector<Vector3> places;
+  for (const std::array<int, 4>& element : groupOf(region, labels).elements) {
+    addPlaces(labels.nodes, element, places);
+  }
   return members("group " + inQuotes(region.name), std::move(places));
 }
 

@@ -27,6 +27,22 @@ inline void checkFiniteNodes(const NodalVectors& x, const std::string& source) {
   }
 }
 
+// Relative to the cube of the longest edge (a regular tetrahedron has 0.118): below it the sign of the volume is
+// rounding.
+constexpr double kZeroVolume = 1e-12;
+
+/// Volume over the cube of the longest edge: free of the mesh's unit, and of overflow. NaN: all four nodes in one place.
+inline double relativeVolume(const NodalVectors& x, const Tetrahedron& tet) {
+  double longest = 0.0;
+  for (std::size_t i = 0; i < tet.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) longest = std::max(longest, (x.col(tet[i]) - x.col(tet[j])).stableNorm());
+  }
+  const Vector3 b = (x.col(tet[1]) - x.col(tet[0])) / longest;
+  const Vector3 c = (x.col(tet[2]) - x.col(tet[0])) / longest;
+  const Vector3 d = (x.col(tet[3]) - x.col(tet[0])) / longest;
+  return b.cross(c).dot(d) / 6.0;
+}
+
 /// No allocation while all is well.
 inline void requireCount(const char* what, std::size_t given, std::size_t expected) {
   if (given == expected) return;

@@ -3,14 +3,17 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 
 #include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
 
-/// Swaps two nodes of each tetrahedron of negative volume, where that is all that is wrong: where then no two tetrahedra lie on the same
-/// side of the face they share. Else the mesh is folded, and stays as it is for checkTetMesh() to refuse.
+/// Swaps two nodes of each tetrahedron of negative volume. What else is wrong (flat, twice, a face of three) stays for checkTetMesh() and
+/// boundaryTriangles() to refuse.
 /// @pre node indices in range. @return how many were turned.
-std::size_t turnTetrahedra(TetMesh& mesh);
+/// @throws std::invalid_argument naming `source` and the two where tetrahedra then lie on the same side of the face they share: the mesh is
+///   folded, however it is numbered.
+std::size_t turnTetrahedra(TetMesh& mesh, const std::string& source);
 
 }  // namespace tissue_contact

@@ -14,22 +14,6 @@
 namespace tissue_contact {
 namespace {
 
-// Relative to the cube of the longest edge (a regular tetrahedron has 0.118): below it the sign of the volume is
-// rounding.
-constexpr double kZeroVolume = 1e-12;
-
-/// Volume over the cube of the longest edge: free of the mesh's unit, and of overflow.
-double relativeVolume(const NodalVectors& x, const Tetrahedron& tet) {
-  double longest = 0.0;
-  for (std::size_t i = 0; i < tet.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) longest = std::max(longest, (x.col(tet[i]) - x.col(tet[j])).stableNorm());
-  }
-  const Vector3 b = (x.col(tet[1]) - x.col(tet[0])) / longest;
-  const Vector3 c = (x.col(tet[2]) - x.col(tet[0])) / longest;
-  const Vector3 d = (x.col(tet[3]) - x.col(tet[0])) / longest;
-  return b.cross(c).dot(d) / 6.0;
-}
-
 void checkElement(const TetMesh& mesh, std::size_t index, const std::string& source) {
   const Tetrahedron& tet = mesh.tetrahedra[index];
   checkNodeIndices(tet, index, mesh.positions.cols(), "tetrahedron", source);

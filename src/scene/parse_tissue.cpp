@@ -24,6 +24,8 @@ constexpr Range kPressureRange{-1e7, 1e7, "Pa", "give pascals: 12 mmHg is 1600"}
 constexpr std::pair<const char*, AxisGrading::FineAt> kFineAt[] = {{"minimum", AxisGrading::FineAt::kMinimum},
                                                                    {"center", AxisGrading::FineAt::kCenter},
                                                                    {"maximum", AxisGrading::FineAt::kMaximum}};
+constexpr std::pair<const char*, CoincidentNodes> kCoincidentNodes[] = {
+    {"refuse", CoincidentNodes::kRefuse}, {"merge", CoincidentNodes::kMerge}, {"keep", CoincidentNodes::kKeep}};
 
 AxisGrading parseAxisGrading(const YamlCursor& cursor) {
   const YamlMap map = cursor.map();
@@ -63,9 +65,10 @@ void requireCells(const YamlMap& map, const std::string& file) {
     if (value != nullptr)
       value->fail("is for surfaces (.stl, .obj, .ply); this file has tetrahedra of its own: remove the key");
   }
-  const YamlCursor* unreferenced = is_surface ? map.find("remove_unreferenced_nodes") : nullptr;
-  if (unreferenced != nullptr)
-    unreferenced->fail("is for tetrahedral meshes; a surface that is filled has no such nodes");
+  for (const char* key : {"remove_unreferenced_nodes", "coincident_nodes"}) {
+    const YamlCursor* value = is_surface ? map.find(key) : nullptr;
+    if (value != nullptr) value->fail("is for tetrahedral meshes; a surface that is filled has no such nodes");
+  }
 }
 
 MeshDescription parseMesh(const YamlCursor& cursor, const PathContext& paths) {
@@ -78,6 +81,7 @@ MeshDescription parseMesh(const YamlCursor& cursor, const PathContext& paths) {
   if (const YamlCursor* value = map.find("remove_unreferenced_nodes")) {
     mesh.remove_unreferenced_nodes = value->boolean();
   }
+  if (const YamlCursor* value = map.find("coincident_nodes")) mesh.coincident_nodes = value->choice(kCoincidentNodes);
   if (const YamlCursor* value = map.find("cell_size_m")) mesh.cell_size_m = value->number(kCellRange);
   if (const YamlCursor* value = map.find("cell_size_inside_m")) {
     mesh.cell_size_inside_m = value->number(

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <variant>
 
+#include "mesh/conformity.h"
 #include "mesh/labels.h"
 #include "mesh/region.h"
 #include "tissue/body_edges.h"
@@ -89,7 +90,9 @@ VolumeMesh volumeMesh(const TissueDescription& description, const std::string& s
     const auto& mesh = std::get<MeshDescription>(description.geometry);
     atEntry("mesh.file", [&] {
       made.mesh = loadTetMesh(mesh, preparation, namesAnyLabels(description) ? &made.labels : nullptr);
-      check(source + ", mesh file '" + mesh.file + "'");
+      const std::string owner = source + ", mesh file '" + mesh.file + "'";
+      check(owner);
+      checkConforming(made.mesh, owner);
     });
     made.patch_of = patchesByFaces(made.mesh.positions, made.mesh.tetrahedra);
   }

@@ -28,12 +28,17 @@ struct BlockDescription {
   std::array<AxisGrading, 3> grading;
 };
 
+/// What becomes of nodes that lie in one place, as elements around them do not hang together there: the file is refused; they become one;
+/// or they stay, as a cut that may open.
+enum class CoincidentNodes { kRefuse, kMerge, kKeep };
+
 /// A tetrahedral mesh file (.msh, .vtk), or a surface (.stl, .obj, .ply) to be filled with tetrahedra. File coordinates times
 /// `scale_m_per_unit` are metres in the tissue frame T.
 struct MeshDescription {
   std::string file;  ///< absolute path
   double scale_m_per_unit = 1.0;
   bool remove_unreferenced_nodes = false;  ///< drop nodes that no tetrahedron uses instead of refusing the file
+  CoincidentNodes coincident_nodes = CoincidentNodes::kRefuse;
   double cell_size_m = 0.0;         ///< 0: a tetrahedral mesh; else the edge of the cells that fill the surface, m
   double cell_size_inside_m = 0.0;  ///< of the cells deep inside; 0: the same
 };

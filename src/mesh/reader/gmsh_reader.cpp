@@ -1,14 +1,17 @@
 /// @file
 /// Room `mesh`: Gmsh MSH files, ASCII and binary (Gmsh reference manual, "Gmsh file formats" and "Legacy formats"): sections
-/// $Nodes and $Elements in, $NOD and $ELM of MSH 1, nodes and tetrahedra out, and where asked physical groups ($PhysicalNames,
+/// $Nodes and $Elements in, $NOD and $ELM of MSH 1, nodes and volumes out, and where asked physical groups ($PhysicalNames,
 /// $Entities). All other sections are skipped, as the manual asks.
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -21,7 +24,10 @@ namespace {
 constexpr int kDouble = 8;        // bytes
 constexpr int kGmshIntBytes = 4;  // bytes
 constexpr int kCount = 8;         // bytes of `unsigned long` (4.0) and `size_t` (4.1)
+constexpr std::int64_t kMostTag = std::numeric_limits<std::int32_t>::max();
 constexpr std::size_t kMostGroups = 16;
+constexpr std::size_t kMostGrouped =
+    4 * kMostElements;  // elements of all groups together, of which a file may hold each for two bytes
 constexpr std::size_t kLongestName =
     64;  // of a section: its end is searched for, at the cost of the name's length times the file's
 
@@ -45,13 +51,14 @@ class GmshReader {
   void readBinaryElements2(std::size_t count);
   void readElements4();
   void readElement(std::int64_t tag, std::int64_t type, int tag_bytes);
-  void readTetrahedron(std::int64_t tag, int count, int tag_bytes);
+  int nodeOf(std::int64_t tag, std::int64_t node_tag) const;
+  void dropRepeatedVolumes();
   void readTags2(std::size_t count);
   void readPhysicalNames();
   void readEntities();
   void readEntity(int dimension);
-  MeshLabels::Group& group(int dimension, std::int64_t number);
-  void addToGroups(const std::array<int, 4>& nodes, int dimension);
+  MeshFileContents::Group& group(int dimension, std::int64_t number);
+  void addToGroups(const ElementCorners& corners, int dimension);
   int nodeCount(std::int64_t type, std::int64_t tag) const;
   std::size_t blockCount(std::int64_t count, std::size_t left, ItemSize item, const char* what) const;
   void readSection(const std::string& name);
@@ -71,9 +78,11 @@ class GmshReader {
   bool have_nodes_ = false;
   bool have_elements_ = false;
   bool with_labels_;
-  std::map<std::pair<int, std::int64_t>, std::size_t> group_of_;                  ///< by dimension and number
-  std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> numbers_of_;  ///< of an entity's groups
-  std::vector<std::int64_t> numbers_;                                             ///< of the groups of what is read now
+  std::map<std::pair<int, std::int64_t>, std::size_t> group_of_;                           ///< by dimension and number
+  std::map<std::pair<std::int64_t, std::int64_t>, std::vector<std::int64_t>> numbers_of_;  ///< of an entity's groups
+  std::vector<std::int64_t> numbers_;           ///< of the groups of what is read now
+  std::vector<std::int64_t> number_of_volume_;  ///< of MSH 1 and 2, which have one for each; 0: none
+  std::size_t grouped_ = 0;                     ///< elements of all groups
 };
 
 MeshFileContents GmshReader::read() {
@@ -92,13 +101,10 @@ MeshFileContents GmshReader::read() {
   return std::move(contents_);
 }
 
-/// $NOD and $ELM, in capitals. To these Gmsh adds sections of later formats where it writes the first one, such as $Periodic.
-bool isOfFirstFormat(const std::string& section) {
-  return std::none_of(section.begin(), section.end(), [](char c) { return c >= 'a' && c <= 'z'; });
-}
-
 void GmshReader::readSection(const std::string& name) {
-  const std::string end = (isOfFirstFormat(name) ? "$END" : "$End") + name.substr(1);
+  // MSH 1 has its own two in capitals; to these Gmsh adds sections of later formats, such as $Periodic.
+  const bool is_of_first = version_ == Version::k1 && (name == "$NOD" || name == "$ELM");
+  const std::string end = (is_of_first ? "$END" : "$End") + name.substr(1);
   if (name == "$ParametricNodes") in_.fail("$ParametricNodes is not read; save without Mesh.SaveParametric");
   if (with_labels_ && name == "$PhysicalNames") readPhysicalNames();
   if (with_labels_ && name == "$Entities" && (version_ == Version::k40 || version_ == Version::k41)) readEntities();
@@ -117,6 +123,7 @@ void GmshReader::readSection(const std::string& name) {
   } else {
     version_ == Version::k2 ? readElements2() : readElements4();
   }
+  if (!is_nodes) dropRepeatedVolumes();
   const std::string found(in_.word(end.c_str()));
   if (found != end) {
     in_.fail("expected " + end + ", found " + excerpt(found) +
@@ -308,7 +315,7 @@ void GmshReader::readElements4() {
     const std::int64_t first = in_.integer(kGmshIntBytes, "an entity");
     const std::int64_t second = in_.integer(kGmshIntBytes, "an entity");
     const auto entity = version_ == Version::k41 ? std::make_pair(first, second) : std::make_pair(second, first);
-    const auto known = numbers_of_.find({static_cast<int>(entity.first), entity.second});
+    const auto known = numbers_of_.find(entity);
     numbers_ = known == numbers_of_.end() ? std::vector<std::int64_t>() : known->second;
     const std::int64_t type = in_.integer(kGmshIntBytes, "an element type");
     const std::size_t count =
@@ -333,52 +340,118 @@ int GmshReader::nodeCount(std::int64_t type, std::int64_t tag) const {
   return kNodes[static_cast<std::size_t>(type)];
 }
 
-/// Of element types 0 to 31: the dimension of points, lines, triangles and tetrahedra, whose corners are their first nodes; else -1 for
-/// a surface, -3 for a volume.
-constexpr std::array<int, 32> kSimplexDimension = {-1, 1,  2,  -1, 3, -3, -3, -3, 1, 2, -1, 3, -3, -3, -3, 0,
-                                                   -1, -3, -3, -3, 2, 2,  2,  2,  2, 2, 1,  1, 1,  3,  3,  3};
+struct ElementKind {
+  int dimension;
+  int corners;  ///< the first of its nodes, whatever its order
+};
+
+ElementKind kindOf(std::int64_t type) {
+  constexpr ElementKind kPoint = {0, 1}, kLine = {1, 2}, kTriangle = {2, 3}, kQuadrangle = {2, 4};
+  constexpr ElementKind kTetrahedron = {3, 4}, kPyramid = {3, 5}, kPrism = {3, 6}, kHexahedron = {3, 8};
+  switch (type) {
+    case 15:
+      return kPoint;
+    case 1:
+    case 8:
+    case 26:
+    case 27:
+    case 28:
+      return kLine;
+    case 3:
+    case 10:
+    case 16:
+      return kQuadrangle;
+    case 4:
+    case 11:
+    case 29:
+    case 30:
+    case 31:
+      return kTetrahedron;
+    case 5:
+    case 12:
+    case 17:
+      return kHexahedron;
+    case 6:
+    case 13:
+    case 18:
+      return kPrism;
+    case 7:
+    case 14:
+    case 19:
+      return kPyramid;
+    default:
+      return kTriangle;
+  }
+}
 
 void GmshReader::readElement(std::int64_t tag, std::int64_t type, int tag_bytes) {
   const int count = nodeCount(type, tag);
-  const int dimension = kSimplexDimension[static_cast<std::size_t>(type)];
-  if (dimension == 3) return readTetrahedron(tag, count, tag_bytes);
-  const bool is_kept = with_labels_ && dimension >= 0;
-  std::array<int, 4> nodes = {-1, -1, -1, -1};
+  const ElementKind kind = kindOf(type);
+  const bool is_volume = kind.dimension == 3;
+  ElementCorners corners = kNoCorners;
   for (int i = 0; i < count; ++i) {
     const std::int64_t node_tag = in_.integer(tag_bytes, "a node tag of an element");
-    if (is_kept && i <= dimension) nodes[static_cast<std::size_t>(i)] = tags_.find(node_tag);
-  }
-  if (is_kept) addToGroups(nodes, dimension);
-  ++contents_.other_elements;
-  if (dimension == -3) ++contents_.other_volumes;
-}
-
-void GmshReader::readTetrahedron(std::int64_t tag, int count, int tag_bytes) {
-  const auto readNodeIndex = [&] {
-    const std::int64_t node_tag = in_.integer(tag_bytes, "a node tag of an element");
-    const int node = tags_.find(node_tag);
-    if (node < 0) {
-      in_.fail("element " + std::to_string(tag) + " refers to node tag " + std::to_string(node_tag) + ", which " +
-               nodesSection() + " does not define; export the mesh again with all its nodes");
+    const bool is_corner = i < kind.corners;
+    if (is_volume) {
+      const int node = nodeOf(tag, node_tag);
+      if (!is_corner) contents_.between_corners.push_back(node);
+      if (is_corner) corners[static_cast<std::size_t>(i)] = node;
+    } else if (with_labels_ && is_corner) {
+      corners[static_cast<std::size_t>(i)] = tags_.find(node_tag);
     }
-    return node;
-  };
-  Tetrahedron tet;
-  for (int& node : tet) node = readNodeIndex();
-  for (int i = 4; i < count; ++i) contents_.between_corners.push_back(readNodeIndex());
-  if (count > 4) ++contents_.higher_order;
-  contents_.tetrahedra.push_back(tet);
-  if (with_labels_) addToGroups(tet, 3);
+  }
+  if (with_labels_) addToGroups(corners, kind.dimension);
+  if (!is_volume) {
+    ++contents_.other_elements;
+    return;
+  }
+  if (count > kind.corners) ++contents_.higher_order;
+  contents_.volumes.push_back(corners);
+  if (version_ == Version::k1 || version_ == Version::k2)
+    number_of_volume_.push_back(numbers_.empty() ? 0 : numbers_[0]);
 }
 
-MeshLabels::Group& GmshReader::group(int dimension, std::int64_t number) {
+int GmshReader::nodeOf(std::int64_t tag, std::int64_t node_tag) const {
+  const int node = tags_.find(node_tag);
+  if (node < 0) {
+    in_.fail("element " + std::to_string(tag) + " refers to node tag " + std::to_string(node_tag) + ", which " +
+             nodesSection() + " does not define; export the mesh again with all its nodes");
+  }
+  return node;
+}
+
+/// Gmsh writes an element of several physical groups once for each where the format has one number per element. Those of one group twice
+/// stay, for checkTetMesh() to refuse.
+void GmshReader::dropRepeatedVolumes() {
+  std::vector<std::size_t> order(number_of_volume_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto& volumes = contents_.volumes;
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return std::tie(volumes[a], a) < std::tie(volumes[b], b); });
+  std::vector<bool> is_repeated(order.size(), false);
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const bool is_same = volumes[order[i]] == volumes[order[i - 1]];
+    is_repeated[order[i]] = is_same && number_of_volume_[order[i]] != number_of_volume_[order[i - 1]];
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < is_repeated.size(); ++i) {
+    if (!is_repeated[i]) contents_.volumes[kept++] = contents_.volumes[i];
+  }
+  if (!is_repeated.empty()) contents_.volumes.resize(kept);
+}
+
+MeshFileContents::Group& GmshReader::group(int dimension, std::int64_t number) {
   const auto [found, is_new] = group_of_.emplace(std::make_pair(dimension, number), contents_.groups.size());
   if (is_new) contents_.groups.push_back({dimension, number, "", {}});
   return contents_.groups[found->second];
 }
 
-void GmshReader::addToGroups(const std::array<int, 4>& nodes, int dimension) {
-  for (const std::int64_t number : numbers_) group(dimension, number).elements.push_back(nodes);
+void GmshReader::addToGroups(const ElementCorners& corners, int dimension) {
+  for (const std::int64_t number : numbers_) group(dimension, number).elements.push_back(corners);
+  grouped_ += numbers_.size();
+  if (grouped_ <= kMostGrouped) return;
+  in_.fail("the physical groups have more than " + std::to_string(kMostGrouped) +
+           " elements; save the mesh with fewer");
 }
 
 void GmshReader::readPhysicalNames() {
@@ -422,8 +495,10 @@ void GmshReader::readEntity(int dimension) {
   }
   if (numbers_of_.count({dimension, tag}) > 0) in_.fail("an entity is given twice");
   for (std::size_t i = 0; i < count; ++i) {
+    const std::int64_t number = in_.integer(kGmshIntBytes, "a physical group");
+    if (number < -kMostTag || number > kMostTag) in_.fail("a physical group has a number of more than 32 bits");
     // Gmsh writes the number of a group that is oriented the other way with a minus.
-    numbers_of_[{dimension, tag}].push_back(std::abs(in_.integer(kGmshIntBytes, "a physical group")));
+    numbers_of_[{dimension, tag}].push_back(std::abs(number));
   }
   if (dimension == 0) return;
   const std::int64_t bounding = in_.integer(kCount, "the number of an entity's boundaries");

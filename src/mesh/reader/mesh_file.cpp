@@ -7,12 +7,18 @@
 /// damaged file makes it allocate nor names the line or byte at fault.
 #include "mesh/reader/mesh_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
+#include "mesh/coincident_nodes.h"
+#include "mesh/conformity.h"
 #include "mesh/fill/fill_surface.h"
 #include "mesh/nodes.h"
 #include "mesh/orientation.h"
@@ -23,17 +29,22 @@
 namespace tissue_contact {
 namespace {
 
-// Two million tetrahedra, the most a scene may have, take 100 MB as text. What is read from so many bytes is at most four
-// times as large.
+// Two million tetrahedra, the most a scene may have, take 100 MB as text. What is read from so many bytes is at most some
+// ten times as large, groups aside, which have a bound of their own.
 constexpr std::uintmax_t kMaximumFileBytes = std::uintmax_t{256} << 20U;
 
 MeshFileContents readContents(const std::string& file, bool with_labels) {
   std::string bytes = readFile(file, "mesh file", kMaximumFileBytes);
-  const bool gmsh = !bytes.empty() && bytes[0] == '$';
-  const bool vtk = bytes.rfind("# vtk ", 0) == 0;
-  const bool xml = !bytes.empty() && bytes[0] == '<';
-  const std::string start = excerpt(std::string_view(bytes).substr(0, bytes.find_first_of("\r\n")));
+  // A byte-order mark and blank lines before the first word are none of the format's, but editors leave them.
+  if (bytes.rfind("\xEF\xBB\xBF", 0) == 0) bytes.erase(0, 3);
+  const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
+  const std::string_view text = std::string_view(bytes).substr(begin);
+  const bool gmsh = text.substr(0, 1) == "$";
+  const bool vtk = text.substr(0, 6) == "# vtk ";
+  const bool xml = text.substr(0, 1) == "<";
+  const std::string start = excerpt(text.substr(0, text.find_first_of("\r\n")));
   MeshFileCursor in(file, std::move(bytes));
+  in.seek(begin);
   if (gmsh) return readGmsh(in, with_labels);
   if (vtk) return readVtk(in, with_labels);
   if (in.atEnd()) in.fail("the file is empty; it must hold a Gmsh .msh or a legacy VTK mesh");
@@ -42,18 +53,90 @@ MeshFileContents readContents(const std::string& file, bool with_labels) {
           (xml ? "; XML is not read" : "") + "; convert it, for instance: meshio convert FILE organ.vtk");
 }
 
-void requireTetrahedra(const MeshFileContents& contents, const std::string& file) {
+void requireVolumes(const MeshFileContents& contents, const std::string& file) {
   if (contents.other_volumes > 0) {
-    throw std::invalid_argument(
-        "mesh file '" + file + "' holds " + std::to_string(contents.other_volumes) +
-        " hexahedra, prisms or pyramids, which would be missing; split them into tetrahedra, for "
-        "instance with ParaView's filter Tetrahedralize");
+    throw std::invalid_argument("mesh file '" + file + "' holds " + std::to_string(contents.other_volumes) +
+                                " polyhedra or other cells that are no tetrahedra, pyramids, prisms or hexahedra and "
+                                "would be missing; split them into tetrahedra, for instance with ParaView's filter "
+                                "Tetrahedralize");
   }
-  if (!contents.tetrahedra.empty()) return;
+  if (!contents.volumes.empty()) return;
   throw std::invalid_argument("mesh file '" + file + "' holds no tetrahedra (" + std::to_string(contents.nodes.size()) +
                               " nodes, " + std::to_string(contents.other_elements) +
                               " elements of other kinds); mesh its volume, or save a closed surface as .stl (meshio "
                               "convert FILE organ.stl), which is filled");
+}
+
+void merge(const std::vector<int>& first, std::vector<ElementCorners>& elements) {
+  for (ElementCorners& corners : elements) {
+    for (int& node : corners) node = node < 0 ? node : first[static_cast<std::size_t>(node)];
+  }
+}
+
+/// @return how many nodes were merged, which nothing uses then.
+std::size_t treatCoincidentNodes(const MeshDescription& description, MeshFileContents& contents) {
+  if (description.coincident_nodes == CoincidentNodes::kKeep) return 0;
+  std::vector<bool> used(contents.nodes.size(), false);
+  for (const ElementCorners& corners : contents.volumes) {
+    for (std::size_t i = 0; i < cornerCount(corners); ++i) used[static_cast<std::size_t>(corners[i])] = true;
+  }
+  const std::vector<int> first = firstInPlace(contents.nodes, used);
+  std::vector<int> merged;
+  for (int i = 0; i < static_cast<int>(first.size()); ++i) {
+    if (first[static_cast<std::size_t>(i)] != i) merged.push_back(i);
+  }
+  if (merged.empty()) return 0;
+  if (description.coincident_nodes == CoincidentNodes::kRefuse) {
+    const int one = merged.front();
+    const Vector3 place = contents.nodes[static_cast<std::size_t>(one)] * description.scale_m_per_unit;
+    std::ostringstream message;
+    message << "mesh file '" << description.file << "': nodes " << first[static_cast<std::size_t>(one)] << " and "
+            << one << " (0-based, in file order) both lie at (" << place.transpose() << ") m, and " << merged.size() - 1
+            << " more in the place of others: the elements there do not hang together; set `coincident_nodes: merge` "
+               "for this mesh to join them, or `keep` where that is a cut";
+    throw std::invalid_argument(message.str());
+  }
+  merge(first, contents.volumes);
+  for (MeshFileContents::Group& group : contents.groups) merge(first, group.elements);
+  contents.between_corners.insert(contents.between_corners.end(), merged.begin(), merged.end());
+  return merged.size();
+}
+
+/// The volumes as tetrahedra, and what is said per volume said per tetrahedron.
+std::vector<Tetrahedron> splitVolumes(MeshFileContents& contents) {
+  std::vector<Tetrahedron> tetrahedra;
+  tetrahedra.reserve(contents.volumes.size());
+  std::vector<std::size_t> end_of;
+  end_of.reserve(contents.volumes.size());
+  for (const ElementCorners& corners : contents.volumes) {
+    addTetrahedra(corners, tetrahedra);
+    end_of.push_back(tetrahedra.size());
+  }
+  for (MeshLabels::CellData& data : contents.cell_data) {
+    std::vector<double> values;
+    values.reserve(tetrahedra.size());
+    for (std::size_t i = 0; i < end_of.size(); ++i) values.resize(end_of[i], data.values[i]);
+    data.values = std::move(values);
+  }
+  return tetrahedra;
+}
+
+MeshLabels::Group splitGroup(const MeshFileContents::Group& group) {
+  MeshLabels::Group split{group.dimension, group.number, group.name, {}};
+  std::vector<Tetrahedron> tetrahedra;
+  std::vector<Triangle> triangles;
+  for (const ElementCorners& corners : group.elements) {
+    if (group.dimension == 3) {
+      addTetrahedra(corners, tetrahedra);
+    } else if (group.dimension == 2) {
+      addTriangles(corners, triangles);
+    } else {
+      split.elements.push_back({corners[0], corners[1], -1, -1});
+    }
+  }
+  for (const Triangle& t : triangles) split.elements.push_back({t[0], t[1], t[2], -1});
+  split.elements.insert(split.elements.end(), tetrahedra.begin(), tetrahedra.end());
+  return split;
 }
 
 /// In metres, from the file's unit.
@@ -85,11 +168,13 @@ TetMesh loadTetMesh(const MeshDescription& description, const MeshPreparation& p
   if (description.cell_size_m != 0.0) return fillSurface(description, preparation);
   requirePositive("scale_m_per_unit of mesh file '" + description.file + "'", description.scale_m_per_unit, "m");
   MeshFileContents contents = readContents(description.file, labels != nullptr);
-  requireTetrahedra(contents, description.file);
-  TetMesh mesh{columnsOf(contents.nodes), std::move(contents.tetrahedra)};
+  requireVolumes(contents, description.file);
+  const std::size_t merged = treatCoincidentNodes(description, contents);
+  std::vector<Tetrahedron> tetrahedra = splitVolumes(contents);
+  TetMesh mesh{columnsOf(contents.nodes), std::move(tetrahedra)};
   if (labels != nullptr) {
-    *labels = {mesh.positions * description.scale_m_per_unit, std::move(contents.groups),
-               std::move(contents.cell_data)};
+    *labels = {mesh.positions * description.scale_m_per_unit, {}, std::move(contents.cell_data)};
+    for (const MeshFileContents::Group& group : contents.groups) labels->groups.push_back(splitGroup(group));
   }
   if (description.remove_unreferenced_nodes) {
     dropUnusedNodes(mesh.positions, mesh.tetrahedra);
@@ -97,14 +182,22 @@ TetMesh loadTetMesh(const MeshDescription& description, const MeshPreparation& p
     dropUnusedNodes(mesh.positions, mesh.tetrahedra, &contents.between_corners);
   }
   scale(description, mesh.positions);
-  const std::size_t turned = turnTetrahedra(mesh);
-  const auto say = [&](std::size_t count, const char* what) {
+  const std::size_t turned = turnTetrahedra(mesh, "mesh file '" + description.file + "'");
+  const auto say = [&](std::size_t count, const std::string& what) {
     if (count == 0 || !preparation.say) return;
-    preparation.say("mesh file '" + description.file + "': " + std::to_string(count) + " of " +
-                    std::to_string(mesh.tetrahedra.size()) + " tetrahedra " + what);
+    preparation.say("mesh file '" + description.file + "': " + std::to_string(count) + " " + what);
   };
-  say(contents.higher_order, "are of higher order; their corners are taken, with straight edges");
-  say(turned, "are numbered the other way round, and turned");
+  const std::string of_all = "of " + std::to_string(mesh.tetrahedra.size()) + " tetrahedra ";
+  const auto others = std::count_if(contents.volumes.begin(), contents.volumes.end(),
+                                    [](const ElementCorners& corners) { return cornerCount(corners) != 4; });
+  say(contents.higher_order, "of " + std::to_string(contents.volumes.size()) +
+                                 " elements are of higher order; their corners are taken, with straight edges");
+  say(static_cast<std::size_t>(others), "of " + std::to_string(contents.volumes.size()) +
+                                            " elements are hexahedra, prisms or pyramids, and split into tetrahedra");
+  say(merged, "nodes that lay where others do are merged with them");
+  say(turned, of_all + "are numbered the other way round, and turned");
+  const std::size_t parts = countParts(mesh);
+  say(parts > 1 ? parts : 0, "parts that share no node: each is held only by what is fixed of it");
   return mesh;
 }
 

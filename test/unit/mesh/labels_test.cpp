@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -150,6 +152,51 @@ TEST(MeshLabels, PlacesOfAStructuredMeshHardlyEverComeSideBySide) {
     while (orders[last] - orders[first] > kTwiceRounding) ++first;
     ASSERT_LT(last - first, 4U) << orders[last];
   }
+}
+
+/// Gmsh numbers groups of each dimension by themselves.
+TEST(MeshLabels, AGroupOfTwoDimensionsIsNoneOfThem) {
+  const Loaded loaded = load(replaced(kGroups1, "2 2 9 1 3", "2 2 7 1 3"));
+  expectRefusal([&] { heldNodes(loaded, GroupRegion{"7"}); },
+                {"group \"7\" is one of surfaces and one of volumes", "number of its own"});
+}
+
+/// Of partitioned meshes Gmsh writes the names alone.
+TEST(MeshLabels, AGroupWithoutElementsSaysSo) {
+  const Loaded loaded = load(replaced(kGroups22, "2 2 2 9 1 3 4 5", "2 2 2 0 1 3 4 5"));
+  expectRefusal([&] { heldNodes(loaded, GroupRegion{"free end"}); },
+                {"\"free end\" has no elements in the file", "partitioned"});
+}
+
+TEST(MeshLabels, NumbersOfGroupsHave32Bits) {
+  expectRefusal([&] { load(replaced(kGroups41, "1 1 1 1 6 0", "1 1 1 1 -9223372036854775808 0")); },
+                {"more than 32 bits"});
+}
+
+/// Bytes above 127 and their kin, which the cursor reads as negative.
+TEST(MeshLabels, UnsignedCellDataAreNotNegative) {
+  for (const auto& [type, bytes] :
+       {std::pair<const char*, unsigned>{"unsigned_char", 1}, {"unsigned_short", 2}, {"unsigned_int", 4}}) {
+    ByteWriter data(true);
+    const double largest = std::ldexp(1.0, static_cast<int>(8 * bytes)) - 1.0;
+    data.text(VtkWriter({"3.0", true, 8, 8, false}).write(twoTetrahedra()));
+    data.text("\nCELL_DATA 3\nSCALARS part " + std::string(type) + " 1\nLOOKUP_TABLE default\n");
+    data.integer(0, bytes).integer(-1, bytes).integer(7, bytes);
+    const Loaded loaded = load(data.bytes());
+    EXPECT_EQ(loaded.labels.cell_data.at(0).values, (std::vector<double>{largest, 7.0})) << type;
+  }
+}
+
+/// What else VTK writes beside the arrays that are looked for; names with what is no letter.
+TEST(MeshLabels, OtherCellDataAreSkipped) {
+  const std::string others =
+      "CELL_DATA 3\nCOLOR_SCALARS shade 3\n0 0 0 .5 .5 .5 1 1 1\nGLOBAL_IDS ids vtkIdType\n3 4 5\n"
+      "TEXTURE_COORDINATES uv 2 float\n0 0 0 1 1 1\nLOOKUP_TABLE colours 2\n0 0 0 1 1 1 1 1\n"
+      "SCALARS Region%20Id int\nLOOKUP_TABLE default\n4 5 6\n";
+  const Loaded loaded = load(replaced(kCellData, "CELL_DATA 3\n", others));
+  EXPECT_EQ(heldElements(loaded, CellDataRegion{"Region Id", 6.0}), (std::vector<bool>{false, true}));
+  EXPECT_EQ(heldElements(loaded, CellDataRegion{"ids", 4.0}), (std::vector<bool>{true, false}));
+  EXPECT_EQ(heldElements(loaded, CellDataRegion{"stiffness", 5.0}), (std::vector<bool>{true, false}));
 }
 
 TEST(MeshLabels, DamagedOnesAreRefused) {

@@ -60,6 +60,8 @@ const BadScene kTypes[] = {
      "31: tissues[1].mesh.remove_unreferenced_nodes", "is \"yes\"; it must be true or false"},
     {"remove_unreferenced_nodes: true", "remove_unreferenced_nodes: \"true\"",
      "31: tissues[1].mesh.remove_unreferenced_nodes", "it must be true or false"},
+    {"remove_unreferenced_nodes: true", "coincident_nodes: weld", "31: tissues[1].mesh.coincident_nodes",
+     "is \"weld\"; allowed here: refuse, merge, keep"},
     {"step: {max_step_s: 0.002, max_gap_s: 0.5}", "step: 0.001", "63: step", "is \"0.001\"; it must be a map"},
     {"    fixed:\n", "    fixed: none\n    damping_:\n", "24: tissues[0].damping_", "did you mean \"damping\"?"},
     {"    contact_links: [jaw]", "    contact_links: jaw", "59: instruments[1].contact_links", "it must be a list"},

@@ -74,6 +74,9 @@ TEST_F(SceneTest, FillsAMeshTissue) {
   EXPECT_EQ(mesh.file, path("organ.vtk"));
   EXPECT_EQ(mesh.scale_m_per_unit, 0.01);
   EXPECT_TRUE(mesh.remove_unreferenced_nodes);
+  EXPECT_EQ(mesh.coincident_nodes, CoincidentNodes::kRefuse);
+  const std::string merging = replaced(kFullScene, "remove_unreferenced_nodes: true", "coincident_nodes: merge");
+  EXPECT_EQ(std::get<MeshDescription>(parse(merging).tissues.at(1).geometry).coincident_nodes, CoincidentNodes::kMerge);
 }
 
 TEST_F(SceneTest, FillsAnInstrument) {

@@ -103,8 +103,9 @@ TEST_F(SceneTest, ASurfaceNeedsCellsAndAMeshHasItsOwn) {
   expectContains(refused("file: a.msh, cell_size_m: 0.006"), {"tissues[0].mesh.cell_size_m", "remove the key"});
   expectContains(refused("file: a.stl, cell_size_m: 6"), {"cell_size_m", "metres"});
   expectContains(refused("file: a.stl, cell_size_m: 0.006, cell_size_inside_m: 0.005"), {"cell_size_inside_m"});
-  expectContains(refused("file: a.stl, cell_size_m: 0.006, remove_unreferenced_nodes: true"),
-                 {"remove_unreferenced_nodes"});
+  for (const char* key : {"remove_unreferenced_nodes: true", "coincident_nodes: merge"}) {
+    expectContains(refused("file: a.stl, cell_size_m: 0.006, " + std::string(key)), {"is for tetrahedral meshes"});
+  }
 }
 
 TEST_F(SceneTest, PlacesMayBeGroupsAndCellData) {

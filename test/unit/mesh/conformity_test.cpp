@@ -1,0 +1,138 @@
+/// @file
+/// Tetrahedra that lie side by side and do not hang together: cracks, nodes in one place, parts.
+#include "mesh/conformity.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "mesh/labels.h"
+#include "mesh_writers.h"
+
+namespace tissue_contact {
+namespace conformity_test {
+
+TetMesh block(BlockSplit split = BlockSplit::kFive) {
+  return makeBlockMesh({Vector3(0.03, 0.03, 0.02), {3, 3, 2}, {}}, split);
+}
+
+TEST(Conformity, SoundMeshesAreAccepted) {
+  for (const BlockSplit split : {BlockSplit::kFive, BlockSplit::kSix})
+    EXPECT_NO_THROW(checkConforming(block(split), "mesh"));
+  EXPECT_NO_THROW(checkConforming(twoTetrahedra(), "mesh"));
+  TetMesh one = twoTetrahedra();
+  one.tetrahedra.pop_back();
+  EXPECT_NO_THROW(checkConforming(one, "mesh"));
+}
+
+/// Cells that are all split in the same five, so that the diagonals of faces between them cross: 16 % of the demo's force less, without a word.
+TEST(Conformity, CrossedDiagonalsAreRefused) {
+  for (const double warped_m : {0.0, 0.0004}) {
+    TetMesh mesh = block();
+    mesh.tetrahedra.clear();
+    const int across = 4;
+    for (int k = 0; k < 2; ++k) {
+      for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 3; ++i) {
+          const int n = i + across * (j + across * k);
+          const int c[8] = {n, n + 1, n + across + 1, n + across, n + 16, n + 17, n + 16 + across + 1, n + 16 + across};
+          for (const auto& t : {Tetrahedron{0, 1, 2, 5}, {0, 2, 7, 5}, {0, 2, 3, 7}, {0, 5, 7, 4}, {2, 7, 5, 6}}) {
+            mesh.tetrahedra.push_back({c[t[0]], c[t[1]], c[t[2]], c[t[3]]});
+          }
+        }
+      }
+    }
+    mesh.positions.col(21) += warped_m * Vector3(1.0, -1.0, 1.0);
+    EXPECT_NO_THROW(checkTetMesh(mesh, "mesh"));
+    expectRefusal([&] { checkConforming(mesh, "mesh"); },
+                  {"mesh: the elements on both sides of the quadrangle of nodes ", "different diagonals",
+                   "split neighbours mirrored"});
+  }
+}
+
+/// A hole as large as one element is no crack.
+TEST(Conformity, HolesAreNoCracks) {
+  TetMesh mesh = makeBlockMesh({Vector3(0.03, 0.03, 0.03), {5, 5, 5}, {}});
+  for (std::size_t i = 0; i < 5; ++i) {
+    TetMesh holed = mesh;
+    holed.tetrahedra.erase(holed.tetrahedra.begin() + 62 * 5 + static_cast<std::ptrdiff_t>(i));
+    EXPECT_NO_THROW(checkConforming(holed, "mesh")) << i;
+  }
+}
+
+/// Each element with nodes of its own, as deal.II and discontinuous fields of FEniCS are written.
+TetMesh apart(const TetMesh& mesh) {
+  TetMesh separate;
+  separate.positions.resize(3, static_cast<Eigen::Index>(4 * mesh.tetrahedra.size()));
+  for (const Tetrahedron& tet : mesh.tetrahedra) {
+    const auto first = static_cast<int>(4 * separate.tetrahedra.size());
+    for (int i = 0; i < 4; ++i)
+      separate.positions.col(first + i) = mesh.positions.col(tet[static_cast<std::size_t>(i)]);
+    separate.tetrahedra.push_back({first, first + 1, first + 2, first + 3});
+  }
+  return separate;
+}
+
+TEST(Conformity, CountsPartsThatShareNoNode) {
+  EXPECT_EQ(countParts(block()), 1u);
+  EXPECT_EQ(countParts(apart(block())), 90u);
+  TetMesh with_loose_node = twoTetrahedra();
+  with_loose_node.positions.conservativeResize(Eigen::NoChange, 6);
+  with_loose_node.positions.col(5).setZero();
+  EXPECT_EQ(countParts(with_loose_node), 1u);
+}
+
+class CoincidentNodesOfFiles : public testing::Test {
+ protected:
+  TetMesh load(CoincidentNodes treatment) {
+    MeshDescription description = meshFile(file_.path());
+    description.coincident_nodes = treatment;
+    MeshPreparation preparation;
+    preparation.say = [&](const std::string& line) { said_ += line + "\n"; };
+    return loadTetMesh(description, preparation);
+  }
+  FileOfBytes file_{VtkWriter({"3.0", false, 8, 8, false}).write(apart(block()))};
+  std::string said_;
+};
+
+TEST_F(CoincidentNodesOfFiles, AreRefusedUnlessTheSceneSaysWhatTheyAre) {
+  expectRefusal([&] { load(CoincidentNodes::kRefuse); },
+                {"nodes 2 and 5 (0-based, in file order) both lie at (", "and 311 more in the place of others",
+                 "do not hang together", "`coincident_nodes: merge`", "`keep`"});
+}
+
+TEST_F(CoincidentNodesOfFiles, AreMerged) {
+  const TetMesh mesh = load(CoincidentNodes::kMerge);
+  EXPECT_EQ(mesh.positions.cols(), block().positions.cols());
+  EXPECT_NO_THROW(checkTetMesh(mesh, "mesh"));
+  EXPECT_EQ(countParts(mesh), 1u);
+  EXPECT_EQ(boundaryTriangles(mesh.tetrahedra).size(), boundaryTriangles(block().tetrahedra).size());
+  EXPECT_NEAR(totalVolume(mesh), totalVolume(block()), 1e-15);
+  EXPECT_NE(said_.find("312 nodes that lay where others do are merged with them"), std::string::npos) << said_;
+}
+
+TEST_F(CoincidentNodesOfFiles, AreKeptAsACut) {
+  const TetMesh mesh = load(CoincidentNodes::kKeep);
+  EXPECT_EQ(mesh.positions.cols(), 360);
+  EXPECT_NE(said_.find("90 parts that share no node"), std::string::npos) << said_;
+}
+
+/// Groups name the nodes that are left. Nodes that no volume uses are not looked at, wherever they lie.
+TEST(CoincidentNodes, GroupsFollowAndLooseNodesDoNotCount) {
+  const std::string text =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n0 3 \"pin\"\n$EndPhysicalNames\n$Nodes\n10\n"
+      "1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 0 0\n6 0 1 0\n7 0 0 1\n8 1 1 1\n9 1e9 0 0\n10 1e9 0 0\n$EndNodes\n"
+      "$Elements\n3\n1 15 2 3 1 7\n2 4 2 0 1 1 2 3 4\n3 4 2 0 1 5 6 7 8\n$EndElements\n";
+  const FileOfBytes file(text);
+  MeshDescription description = meshFile(file.path(), true);
+  description.coincident_nodes = CoincidentNodes::kMerge;
+  MeshLabels labels;
+  const TetMesh mesh = loadTetMesh(description, {}, &labels);
+  expectSameMesh(mesh, twoTetrahedra());
+  EXPECT_EQ(labels.groups.at(0).elements, (std::vector<std::array<int, 4>>{{3, -1, -1, -1}}));
+}
+
+}  // namespace conformity_test
+}  // namespace tissue_contact
