@@ -15,8 +15,6 @@ import shlex
 import sys
 
 import numpy
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
 from make_joint_bag import write
@@ -160,6 +158,8 @@ def read_tetrahedra(path, scale):
 
 
 def require_one_body(topology):
+    from scipy.sparse import coo_matrix  # not for surfaces: it takes as long to load as all else
+    from scipy.sparse.csgraph import connected_components
     corners, others = topology.tetrahedra[:, [0, 0, 0]].ravel(), topology.tetrahedra[:, 1:].ravel()
     nodes = len(topology.rest_positions)
     joined = coo_matrix((numpy.ones(len(corners)), (corners, others)), shape=(nodes, nodes))
