@@ -158,7 +158,7 @@ def read_tetrahedra(path, scale):
 
 
 def require_one_body(topology):
-    from scipy.sparse import coo_matrix  # not for surfaces: it takes as long to load as all else
+    from scipy.sparse import coo_matrix  # which surfaces do without
     from scipy.sparse.csgraph import connected_components
     corners, others = topology.tetrahedra[:, [0, 0, 0]].ravel(), topology.tetrahedra[:, 1:].ravel()
     nodes = len(topology.rest_positions)
