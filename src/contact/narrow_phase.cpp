@@ -194,7 +194,11 @@ double NarrowPhase::addCornerInFold(int triangle, const ShapeCorner& corner) {
 void NarrowPhase::addClosest(int triangle, const TrianglePoints& points, double flush_gap) {
   ClosestPoint closest;
   if (!call_.shape->closest(points, call_.margin, closest)) return;
-  const Vector3 weights = snapped(closest.weights);
+  Vector3 weights = snapped(closest.weights);
+  if (call_.surface->isHeld(call_.surface->triangles()[triangle], weights)) {
+    if (!findClosestBesideHeld(triangle, points, closest)) return;
+    weights = snapped(closest.weights);
+  }
   const SurfaceFeature feature = call_.surface->featureOf(triangle, weights);
   if (feature[1] < 0) return;  // a vertex: measureVertex() has it
   Direction direction = contactDirection(closest, tangentOf(points, weights));
@@ -209,6 +213,19 @@ void NarrowPhase::addClosest(int triangle, const TrianglePoints& points, double 
     if (direction.gap >= lowest - kFlush * call_.shape->size()) return;
   }
   add(triangle, weights, -1, direction.normal, direction.gap);
+}
+
+/// Where the nearest point is held, the nearest that is not lies on the line where points begin to be: distances to a convex shape grow
+/// from there on.
+bool NarrowPhase::findClosestBesideHeld(int triangle, const TrianglePoints& points, ClosestPoint& closest) {
+  Matrix3 weights;
+  if (!call_.surface->findHeldLine(triangle, weights)) return false;
+  TrianglePoints part;
+  for (int i = 0; i < 3; ++i) part.corners[i] = points.pointAt(weights.col(i));
+  part.normal = points.normal;
+  if (!call_.shape->closest(part, call_.margin, closest)) return false;
+  closest.weights = weights * snapped(closest.weights);
+  return true;
 }
 
 double NarrowPhase::lowestVertexGap(const SurfaceFeature& feature) const {

@@ -88,6 +88,7 @@ class NarrowPhase {
   double addCorners(int triangle, const TrianglePoints& points);
   double addCornerInFold(int triangle, const ShapeCorner& corner);
   void addClosest(int triangle, const TrianglePoints& points, double flush_gap);
+  bool findClosestBesideHeld(int triangle, const TrianglePoints& points, ClosestPoint& closest);
   double lowestVertexGap(const SurfaceFeature& feature) const;
   bool add(int triangle, const Vector3& weights, int corner, const Vector3& normal_S, double gap);
   void mergeAndSort();

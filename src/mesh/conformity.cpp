@@ -13,7 +13,8 @@
 namespace tissue_contact {
 namespace {
 
-// Of the cube of the longest edge: a regular tetrahedron has 0.118, the gap between two splits of a warped quadrangle far less.
+// Of the cube of the longest edge: a regular tetrahedron has 0.118, the gap between two splits of a quadrangle of which one corner is off its
+// plane by a sixth of an edge .01.
 constexpr double kThinGap = 0.01;
 
 Triangle ascending(Triangle nodes) {
@@ -50,10 +51,13 @@ void checkConforming(const TetMesh& mesh, const std::string& source) {
     const int d = nodeOpposite(triangles[two], edge.nodes);
     if (outer[one].tetrahedron == outer[two].tetrahedron || c == d || !isOuter(a, c, d) || !isOuter(b, c, d)) continue;
     if (!(std::abs(relativeVolume(mesh.positions, {a, b, c, d})) < kThinGap)) continue;
-    refuseMesh(source, "the elements on both sides of the quadrangle of nodes " + std::to_string(a) + ", " +
-                           std::to_string(c) + ", " + std::to_string(b) + ", " + std::to_string(d) +
-                           " split it along different diagonals, so that they do not hang together there; where "
-                           "hexahedra were split into tetrahedra, give the hexahedra, or split neighbours mirrored");
+    refuseMesh(
+        source,
+        "the elements on both sides of the quadrangle of nodes " + std::to_string(a) + ", " + std::to_string(c) + ", " +
+            std::to_string(b) + ", " + std::to_string(d) +
+            " split it along different diagonals, so that they do not hang together there (or an element is missing "
+            "between them); where hexahedra were split into tetrahedra, give the hexahedra, or split neighbours "
+            "mirrored");
   }
 }
 

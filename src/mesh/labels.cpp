@@ -69,7 +69,8 @@ const MeshLabels::Group& groupOf(const GroupRegion& region, const MeshLabels& la
     if (group.elements.empty()) continue;
     if (found != nullptr) {
       throw std::invalid_argument("group " + inQuotes(region.name) + " is one of " + kThings[found->dimension] +
-                                  " and one of " + kThings[group.dimension] + "; give each a name or number of its own");
+                                  " and one of " + kThings[group.dimension] +
+                                  "; give each a name or number of its own");
     }
     found = &group;
   }

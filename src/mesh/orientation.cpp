@@ -49,7 +49,7 @@ std::size_t turnTetrahedra(TetMesh& mesh, const std::string& source) {
     std::swap(tet[2], tet[3]);
     ++count;
   }
-  if (count > 0) requireNoFold(mesh, source);
+  requireNoFold(mesh, source);
   return count;
 }
 

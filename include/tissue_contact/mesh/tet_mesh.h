@@ -39,7 +39,7 @@ constexpr int kTetrahedraPerCell = 5;
 /// Reads a tetrahedral mesh, or fills a surface (fill/fill_surface.h) where the description has a cell_size_m. Of the former:
 /// Gmsh .msh (1, 2.x, 4.0, 4.1) or legacy VTK (1 to 5), ASCII and binary; the contents decide which, not the name.
 /// Hexahedra, prisms and pyramids are split into tetrahedra, without new nodes; what has higher order is taken by its corners; tetrahedra
-/// numbered the other way round are turned; points, lines and surfaces are skipped, other cells refused. Coordinates are multiplied
+/// numbered the other way round are turned, a fold is refused; points, lines and surfaces are skipped, other cells refused. Coordinates are multiplied
 /// by the scale. Node and element order is the file's; unreferenced nodes are dropped if the description says so, else
 /// kept for checkTetMesh to name, and coincident ones treated as it says. The result has finite nodes, indices in range and a tetrahedron
 /// at least: whether it is fit for elasticity, checkTetMesh tells. Memory follows the file's size (256 MB at most).

@@ -10,7 +10,7 @@
 
 namespace tissue_contact {
 
-/// Corners in the order that Gmsh and VTK share, those that it lacks -1: one of a point, two of a line, three of a triangle, four of a
+/// Corners in Gmsh's order, those that it lacks -1 (VTK's, but for voxels and for wedges, which it numbers from the other side): one of a point, two of a line, three of a triangle, four of a
 /// quadrangle or a tetrahedron, five of a pyramid, six of a prism, eight of a hexahedron.
 using ElementCorners = std::array<int, 8>;
 

@@ -405,7 +405,7 @@ void GmshReader::readElement(std::int64_t tag, std::int64_t type, int tag_bytes)
     ++contents_.other_elements;
     return;
   }
-  if (count > kind.corners) ++contents_.higher_order;
+  contents_.higher_order += count > kind.corners ? 1 : 0;
   contents_.volumes.push_back(corners);
   if (version_ == Version::k1 || version_ == Version::k2)
     number_of_volume_.push_back(numbers_.empty() ? 0 : numbers_[0]);
@@ -426,8 +426,9 @@ void GmshReader::dropRepeatedVolumes() {
   std::vector<std::size_t> order(number_of_volume_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto& volumes = contents_.volumes;
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return std::tie(volumes[a], a) < std::tie(volumes[b], b); });
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::tie(volumes[a], number_of_volume_[a], a) < std::tie(volumes[b], number_of_volume_[b], b);
+  });
   std::vector<bool> is_repeated(order.size(), false);
   for (std::size_t i = 1; i < order.size(); ++i) {
     const bool is_same = volumes[order[i]] == volumes[order[i - 1]];
@@ -437,7 +438,9 @@ void GmshReader::dropRepeatedVolumes() {
   for (std::size_t i = 0; i < is_repeated.size(); ++i) {
     if (!is_repeated[i]) contents_.volumes[kept++] = contents_.volumes[i];
   }
-  if (!is_repeated.empty()) contents_.volumes.resize(kept);
+  if (kept == contents_.volumes.size() || is_repeated.empty()) return;
+  contents_.volumes.resize(kept);
+  contents_.higher_order = std::min(contents_.higher_order, kept);  // all are, or none: Gmsh's meshes have one order
 }
 
 MeshFileContents::Group& GmshReader::group(int dimension, std::int64_t number) {

@@ -20,6 +20,7 @@
 #include "mesh/coincident_nodes.h"
 #include "mesh/conformity.h"
 #include "mesh/fill/fill_surface.h"
+#include "mesh/mesh_checks.h"
 #include "mesh/nodes.h"
 #include "mesh/orientation.h"
 #include "tissue_contact/core/check.h"
@@ -30,7 +31,7 @@ namespace tissue_contact {
 namespace {
 
 // Two million tetrahedra, the most a scene may have, take 100 MB as text. What is read from so many bytes is at most some
-// ten times as large, groups aside, which have a bound of their own.
+// ten times as large, physical groups aside, which have a bound of their own.
 constexpr std::uintmax_t kMaximumFileBytes = std::uintmax_t{256} << 20U;
 
 MeshFileContents readContents(const std::string& file, bool with_labels) {
@@ -73,9 +74,9 @@ void merge(const std::vector<int>& first, std::vector<ElementCorners>& elements)
   }
 }
 
-/// @return how many nodes were merged, which nothing uses then.
-std::size_t treatCoincidentNodes(const MeshDescription& description, MeshFileContents& contents) {
-  if (description.coincident_nodes == CoincidentNodes::kKeep) return 0;
+/// @return the nodes that were merged with others, which nothing uses then.
+std::vector<int> treatCoincidentNodes(const MeshDescription& description, MeshFileContents& contents) {
+  if (description.coincident_nodes == CoincidentNodes::kKeep) return {};
   std::vector<bool> used(contents.nodes.size(), false);
   for (const ElementCorners& corners : contents.volumes) {
     for (std::size_t i = 0; i < cornerCount(corners); ++i) used[static_cast<std::size_t>(corners[i])] = true;
@@ -85,7 +86,7 @@ std::size_t treatCoincidentNodes(const MeshDescription& description, MeshFileCon
   for (int i = 0; i < static_cast<int>(first.size()); ++i) {
     if (first[static_cast<std::size_t>(i)] != i) merged.push_back(i);
   }
-  if (merged.empty()) return 0;
+  if (merged.empty()) return {};
   if (description.coincident_nodes == CoincidentNodes::kRefuse) {
     const int one = merged.front();
     const Vector3 place = contents.nodes[static_cast<std::size_t>(one)] * description.scale_m_per_unit;
@@ -98,20 +99,55 @@ std::size_t treatCoincidentNodes(const MeshDescription& description, MeshFileCon
   }
   merge(first, contents.volumes);
   for (MeshFileContents::Group& group : contents.groups) merge(first, group.elements);
-  contents.between_corners.insert(contents.between_corners.end(), merged.begin(), merged.end());
-  return merged.size();
+  return merged;
+}
+
+/// Before anything is made of more elements than any scene may have.
+void requireSize(const MeshFileContents& contents, const std::string& file) {
+  constexpr std::size_t kMostPerHexahedron = 6;
+  std::size_t most = 0;
+  for (const ElementCorners& corners : contents.volumes) {
+    const std::size_t count = cornerCount(corners);  // a tetrahedron, or two, three or six of them
+    most += count == 4 ? 1 : count < 8 ? count - 3 : kMostPerHexahedron;
+  }
+  if (most <= kMostElements) return;
+  throw std::invalid_argument("mesh file '" + file + "' makes " + std::to_string(most) + " tetrahedra; at most " +
+                              std::to_string(kMostElements) + " may be: mesh it coarser");
+}
+
+/// Of a volume that was split: its tetrahedra from `begin` on have volumes of one sign. Not those of a side that is bent too far, or of a corner
+/// that lies on a side.
+void requireConvex(const NodalVectors& positions, const std::vector<Tetrahedron>& tetrahedra, std::size_t begin,
+                   std::size_t element, const std::string& file) {
+  bool is_positive = true;
+  bool is_negative = true;
+  for (std::size_t i = begin; i < tetrahedra.size(); ++i) {
+    const double volume = relativeVolume(positions, tetrahedra[i]);
+    is_positive = is_positive && volume > kZeroVolume;
+    is_negative = is_negative && volume < -kZeroVolume;
+  }
+  if (begin == tetrahedra.size() || is_positive || is_negative) return;
+  throw std::invalid_argument(
+      "mesh file '" + file + "': volume element " + std::to_string(element) +
+      " (0-based, in file order), a hexahedron, prism or pyramid, is so far from convex that a "
+      "part of it is flat or inverted when it is split into tetrahedra; repair it, or mesh with "
+      "tetrahedra");
 }
 
 /// The volumes as tetrahedra, and what is said per volume said per tetrahedron.
-std::vector<Tetrahedron> splitVolumes(MeshFileContents& contents) {
+std::vector<Tetrahedron> splitVolumes(MeshFileContents& contents, const NodalVectors& positions,
+                                      const std::string& file) {
   std::vector<Tetrahedron> tetrahedra;
   tetrahedra.reserve(contents.volumes.size());
   std::vector<std::size_t> end_of;
   end_of.reserve(contents.volumes.size());
   for (const ElementCorners& corners : contents.volumes) {
+    const std::size_t begin = tetrahedra.size();
     addTetrahedra(corners, tetrahedra);
+    if (cornerCount(corners) != 4) requireConvex(positions, tetrahedra, begin, end_of.size(), file);
     end_of.push_back(tetrahedra.size());
   }
+  if (tetrahedra.empty()) throw std::invalid_argument("mesh file '" + file + "': all of its volumes have collapsed");
   for (MeshLabels::CellData& data : contents.cell_data) {
     std::vector<double> values;
     values.reserve(tetrahedra.size());
@@ -169,17 +205,18 @@ TetMesh loadTetMesh(const MeshDescription& description, const MeshPreparation& p
   requirePositive("scale_m_per_unit of mesh file '" + description.file + "'", description.scale_m_per_unit, "m");
   MeshFileContents contents = readContents(description.file, labels != nullptr);
   requireVolumes(contents, description.file);
-  const std::size_t merged = treatCoincidentNodes(description, contents);
-  std::vector<Tetrahedron> tetrahedra = splitVolumes(contents);
-  TetMesh mesh{columnsOf(contents.nodes), std::move(tetrahedra)};
+  requireSize(contents, description.file);
+  const std::vector<int> merged = treatCoincidentNodes(description, contents);
+  TetMesh mesh{columnsOf(contents.nodes), {}};
+  mesh.tetrahedra = splitVolumes(contents, mesh.positions, description.file);
   if (labels != nullptr) {
     *labels = {mesh.positions * description.scale_m_per_unit, {}, std::move(contents.cell_data)};
     for (const MeshFileContents::Group& group : contents.groups) labels->groups.push_back(splitGroup(group));
   }
-  if (description.remove_unreferenced_nodes) {
-    dropUnusedNodes(mesh.positions, mesh.tetrahedra);
-  } else if (!contents.between_corners.empty()) {
-    dropUnusedNodes(mesh.positions, mesh.tetrahedra, &contents.between_corners);
+  std::vector<int> needless = std::move(contents.between_corners);
+  needless.insert(needless.end(), merged.begin(), merged.end());
+  if (description.remove_unreferenced_nodes || !needless.empty()) {
+    dropUnusedNodes(mesh.positions, mesh.tetrahedra, description.remove_unreferenced_nodes ? nullptr : &needless);
   }
   scale(description, mesh.positions);
   const std::size_t turned = turnTetrahedra(mesh, "mesh file '" + description.file + "'");
@@ -194,7 +231,7 @@ TetMesh loadTetMesh(const MeshDescription& description, const MeshPreparation& p
                                  " elements are of higher order; their corners are taken, with straight edges");
   say(static_cast<std::size_t>(others), "of " + std::to_string(contents.volumes.size()) +
                                             " elements are hexahedra, prisms or pyramids, and split into tetrahedra");
-  say(merged, "nodes that lay where others do are merged with them");
+  say(merged.size(), "nodes that lay where others do are merged with them");
   say(turned, of_all + "are numbered the other way round, and turned");
   const std::size_t parts = countParts(mesh);
   say(parts > 1 ? parts : 0, "parts that share no node: each is held only by what is fixed of it");

@@ -67,13 +67,13 @@ std::size_t VtkArrays::readCount(const char* what, ItemSize item) {
   return in_.checkedCount(in_.textInteger(what), item, what);
 }
 
-void VtkArrays::skipMetadata(std::size_t components) {
+void VtkArrays::skipMetadata() {
   in_.endLine();
   while (in_.remaining() > 0) {
     const std::string_view line = in_.line();
     if (isBlank(line)) return;  // the end of the metadata
     if (line.substr(0, 15) != "COMPONENT_NAMES") continue;
-    for (std::size_t i = 0; i < components && in_.remaining() > 0; ++i) in_.line();  // blank where one has no name
+    for (std::size_t i = 0; i < components_ && in_.remaining() > 0; ++i) in_.line();  // blank where one has no name
   }
 }
 
@@ -96,7 +96,7 @@ std::vector<MeshLabels::CellData> VtkArrays::readCellData(std::size_t cells, std
 }
 
 void VtkArrays::readAttribute(const std::string& keyword) {
-  if (keyword == "METADATA") return skipMetadata(components_);
+  if (keyword == "METADATA") return skipMetadata();
   if (keyword == "SCALARS") return readScalars();
   if (keyword == "FIELD") return readField();
   static const std::map<std::string, std::size_t> kComponents = {
@@ -104,8 +104,7 @@ void VtkArrays::readAttribute(const std::string& keyword) {
       {"PEDIGREE_IDS", 1}, {"LOOKUP_TABLE", 4}, {"COLOR_SCALARS", 0}, {"TEXTURE_COORDINATES", 0}};
   const auto known = kComponents.find(keyword);
   if (known == kComponents.end()) {
-    in_.fail("data of the kind " + excerpt(keyword) +
-             " are not read (SCALARS, FIELD, VECTORS, NORMALS and TENSORS are); export the file without them");
+    in_.fail("data of the kind " + excerpt(keyword) + " are not read; export the file without them");
   }
   const std::string name = readName("the name of the data");
   const std::size_t tuples = keyword == "LOOKUP_TABLE" ? readCount("colors of a lookup table", {1, 1}) : tuples_;
@@ -146,7 +145,7 @@ void VtkArrays::readField() {
   for (std::size_t left = readCount("field arrays", {1, 1}); left > 0; --left) {
     std::string name = readName("the name of a field array");
     if (upperCase(name) == "METADATA") {  // of the array before
-      skipMetadata(components_);
+      skipMetadata();
       name = readName("the name of a field array");
     }
     if (name == "NULL_ARRAY") continue;  // what VTK writes for one that there is not

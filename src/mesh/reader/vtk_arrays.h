@@ -30,8 +30,10 @@ class VtkArrays {
  public:
   explicit VtkArrays(MeshFileCursor& in) : in_(in) {}
 
-  /// Behind the word METADATA, of an array with so many components.
-  void skipMetadata(std::size_t components);
+  /// Behind the word METADATA, of the array read last.
+  void skipMetadata();
+  /// An array with so many components has been read by someone else.
+  void noteArray(std::size_t components) { components_ = components; }
 
   /// Behind the word FIELD.
   void skipField() { readField(); }

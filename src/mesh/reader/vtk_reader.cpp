@@ -16,7 +16,9 @@
 namespace tissue_contact {
 namespace {
 
-constexpr std::int64_t kVoxel = 11;  // a hexahedron with its points in the order of x, y and z
+constexpr std::int64_t kVoxel = 11;     // a hexahedron with its points in the order of x, y and z
+constexpr std::int64_t kWedge = 13;     // a prism, numbered from its other end
+constexpr std::int64_t kLagrange = 71;  // from here on any order, which may differ between directions
 
 /// Of a cell that is read: how many of its points are corners, the first ones, and how many it has of second order.
 struct CellKind {
@@ -29,7 +31,7 @@ CellKind kindOf(std::int64_t type) {
   switch (type) {  // linear; quadratic, of one kind or more; Lagrange, Bezier
     case 10:
     case 24:
-    case 71:
+    case kLagrange:
     case 78:
       return kTetrahedron;
     case 14:
@@ -38,7 +40,7 @@ CellKind kindOf(std::int64_t type) {
     case 74:
     case 81:
       return kPyramid;
-    case 13:
+    case kWedge:
     case 26:
     case 31:
     case 32:
@@ -126,7 +128,7 @@ MeshFileContents VtkReader::read() {
 }
 
 void VtkReader::readBlock(const std::string& keyword) {
-  if (keyword == "METADATA") return arrays_.skipMetadata(3);  // of the points
+  if (keyword == "METADATA") return arrays_.skipMetadata();
   if (keyword == "FIELD") return arrays_.skipField();
   const bool points = keyword == "POINTS";
   const bool cells = keyword == "CELLS";
@@ -184,12 +186,14 @@ void VtkReader::readPoints() {
   in_.endLine();
   contents_.nodes.reserve(count);
   for (std::size_t i = 0; i < count; ++i) contents_.nodes.push_back(readNode(in_, type.bytes, i));
+  arrays_.noteArray(3);
   have_points_ = true;
 }
 
 IntegerArray VtkReader::readIntegers(std::size_t count, int bytes, const char* what) {
   in_.checkedCount(static_cast<std::int64_t>(count), {1, static_cast<std::size_t>(bytes)}, what);
   in_.endLine();
+  arrays_.noteArray(1);
   IntegerArray array;
   array.start = in_.offset();
   array.bytes = bytes;
@@ -227,7 +231,7 @@ void VtkReader::readCellsBySize() {
 IntegerArray VtkReader::readNamedIntegers(const char* name, std::size_t count) {
   std::string found = upperCase(in_.word(name));
   if (found == "METADATA") {  // of the array before
-    arrays_.skipMetadata(1);
+    arrays_.skipMetadata();
     found = upperCase(in_.word(name));
   }
   if (found != name)
@@ -276,7 +280,8 @@ void VtkReader::readCellTypes() {
   for (std::size_t i = 0; i < count; ++i) {
     const CellKind kind = kindOf(types.values[i]);
     const std::size_t size = cells_[i].size;
-    if (kind.corners > 0 && size != kind.corners && size < kind.quadratic) {
+    const std::size_t next = types.values[i] < kLagrange ? kind.quadratic : kind.corners;
+    if (kind.corners > 0 && size != kind.corners && size < next) {
       failAt(types, i,
              "cell " + std::to_string(i) + " has the type " + std::to_string(types.values[i]) + " and " +
                  std::to_string(size) + " points; it must have " + std::to_string(kind.corners) + ", or " +
@@ -301,6 +306,7 @@ void VtkReader::readCell(std::size_t cell, std::int64_t type) {
     std::swap(volume[2], volume[3]);
     std::swap(volume[6], volume[7]);
   }
+  if (type == kWedge) std::swap_ranges(volume.begin(), volume.begin() + 3, volume.begin() + 3);
   for (std::size_t k = corners; k < size; ++k) contents_.between_corners.push_back(point(cell, k));
   if (size > corners) ++contents_.higher_order;
   contents_.volumes.push_back(volume);

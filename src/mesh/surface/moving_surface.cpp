@@ -14,6 +14,8 @@
 namespace tissue_contact {
 namespace {
 
+constexpr double kLeastMoving = 0.25;  // of a point that is not held
+
 /// The triangles, once all is known to be well.
 std::vector<Triangle> checked(TissueSurface& surface, const NodalVectors& rest) {
   requireCount("tissue surface: fixed flags of nodes", surface.fixed.size(), rest.cols());
@@ -92,12 +94,26 @@ void MovingSurface::measureAtRest() {
 }
 
 bool MovingSurface::isHeld(const Triangle& nodes, const Vector3& weights) const {
-  constexpr double kLeastMoving = 0.25;
+  constexpr double kRounding = 1e-9;
   double moving = 0.0;
   for (int i = 0; i < 3; ++i) {
     if (weights[i] != 0.0 && !fixed_[nodes[i]]) moving += weights[i];
   }
-  return moving < kLeastMoving;
+  return moving < (1.0 - kRounding) * kLeastMoving;
+}
+
+bool MovingSurface::findHeldLine(int triangle, Matrix3& corners) const {
+  const Triangle& nodes = triangles_[triangle];
+  int ends = 1;
+  for (int i = 0; i < 3; ++i) {
+    if (fixed_[nodes[i]]) continue;
+    corners.col(0) = Vector3::Unit(i);
+    for (int k = 0; k < 3; ++k) {
+      if (fixed_[nodes[k]])
+        corners.col(ends++) = kLeastMoving * Vector3::Unit(i) + (1.0 - kLeastMoving) * Vector3::Unit(k);
+    }
+  }
+  return ends == 3;  // of one fixed node and two others, or of two and one
 }
 
 SurfaceFeature MovingSurface::featureOf(int triangle, const Vector3& weights) const {

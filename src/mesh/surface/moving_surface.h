@@ -39,6 +39,10 @@ class MovingSurface {
   /// Whether a point of these nodes belongs to what is fixed: less than a quarter of it is of nodes that can move, which would have to go
   /// more than four times as far as the point is to, and without bound where it is nearly a fixed node.
   bool isHeld(const Triangle& nodes, const Vector3& weights) const;
+  /// Of a triangle with nodes that can move and others: barycentric weights of one that can (first column) and of the ends of the line where
+  /// points begin to be held.
+  /// @returns whether it is such a triangle.
+  bool findHeldLine(int triangle, Matrix3& corners) const;
   /// The feature that the corners of non-zero weight make up.
   SurfaceFeature featureOf(int triangle, const Vector3& weights) const;
   /// Calls `visit(triangle)` for the triangles that contain the feature, ascending, until it returns true.

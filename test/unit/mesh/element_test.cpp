@@ -112,7 +112,7 @@ TEST(Element, ShapesHangTogether) {
   }
 }
 
-/// A hexahedron of which one edge has no length, as mesh generators write prisms, and one side: nothing flat is left.
+/// A hexahedron that has collapsed to a prism, as mesh generators write them, and one to a point: nothing flat is left.
 TEST(Element, CollapsedCornersAreLeftOut) {
   Volumes one = grid({1, 1, 1}, ascending(8));
   one.elements[0][2] = one.elements[0][1];
@@ -174,7 +174,103 @@ TEST(Element, VtkFilesOfHexahedra) {
   expectSameMesh(loadBytes(vtkText(quadratic, {12, 12, 12, 25})), expected);
 }
 
-/// Numbered from the other side, as VTK has its wedges.
+struct Shape {
+  std::vector<Vector3> corners;  ///< in the order of both formats
+  double volume;
+};
+
+const Shape kTetrahedron = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1.0 / 6.0};
+const Shape kPyramid = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 1}}, 1.0 / 3.0};
+const Shape kPrism = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, 0.5};
+const Shape kHexahedron = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
+                           1.0};
+
+struct Kind {
+  int type;
+  std::size_t nodes;
+  const Shape* shape;
+};
+
+/// Of one element, its further nodes somewhere else.
+NodalVectors nodesOf(const Kind& kind) {
+  NodalVectors nodes(3, static_cast<Eigen::Index>(kind.nodes));
+  for (std::size_t i = 0; i < kind.nodes; ++i) {
+    const auto further = static_cast<double>(i);
+    nodes.col(static_cast<Eigen::Index>(i)) =
+        i < kind.shape->corners.size() ? kind.shape->corners[i] : Vector3(0.1, 0.2, 10.0 + further);
+  }
+  return nodes;
+}
+
+void expectShape(const TetMesh& mesh, const Kind& kind) {
+  EXPECT_EQ(static_cast<std::size_t>(mesh.positions.cols()), kind.shape->corners.size());
+  expectSound(mesh, kind.shape->volume);
+}
+
+/// Gmsh's table of elements ("MSH file format").
+TEST(Element, EveryVolumeOfGmsh) {
+  const Kind kinds[] = {{4, 4, &kTetrahedron},   {5, 8, &kHexahedron},   {6, 6, &kPrism},     {7, 5, &kPyramid},
+                        {11, 10, &kTetrahedron}, {12, 27, &kHexahedron}, {13, 18, &kPrism},   {14, 14, &kPyramid},
+                        {17, 20, &kHexahedron},  {18, 15, &kPrism},      {19, 13, &kPyramid}, {29, 20, &kTetrahedron},
+                        {30, 35, &kTetrahedron}, {31, 56, &kTetrahedron}};
+  for (const Kind& kind : kinds) {
+    SCOPED_TRACE(kind.type);
+    const NodalVectors nodes = nodesOf(kind);
+    std::ostringstream text;
+    text << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << kind.nodes << "\n";
+    for (std::size_t i = 0; i < kind.nodes; ++i)
+      text << i + 1 << " " << nodes.col(static_cast<Eigen::Index>(i)).transpose() << "\n";
+    text << "$EndNodes\n$Elements\n1\n1 " << kind.type << " 2 0 1";
+    for (std::size_t i = 0; i < kind.nodes; ++i) text << " " << i + 1;
+    text << "\n$EndElements\n";
+    expectShape(loadBytes(text.str()), kind);
+  }
+}
+
+/// vtkCellType.h; Lagrange and Bezier ones of any order.
+TEST(Element, EveryVolumeOfVtk) {
+  const Kind kinds[] = {{10, 4, &kTetrahedron}, {12, 8, &kHexahedron},   {13, 6, &kPrism},
+                        {14, 5, &kPyramid},     {24, 10, &kTetrahedron}, {25, 20, &kHexahedron},
+                        {26, 15, &kPrism},      {27, 13, &kPyramid},     {29, 27, &kHexahedron},
+                        {31, 12, &kPrism},      {32, 18, &kPrism},       {33, 24, &kHexahedron},
+                        {37, 19, &kPyramid},    {71, 4, &kTetrahedron},  {72, 12, &kHexahedron},
+                        {73, 6, &kPrism},       {74, 14, &kPyramid},     {78, 20, &kTetrahedron},
+                        {79, 8, &kHexahedron},  {80, 18, &kPrism},       {81, 5, &kPyramid}};
+  for (const Kind& kind : kinds) {
+    SCOPED_TRACE(kind.type);
+    Volumes volumes{nodesOf(kind), {ascending(kind.nodes)}};
+    if (kind.type == 13)
+      std::swap_ranges(volumes.elements[0].begin(), volumes.elements[0].begin() + 3, volumes.elements[0].begin() + 3);
+    const FileOfBytes file(vtkText(volumes, {kind.type}));
+    std::string said;
+    MeshPreparation preparation;
+    preparation.say = [&](const std::string& line) { said += line; };
+    expectShape(loadTetMesh(meshFile(file.path()), preparation), kind);
+    EXPECT_EQ(said.find("numbered the other way round"), std::string::npos) << said;
+  }
+}
+
+/// A side bent so far that it is concave, and a corner in the middle of a side.
+TEST(Element, WhatCannotBeSplitIsNamed) {
+  Volumes volumes = grid({2, 1, 1}, ascending(12));
+  volumes.nodes.col(2) = Vector3(1.4, 0.6, 0.0);
+  expectRefused(vtkText(volumes, {12, 12}),
+                {"volume element 1 (0-based, in file order), a hexahedron", "so far from convex", "inverted"});
+  volumes.nodes.col(2) = Vector3(1.5, 0.5, 0.0);
+  expectRefused(vtkText(volumes, {12, 12}), {"volume element 1 ", "flat or inverted"});
+  volumes.elements = {std::vector<int>(8, 3)};
+  expectRefused(vtkText(volumes, {12}), {"all of its volumes have collapsed"});
+}
+
+/// Before they are split.
+TEST(Element, MoreThanASceneMayHaveAreRefused) {
+  Volumes volumes = grid({1, 1, 1}, ascending(8));
+  volumes.elements.assign(kMostElements / 6 + 1, volumes.elements[0]);
+  expectRefused(vtkText(volumes, std::vector<int>(volumes.elements.size(), 12)),
+                {"makes 2000004 tetrahedra; at most 2000000"});
+}
+
+/// Numbered from the other side.
 TEST(Element, MirroredOnesAreTurned) {
   Volumes volumes = grid({2, 1, 1}, ascending(12));
   for (std::vector<int>& element : volumes.elements)

@@ -261,7 +261,9 @@ TEST(GmshMesh, ReadsEveryOtherElementByItsNumberOfNodes) {
     for (int i = 0; i < nodes; ++i) element += " 70";
     SCOPED_TRACE(element);
     const std::string text = replaced(kText22, "2 2 2 0 1 70 2000000000 3", element);
-    expectSameMesh(loadBytes(text), twoTetrahedra());  // of volumes that have collapsed to a point nothing is left
+    expectSameMesh(
+        loadBytes(text),
+        twoTetrahedra());  // of volumes that have collapsed to a point nothing is left: element_test has others
   }
 }
 

@@ -59,6 +59,15 @@ TEST(Orientation, AFoldedMeshIsRefusedHoweverItIsNumbered) {
   }
 }
 
+/// The second lies in the first; each numbered so that its own volume is positive, as programs do that orient what they save.
+TEST(Orientation, AFoldOfPositiveTetrahedraIsRefused) {
+  TetMesh mesh = twoTetrahedra();
+  mesh.positions.col(4) = Vector3::Constant(0.1);
+  mesh.tetrahedra[1] = {1, 2, 4, 3};
+  ASSERT_GT(signedVolume(mesh.positions, mesh.tetrahedra[1]), 0.0);
+  expectRefusal([&] { turnTetrahedra(mesh, kSource); }, {"tetrahedra 0 and 1 lie on the same side"});
+}
+
 /// Other faults of a mesh of mixed numbering are told as they are, not as a fold.
 TEST(Orientation, OtherFaultsStayForTheChecks) {
   TetMesh twice = mixedBlock();

@@ -1,7 +1,9 @@
 // What triangles share, and surfaces that follow their nodes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <stdexcept>
+#include <vector>
 
 #include "mesh/surface/moving_surface.h"
 #include "unit/contact/contact_test_utilities.h"
@@ -115,6 +117,39 @@ TEST(MovingSurface, IsWhereItWasPlacedLastWhateverCameBefore) {
   EXPECT_EQ(surface.rest(), block.nodes);
   EXPECT_THROW(surface.place(NodalVectors::Zero(3, 2)), std::invalid_argument);
   EXPECT_THROW(placeAll(*shared, {}), std::invalid_argument);
+}
+
+// Nodes 0 and 1 are fixed, 2 is not: a point belongs to what is fixed where less than a quarter of it moves.
+TEST(MovingSurface, APointIsHeldWhereHardlyAnyOfItMoves) {
+  NodalVectors x(3, 3);
+  x << 0, 1, 0, 0, 0, 1, 0, 0, 0;
+  const MovingSurface surface(0, {{{0, 1, 2}}, {true, true, false}}, x);
+  const auto held = [&](double a, double b, double c) { return surface.isHeld({0, 1, 2}, Vector3(a, b, c)); };
+  EXPECT_FALSE(held(0.0, 0.0, 1.0));
+  EXPECT_FALSE(held(0.7, 0.0, 0.3));
+  EXPECT_TRUE(held(0.8, 0.0, 0.2));
+  EXPECT_TRUE(held(0.5, 0.499999, 1e-6));
+  EXPECT_TRUE(held(1.0, 0.0, 0.0));
+}
+
+TEST(MovingSurface, TheHeldLineBordersOnWhatMoves) {
+  NodalVectors x(3, 3);
+  x << 0, 1, 0, 0, 0, 1, 0, 0, 0;
+  for (const std::vector<bool>& fixed :
+       {std::vector<bool>{true, true, false}, {false, true, false}, {false, false, false}, {true, true, true}}) {
+    const MovingSurface surface(0, {{{0, 1, 2}}, fixed}, x);
+    Matrix3 corners;
+    const auto count = std::count(fixed.begin(), fixed.end(), true);
+    ASSERT_EQ(surface.findHeldLine(0, corners), count == 1 || count == 2);
+    if (count == 0 || count == 3) continue;
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_DOUBLE_EQ(corners.col(i).sum(), 1.0);
+      EXPECT_FALSE(surface.isHeld({0, 1, 2}, corners.col(i)));
+      double moving = 0.0;
+      for (int k = 0; k < 3; ++k) moving += fixed[static_cast<std::size_t>(k)] ? 0.0 : corners(k, i);
+      EXPECT_DOUBLE_EQ(moving, i == 0 ? 1.0 : 0.25);
+    }
+  }
 }
 
 }  // namespace surface_test

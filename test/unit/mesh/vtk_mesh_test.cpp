@@ -203,6 +203,8 @@ TEST(VtkMesh, WhatVtkWritesBesideArraysIsSkipped) {
   expectSameMesh(loadBytes(replaced(kText3, "CELLS", named + "CELLS")), twoTetrahedra());
   expectSameMesh(loadBytes(replaced(kText5, "CONNECTIVITY", "METADATA\nINFORMATION 0\n\nCONNECTIVITY")),
                  twoTetrahedra());
+  const std::string one = "FIELD FieldData 1\nseconds 1 1 double\n0.5\nMETADATA\nCOMPONENT_NAMES\ns\nINFORMATION 0\n\n";
+  expectSameMesh(loadBytes(replaced(kText3, "POINTS", one + "POINTS")), twoTetrahedra());
   const std::string field = "FIELD FieldData 3\nfirst 1 1 signed_char\n5\nNULL_ARRAY\nlast 2 1 unsigned_char\n1 2\n";
   expectSameMesh(loadBytes(replaced(kText3, "POINTS", field + "POINTS")), twoTetrahedra());
 }
