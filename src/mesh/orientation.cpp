@@ -1,6 +1,7 @@
 #include "mesh/orientation.h"
 
-#include <cmath>
+#include <algorithm>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -26,31 +27,35 @@ bool isFold(const FaceUse& one, const FaceUse& two, const TetMesh& mesh) {
   return relativeVolume(mesh.positions, a) > kZeroVolume && relativeVolume(mesh.positions, b) > kZeroVolume;
 }
 
-void requireNoFold(const TetMesh& mesh, const std::string& source) {
+/// @param turned per tetrahedron.
+void requireNoFold(const TetMesh& mesh, const std::vector<bool>& turned, const std::string& source) {
   const std::vector<FaceUse> faces = sortedFaces(mesh.tetrahedra);
   for (std::size_t i = 0, end = 0; i < faces.size(); i = end) {
     for (end = i + 1; end < faces.size() && faces[end].nodes == faces[i].nodes;) ++end;
     if (end - i != 2 || !isFold(faces[i], faces[i + 1], mesh)) continue;
     const auto& [a, b, c] = faces[i].nodes;
-    refuseMesh(source, "tetrahedra " + std::to_string(faces[i].tetrahedron) + " and " +
-                           std::to_string(faces[i + 1].tetrahedron) +
-                           " lie on the same side of the face they share (nodes " + std::to_string(a) + ", " +
-                           std::to_string(b) + ", " + std::to_string(c) +
-                           "): one of them is inverted; the mesh is folded there: repair it");
+    const std::size_t one = faces[i].tetrahedron;
+    const std::size_t two = faces[i + 1].tetrahedron;
+    std::ostringstream message;
+    message << "tetrahedra " << one << " and " << two << " lie on the same side of the face they share (nodes " << a
+            << ", " << b << ", " << c << "): one of them is inverted";
+    if (turned[one] != turned[two])
+      message << " (as they are numbered, tetrahedron " << (turned[one] ? one : two) << ")";
+    refuseMesh(source, message.str() + "; the mesh is folded there: repair it");
   }
 }
 
 }  // namespace
 
 std::size_t turnTetrahedra(TetMesh& mesh, const std::string& source) {
-  std::size_t count = 0;
-  for (Tetrahedron& tet : mesh.tetrahedra) {
-    if (!(signedVolume(mesh.positions, tet) < 0.0)) continue;
-    std::swap(tet[2], tet[3]);
-    ++count;
+  std::vector<bool> turned(mesh.tetrahedra.size(), false);
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    Tetrahedron& tet = mesh.tetrahedra[i];
+    turned[i] = signedVolume(mesh.positions, tet) < 0.0;
+    if (turned[i]) std::swap(tet[2], tet[3]);
   }
-  requireNoFold(mesh, source);
-  return count;
+  requireNoFold(mesh, turned, source);
+  return static_cast<std::size_t>(std::count(turned.begin(), turned.end(), true));
 }
 
 }  // namespace tissue_contact

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -35,6 +36,12 @@ constexpr ItemSize kBlockHeader = {4, 20};  // three ints and a count
 
 enum class Version { k1, k2, k40, k41 };
 
+struct ElementKind {
+  int dimension;
+  int corners;  ///< the first of its nodes, whatever its order
+  int nodes;
+};
+
 class GmshReader {
  public:
   GmshReader(MeshFileCursor& in, bool with_labels) : in_(in), with_labels_(with_labels) {}
@@ -59,7 +66,7 @@ class GmshReader {
   void readEntity(int dimension);
   MeshFileContents::Group& group(int dimension, std::int64_t number);
   void addToGroups(const ElementCorners& corners, int dimension);
-  int nodeCount(std::int64_t type, std::int64_t tag) const;
+  ElementKind kindOf(std::int64_t type, std::int64_t tag) const;
   std::size_t blockCount(std::int64_t count, std::size_t left, ItemSize item, const char* what) const;
   void readSection(const std::string& name);
   std::string nodesSection() const { return version_ == Version::k1 ? "$NOD" : "$Nodes"; }
@@ -252,7 +259,7 @@ void GmshReader::readElements1() {
     const std::int64_t group_number = in_.integer(kGmshIntBytes, "an element's physical group");
     in_.integer(kGmshIntBytes, "an element's elementary entity");
     const std::int64_t stated_nodes = in_.integer(kGmshIntBytes, "an element's number of nodes");
-    const int needed = nodeCount(type, tag);
+    const int needed = kindOf(type, tag).nodes;
     if (stated_nodes != needed) {
       in_.fail("element " + std::to_string(tag) + " has " + std::to_string(stated_nodes) + " nodes; its type " +
                std::to_string(type) + " must have " + std::to_string(needed) + ": export the mesh again");
@@ -329,67 +336,25 @@ void GmshReader::readElements4() {
   }
 }
 
-int GmshReader::nodeCount(std::int64_t type, std::int64_t tag) const {
-  // By element type: nodes of lines, triangles, quadrangles, hexahedra, prisms, pyramids and points, up to fifth order.
-  static constexpr std::array<int, 32> kNodes = {0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
-                                                 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
-  if (type < 1 || type >= static_cast<std::int64_t>(kNodes.size())) {
+ElementKind GmshReader::kindOf(std::int64_t type, std::int64_t tag) const {
+  // Points, lines, triangles, quadrangles, tetrahedra, pyramids, prisms and hexahedra, up to fifth order.
+  static constexpr ElementKind kKinds[] = {
+      {},         {1, 2, 2},  {2, 3, 3},  {2, 4, 4},  {3, 4, 4},  {3, 8, 8},  {3, 6, 6},  {3, 5, 5},
+      {1, 2, 3},  {2, 3, 6},  {2, 4, 9},  {3, 4, 10}, {3, 8, 27}, {3, 6, 18}, {3, 5, 14}, {0, 1, 1},
+      {2, 4, 8},  {3, 8, 20}, {3, 6, 15}, {3, 5, 13}, {2, 3, 9},  {2, 3, 10}, {2, 3, 12}, {2, 3, 15},
+      {2, 3, 15}, {2, 3, 21}, {1, 2, 4},  {1, 2, 5},  {1, 2, 6},  {3, 4, 20}, {3, 4, 35}, {3, 4, 56}};
+  if (type < 1 || type >= static_cast<std::int64_t>(std::size(kKinds))) {
     in_.fail("element " + std::to_string(tag) + " has the type " + std::to_string(type) +
              ", whose number of nodes is not known here (1 to 31 are): export the mesh with linear elements");
   }
-  return kNodes[static_cast<std::size_t>(type)];
-}
-
-struct ElementKind {
-  int dimension;
-  int corners;  ///< the first of its nodes, whatever its order
-};
-
-ElementKind kindOf(std::int64_t type) {
-  constexpr ElementKind kPoint = {0, 1}, kLine = {1, 2}, kTriangle = {2, 3}, kQuadrangle = {2, 4};
-  constexpr ElementKind kTetrahedron = {3, 4}, kPyramid = {3, 5}, kPrism = {3, 6}, kHexahedron = {3, 8};
-  switch (type) {
-    case 15:
-      return kPoint;
-    case 1:
-    case 8:
-    case 26:
-    case 27:
-    case 28:
-      return kLine;
-    case 3:
-    case 10:
-    case 16:
-      return kQuadrangle;
-    case 4:
-    case 11:
-    case 29:
-    case 30:
-    case 31:
-      return kTetrahedron;
-    case 5:
-    case 12:
-    case 17:
-      return kHexahedron;
-    case 6:
-    case 13:
-    case 18:
-      return kPrism;
-    case 7:
-    case 14:
-    case 19:
-      return kPyramid;
-    default:
-      return kTriangle;
-  }
+  return kKinds[type];
 }
 
 void GmshReader::readElement(std::int64_t tag, std::int64_t type, int tag_bytes) {
-  const int count = nodeCount(type, tag);
-  const ElementKind kind = kindOf(type);
+  const ElementKind kind = kindOf(type, tag);
   const bool is_volume = kind.dimension == 3;
   ElementCorners corners = kNoCorners;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < kind.nodes; ++i) {
     const std::int64_t node_tag = in_.integer(tag_bytes, "a node tag of an element");
     const bool is_corner = i < kind.corners;
     if (is_volume) {
@@ -405,7 +370,7 @@ void GmshReader::readElement(std::int64_t tag, std::int64_t type, int tag_bytes)
     ++contents_.other_elements;
     return;
   }
-  contents_.higher_order += count > kind.corners ? 1 : 0;
+  contents_.higher_order += kind.nodes > kind.corners ? 1 : 0;
   contents_.volumes.push_back(corners);
   if (version_ == Version::k1 || version_ == Version::k2)
     number_of_volume_.push_back(numbers_.empty() ? 0 : numbers_[0]);

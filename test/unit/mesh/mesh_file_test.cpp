@@ -105,7 +105,8 @@ TEST(MeshFile, AFoldIsRefused) {
   expectRefused(
       "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 .1 .1 .1\n$EndNodes\n"
       "$Elements\n2\n1 4 0 1 2 3 4\n2 4 0 2 3 4 5\n$EndElements\n",
-      {"tetrahedra 0 and 1 lie on the same side of the face they share (nodes 1, 2, 3)", "one of them is inverted"});
+      {"tetrahedra 0 and 1 lie on the same side of the face they share (nodes 1, 2, 3)",
+       "one of them is inverted (as they are numbered, tetrahedron 1)"});
 }
 
 /// Real meshes. The volumes were computed from the files' bytes by a separate Python script in exact rational

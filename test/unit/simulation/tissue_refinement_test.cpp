@@ -324,6 +324,7 @@ TEST(TissueRefinement, KeepsNodesApartThatLieAtOnePlace) {
   TissueDescription description = block();
   MeshDescription mesh;
   mesh.file = file;
+  mesh.coincident_nodes = CoincidentNodes::kKeep;
   description.geometry = mesh;
   description.fixed.clear();
   TissueRefinement refinement(description, Pose::Identity(), nullptr);
