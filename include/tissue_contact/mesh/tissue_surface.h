@@ -13,7 +13,7 @@ namespace tissue_contact {
 /// Surface of one tissue: triangles over its nodes.
 struct TissueSurface {
   std::vector<Triangle> triangles;
-  std::vector<bool> fixed;  ///< per node; contacts of which they make up more than three quarters are dropped
+  std::vector<bool> fixed;  ///< per node; points of which they make up more than three quarters are no contacts
   /// > 0: an open sheet, touched from both sides, half the thickness before its triangles. 0: the boundary of a volume.
   double thickness_m = 0.0;
 };
