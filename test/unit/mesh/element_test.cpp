@@ -29,7 +29,8 @@ struct Volumes {
 /// A grid of hexahedra of unit edges, its nodes in the order of `number`.
 Volumes grid(const std::array<int, 3>& cells, const std::vector<int>& number) {
   const auto node = [&](int i, int j, int k) {
-    return number[static_cast<std::size_t>(i + (cells[0] + 1) * (j + (cells[1] + 1) * k))];
+    const int place = i + (cells[0] + 1) * (j + (cells[1] + 1) * k);
+    return number[static_cast<std::size_t>(place)];
   };
   Volumes made;
   made.nodes.resize(3, static_cast<Eigen::Index>(number.size()));
@@ -93,10 +94,16 @@ TEST(Element, ShapesHangTogether) {
     if (trial > 0) std::shuffle(number.begin(), number.end(), random);
     Volumes volumes;
     volumes.nodes.resize(3, 13);
-    for (int i = 0; i < 13; ++i)
-      volumes.nodes.col(number[static_cast<std::size_t>(i)]) = Vector3(i % 2, i / 2 % 2, i / 4);
+    const auto at = [&](int i, int j, int k) {
+      const int place = i + 2 * j + 4 * k;
+      return number[static_cast<std::size_t>(place)];
+    };
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 2; ++j) {
+        for (int i = 0; i < 2; ++i) volumes.nodes.col(at(i, j, k)) = Vector3(i, j, k);
+      }
+    }
     volumes.nodes.col(number[12]) = Vector3(0.5, 0.5, 0.5);
-    const auto at = [&](int i, int j, int k) { return number[static_cast<std::size_t>(i + 2 * j + 4 * k)]; };
     const int apex = number[12];
     volumes.elements = {{at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 1, 0), apex},
                         {at(0, 1, 1), at(1, 1, 1), at(1, 0, 1), at(0, 0, 1), apex},
@@ -164,7 +171,10 @@ TEST(Element, VtkFilesOfHexahedra) {
             std::string::npos)
       << said;
   ASSERT_EQ(labels.cell_data.at(0).values.size(), 24U);
-  for (std::size_t i = 0; i < 24; ++i) EXPECT_EQ(labels.cell_data[0].values[i], 5.0 + static_cast<double>(i / 6));
+  for (std::size_t i = 0; i < 24; ++i) {
+    const std::size_t cell = i / 6;
+    EXPECT_EQ(labels.cell_data[0].values[i], 5.0 + static_cast<double>(cell));
+  }
   Volumes quadratic = volumes;
   quadratic.nodes.conservativeResize(Eigen::NoChange, 30);
   for (int i = 18; i < 30; ++i) {
