@@ -76,7 +76,7 @@ TEST(Orientation, OtherFaultsStayForTheChecks) {
   expectRefusal([&] { checkTetMesh(twice, kSource); }, {"has the same four nodes as tetrahedron 7"});
 
   TetMesh flat = mixedBlock();
-  const Tetrahedron& sound = flat.tetrahedra[7];
+  const Tetrahedron sound = flat.tetrahedra[7];
   const auto middle = static_cast<int>(flat.positions.cols());
   flat.positions.conservativeResize(Eigen::NoChange, middle + 1);
   flat.positions.col(middle) = 0.5 * (flat.positions.col(sound[0]) + flat.positions.col(sound[1]));
@@ -86,7 +86,7 @@ TEST(Orientation, OtherFaultsStayForTheChecks) {
                 {"tetrahedron " + std::to_string(flat.tetrahedra.size() - 1), "has no volume"});
 
   TetMesh three = mixedBlock();
-  const Tetrahedron& inner = three.tetrahedra[7];
+  const Tetrahedron inner = three.tetrahedra[7];
   const auto above = static_cast<int>(three.positions.cols());
   three.positions.conservativeResize(Eigen::NoChange, above + 3);
   for (int i = 0; i < 3; ++i) three.positions.col(above + i) = Vector3(0.1 + 0.01 * i, 0.2, 0.3 - 0.02 * i);
