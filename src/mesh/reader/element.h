@@ -10,8 +10,8 @@
 
 namespace tissue_contact {
 
-/// Corners in Gmsh's order, those that it lacks -1 (VTK's, but for voxels and for wedges, which it numbers from the other side): one of a point, two of a line, three of a triangle, four of a
-/// quadrangle or a tetrahedron, five of a pyramid, six of a prism, eight of a hexahedron.
+/// Corners in Gmsh's order, those that it lacks -1: one of a point, two of a line, three of a triangle, four of a quadrangle or a tetrahedron,
+/// five of a pyramid, six of a prism, eight of a hexahedron. VTK's order is the same but for voxels and for wedges, numbered from the other end.
 using ElementCorners = std::array<int, 8>;
 
 constexpr ElementCorners kNoCorners = {-1, -1, -1, -1, -1, -1, -1, -1};
