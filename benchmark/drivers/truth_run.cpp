@@ -4,14 +4,16 @@
 /// usage: truth_run SCENE MESH STEP_S TOLERANCE SECONDS [BAG]
 ///   SCENE press-drag, grasp, partial-slip or robot (with its BAG); MESH a file in the tissue's frame, - for the scene's
 ///   own, refined or fine for that one with refinement: auto or fine, or CELL_MM,REACH_MM,NODES[,GROWTH] for it refined
-///   so; SECONDS of the motion, 0: all
+///   so; any of these but a file with @X,Y,Z behind it for a block of that many cells; SECONDS of the motion, 0: all
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "benchmark/scenes.h"
@@ -33,22 +35,36 @@ ScenePlan planOf(const std::string& name, const std::string& bag) {
   throw std::invalid_argument("no scene '" + name + "'");
 }
 
+/// @return what stands before @X,Y,Z, and the scene's block with so many cells.
+std::string takeCells(const std::string& mesh, Scene& scene) {
+  const std::size_t at = mesh.rfind('@');
+  std::array<int, 3> cells{};
+  if (at == std::string::npos || std::sscanf(mesh.c_str() + at, "@%d,%d,%d", &cells[0], &cells[1], &cells[2]) != 3) {
+    return mesh;
+  }
+  BlockDescription* const block = std::get_if<BlockDescription>(&scene.tissues[0].geometry);
+  if (block == nullptr) throw std::invalid_argument(mesh + ": the scene's tissue is no block");
+  block->cells = cells;
+  return mesh.substr(0, at);
+}
+
 void prepare(const std::vector<std::string>& words, Scene& scene) {
   RefinementDescription& refinement = scene.tissues[0].refinement;
+  const std::string mesh_word = takeCells(words[1], scene);
   double cell_mm = 0.0;
   double reach_mm = 0.0;
-  if (words[1] == "refined") {
+  if (mesh_word == "refined") {
     refinement.mode = RefinementDescription::Mode::kAuto;
-  } else if (words[1] == "fine") {
+  } else if (mesh_word == "fine") {
     refinement.mode = RefinementDescription::Mode::kFine;
-  } else if (std::sscanf(words[1].c_str(), "%lf,%lf,%d,%lf", &cell_mm, &reach_mm, &refinement.nodes_at_most,
+  } else if (std::sscanf(mesh_word.c_str(), "%lf,%lf,%d,%lf", &cell_mm, &reach_mm, &refinement.nodes_at_most,
                          &refinement.growth) >= 3) {
     refinement.mode = RefinementDescription::Mode::kGiven;
     refinement.cell_m = 1e-3 * cell_mm;
     refinement.reach_m = 1e-3 * reach_mm;
-  } else if (words[1] != "-") {
+  } else if (mesh_word != "-") {
     MeshDescription mesh;
-    mesh.file = words[1];
+    mesh.file = mesh_word;
     mesh.remove_unreferenced_nodes = true;
     scene.tissues[0].geometry = mesh;
   }

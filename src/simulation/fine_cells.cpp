@@ -7,7 +7,6 @@
 namespace tissue_contact {
 namespace {
 
-constexpr double kCellsOfReach = 3.0;
 /// Of the reach: once foci change, places farther than this from all get one of their own, or else each would do so at a time of its own.
 constexpr double kWellCovered = 0.25;
 /// Of the reach: foci lie on a lattice, so that a tool that comes back finds the same mesh. It is fine enough for a place to be
@@ -26,7 +25,7 @@ void requirePossible(const StateArchive& archive, const Vector3& p_T, double cel
 
 }  // namespace
 
-double FineCells::reach(double cell_m) const { return reach_m_ > 0.0 ? reach_m_ : kCellsOfReach * cell_m; }
+double FineCells::reach(double cell_m) const { return reach_m_ > 0.0 ? reach_m_ : cells_of_reach_ * cell_m; }
 
 bool FineCells::covers(const Focus& focus, const FinePlace& place, double share) const {
   return focus.asked_m <= place.cell_m &&

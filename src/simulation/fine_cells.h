@@ -21,11 +21,12 @@ struct FinePlace {
 
 class FineCells {
  public:
-  /// Of the reach: a contact that far from a focus has as much of fine cells beyond it.
-  static constexpr double kCovered = 0.5;
+  /// Of the reach: as far from a focus a contact may come before the mesh moves on.
+  static constexpr double kCovered = 0.75;
 
   explicit FineCells(const RefinementDescription& refinement)
       : reach_m_(refinement.reach_m),
+        cells_of_reach_(refinement.choice().cells_of_reach),
         growth_(refinement.growth > 0.0 ? refinement.growth : refinement.choice().growth) {}
 
   double reach(double cell_m) const;
@@ -54,8 +55,9 @@ class FineCells {
   };
   bool covers(const Focus& focus, const FinePlace& place, double share) const;
 
-  double reach_m_;  ///< how far fine cells reach beyond a place; 0: kCellsOfReach cells
-  double growth_;   ///< length that they gain per length of distance beyond that
+  double reach_m_;  ///< how far fine cells reach beyond a place; 0: so many cells
+  double cells_of_reach_;
+  double growth_;  ///< length that they gain per length of distance beyond that
   std::vector<Focus> foci_;
   double coarsening_ = 1.0;
 };

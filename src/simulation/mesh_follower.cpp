@@ -7,8 +7,8 @@
 namespace tissue_contact {
 namespace {
 
-/// Of the reach of a focus: cells begin to grow there.
-constexpr double kLost = 1.0;
+/// Of the reach of a focus: beyond it what touches has its mesh within the step. Cells are longer by growth times the reach there.
+constexpr double kLost = 2.0;
 
 /// Of the reach: sliding is foreseen no farther ahead than this, since what moves that fast turns or stops before long.
 constexpr double kFarthestAhead = 2.0;

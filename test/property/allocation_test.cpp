@@ -248,7 +248,7 @@ TEST_F(AllocationOfScenes, OnlyInTheFewStepsThatRenewAFactor) {
 TEST_F(AllocationOfScenes, FewWhereAPreparedMeshIsTakenOver) {
   constexpr long kInAMove = 12;
   constexpr long kBesideMoves = 2;
-  Simulator simulator = makeProbedBlock("    refinement: {cell_m: 0.003}\n", "");
+  Simulator simulator = makeProbedBlock("    refinement: {cell_m: 0.003, reach_m: 0.003}\n", "");
   for (int k = 0; k < 400; ++k) stepAllocates(simulator, pressAndDrag(k));
   simulator.reset();
   stepAllocates(simulator, pressAndDrag(0));  // has its mesh at once

@@ -103,7 +103,9 @@ MeshFileContents GmshReader::read() {
     readSection(name);
   }
   if (!have_elements_) {
-    in_.fail("the file ends without a " + elementsSection() + " section: it is truncated; export or copy it again");
+    in_.fail(
+        "the file ends without a " + elementsSection() +
+        " section: Gmsh made no mesh (it says why when it meshes), or the file is truncated; mesh or copy it again");
   }
   return std::move(contents_);
 }

@@ -51,7 +51,9 @@ MeshFileContents readContents(const std::string& file, bool with_labels) {
   if (in.atEnd()) in.fail("the file is empty; it must hold a Gmsh .msh or a legacy VTK mesh");
   in.fail("the file starts with " + start +
           ", which is neither Gmsh .msh ('$MeshFormat' or '$NOD') nor legacy VTK ('# vtk DataFile Version')" +
-          (xml ? "; XML is not read" : "") + "; convert it, for instance: meshio convert FILE organ.vtk");
+          (xml ? "; XML is not read" : "") +
+          "; convert it, for instance: meshio convert FILE organ.vtk (GiD's .msh it does not read: export another "
+          "format there)");
 }
 
 void requireVolumes(const MeshFileContents& contents, const std::string& file) {

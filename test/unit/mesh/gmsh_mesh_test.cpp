@@ -143,6 +143,7 @@ TEST(GmshMesh, EveryPrefixOfAFileIsRefused) {
 
 TEST(GmshMesh, NamesTheFormatThatIsNotRead) {
   expectRefused("$NODES\n1\n", {":1: ", "$NOD of MSH 1", "'$NODES'", "gmsh -save -format msh41"});
+  expectRefused("MESH dimension 3 ElemType Tetrahedra Nnode 4\n", {":1: ", "'MESH dimension 3", "GiD"});
   for (const char* version : {"1", "2.3", "3", "4.2", "5", "x", "-2.2", "nan"}) {
     expectRefused(replaced(kText22, "2.2 0", std::string(version) + " 0"), {":2: MSH version '", version, "msh41"});
   }
@@ -158,7 +159,8 @@ TEST(GmshMesh, NamesSectionsThatAreWrong) {
                 {":7: $ParametricNodes is not read", "Mesh.SaveParametric"});
   expectRefused(std::string(kText22) + "$Nodes\n0\n$EndNodes\n", {":22: a second section $Nodes"});
   expectRefused("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Elements\n0\n$EndElements\n", {":4: $Elements comes before"});
-  expectRefused("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n", {"without a $Elements section", "truncated"});
+  expectRefused("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n",
+                {"without a $Elements section", "Gmsh made no mesh", "truncated"});
   expectRefused(std::string(kText22) + "garbage", {":22: expected a section", "'garbage'"});
   for (const char* text : {kText1, kText22}) {  // to search for the end of such a section would take hours
     expectRefused(text + ("$" + std::string(1000, 'N')) + "\n", {"expected a section", "'$NNN", "...'"});

@@ -36,7 +36,7 @@ TissueDescription block() {
 
 constexpr double kStep = 0.001;
 
-/// Touched on the upper face; the fine cells reach 3.75 mm.
+/// Touched on the upper face; the fine cells reach 2.5 mm.
 TouchedPlace at(double x, double speed = 0.0, bool touches = true) {
   return {Vector3(x, 0.0, 0.04), 0.00125, Vector3(speed, 0.0, 0.0), touches};
 }
@@ -77,7 +77,7 @@ TEST(MeshFollower, HasTheFirstMeshAtOnce) {
   EXPECT_EQ(followed.stepsUntilItMoves({at(0.0)}), 100);
 }
 
-// From .5 of the reach on one is prepared; what comes near as well, before it touches.
+// From .75 of the reach on one is prepared; what comes near as well, before it touches.
 TEST(MeshFollower, HasOthersTwentyStepsAfterTheyAreBegun) {
   for (const bool touches : {true, false}) {
     Followed followed;
@@ -90,7 +90,7 @@ TEST(MeshFollower, HasOthersTwentyStepsAfterTheyAreBegun) {
   }
 }
 
-// At 100 mm/s a place .6 mm from the middle of what is fine leaves half the reach (1.875 mm) within 20 steps; the mesh is fine for as long
+// At 100 mm/s a place .6 mm from the middle of what is fine leaves three quarters of the reach (1.875 mm) within 20 steps; the mesh is fine for as long
 // as the next one would take, 4 mm on.
 TEST(MeshFollower, SeesAheadByTheSpeedOfWhatTouches) {
   Followed followed;

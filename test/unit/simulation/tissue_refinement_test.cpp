@@ -10,6 +10,7 @@
 #include <fstream>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -56,16 +57,18 @@ std::optional<NodeTransfer> follow(TissueRefinement& refinement, const std::vect
 
 TEST(FineCells, GrowAsTheRefinementSays) {
   using Mode = RefinementDescription::Mode;
-  const std::pair<RefinementDescription, double> refinements[] = {{{Mode::kAuto}, 0.5},
-                                                                  {{Mode::kFine}, 0.2},
-                                                                  {{Mode::kGiven, 0.00125}, 0.5},
-                                                                  {{Mode::kGiven, 0.00125, 0.0, 0, 0.3}, 0.3}};
   constexpr double kCell = 0.00125;
-  for (const auto& [refinement, growth] : refinements) {
+  const std::tuple<RefinementDescription, double, double> refinements[] = {
+      {{Mode::kAuto}, 2.0 * kCell, 0.35},
+      {{Mode::kFine}, 3.0 * kCell, 0.2},
+      {{Mode::kGiven, kCell}, 2.0 * kCell, 0.35},
+      {{Mode::kGiven, kCell, 0.004, 0, 0.3}, 0.004, 0.3}};
+  for (const auto& [refinement, reach_m, growth] : refinements) {
     FineCells cells(refinement);
     cells.add({{Vector3::Zero(), kCell}});
-    EXPECT_EQ(cells.longestEdge(Vector3(0.003, 0.0, 0.0)), std::sqrt(3.0) * kCell);
-    const Vector3 beyond(cells.reach(kCell) + 0.005, 0.0, 0.0);
+    EXPECT_EQ(cells.reach(kCell), reach_m);
+    EXPECT_EQ(cells.longestEdge(Vector3(reach_m, 0.0, 0.0)), std::sqrt(3.0) * kCell);
+    const Vector3 beyond(reach_m + 0.005, 0.0, 0.0);
     EXPECT_NEAR(cells.longestEdge(beyond), std::sqrt(3.0) * (kCell + growth * 0.005), 1e-15) << growth;
   }
 }
@@ -73,8 +76,9 @@ TEST(FineCells, GrowAsTheRefinementSays) {
 TEST(TissueRefinement, FineMayHaveMoreNodes) {
   using Mode = RefinementDescription::Mode;
   const auto nodesAtMost = [](const RefinementDescription& refinement) { return mostNodes(refinement, 605); };
-  EXPECT_EQ(nodesAtMost({Mode::kAuto}), 3000U);
-  EXPECT_EQ(nodesAtMost({Mode::kFine}), 20000U);
+  EXPECT_EQ(nodesAtMost({Mode::kAuto}), 3605U);
+  EXPECT_EQ(nodesAtMost({Mode::kFine}), 20605U);
+  EXPECT_EQ(mostNodes({Mode::kAuto}, 8000), 12000U);
   EXPECT_EQ(nodesAtMost({Mode::kFine, 0.0, 0.0, 700}), 700U);
 }
 
