@@ -35,14 +35,14 @@ ScenePlan planOf(const std::string& name, const std::string& bag) {
   throw std::invalid_argument("no scene '" + name + "'");
 }
 
-/// @return what stands before @X,Y,Z, and the scene's block with so many cells.
+/// @return what stands before @X,Y,Z, and the scene's block with so many cells; all of it where it does not end so, as a file.
 std::string takeCells(const std::string& mesh, Scene& scene) {
-  const std::size_t at = mesh.rfind('@');
+  const std::size_t at = std::min(mesh.rfind('@'), mesh.size());
   std::array<int, 3> cells{};
-  if (at == std::string::npos || std::sscanf(mesh.c_str() + at, "@%d,%d,%d", &cells[0], &cells[1], &cells[2]) != 3) {
-    return mesh;
-  }
-  BlockDescription* const block = std::get_if<BlockDescription>(&scene.tissues[0].geometry);
+  int length = 0;
+  std::sscanf(mesh.c_str() + at, "@%d,%d,%d%n", &cells[0], &cells[1], &cells[2], &length);
+  if (length == 0 || at + static_cast<std::size_t>(length) != mesh.size()) return mesh;
+  auto* const block = std::get_if<BlockDescription>(&scene.tissues[0].geometry);
   if (block == nullptr) throw std::invalid_argument(mesh + ": the scene's tissue is no block");
   block->cells = cells;
   return mesh.substr(0, at);

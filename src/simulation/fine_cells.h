@@ -21,7 +21,7 @@ struct FinePlace {
 
 class FineCells {
  public:
-  /// Of the reach: as far from a focus a contact may come before the mesh moves on.
+  /// Of the reach: as far from a focus a contact may come before the mesh moves on, and idle foci stay.
   static constexpr double kCovered = 0.75;
 
   explicit FineCells(const RefinementDescription& refinement)

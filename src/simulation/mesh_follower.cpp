@@ -7,14 +7,14 @@
 namespace tissue_contact {
 namespace {
 
-/// Of the reach of a focus: beyond it what touches has its mesh within the step. Cells are longer by growth times the reach there.
-constexpr double kLost = 2.0;
+/// Of the reach of a focus: beyond it what touches has its mesh within the step. Cells are longer there by growth times half the reach.
+constexpr double kLost = 1.5;
 
 /// Of the reach: sliding is foreseen no farther ahead than this, since what moves that fast turns or stops before long.
-constexpr double kFarthestAhead = 2.0;
+constexpr double kFarthestAhead = 3.5;
 
 /// Of the reach: how far off what comes nearer is looked for; a tool of 1 mm has its mesh in time up to some .4 m/s.
-constexpr double kFarthestApproach = 10.0;
+constexpr double kFarthestApproach = 17.0;
 
 }  // namespace
 
@@ -69,7 +69,7 @@ bool MeshFollower::isCovered(const TouchedPlace& touched, double ahead_s, double
   return !touched.rest_W.allFinite() || refinement_.cells().isCovered(placeAhead(touched, ahead_s), share);
 }
 
-/// @return whether what touches now lies within what the prepared mesh has fine, so that it is not made coarse under load.
+/// @return whether what touches now is not lost on the prepared mesh, so that it is not made coarse under load.
 bool MeshFollower::comingKeeps(const std::vector<TouchedPlace>& places) const {
   if (error_ || !coming_.next.transfer) return true;
   return std::none_of(places.begin(), places.end(), [&](const TouchedPlace& one) {
