@@ -279,7 +279,7 @@ TEST(MeshFollower, TellsOfLongerCellsWhileSomethingTouches) {
   std::vector<TouchedPlace> places;
   for (int k = 0; k < 60; ++k) places.push_back(at(-0.04 + 0.0014 * k));
   followed.step(places);
-  EXPECT_GT(followed.follower->coarsening(), 1.0) << "3000 nodes are not enough";
+  EXPECT_GT(followed.follower->coarsening(), 1.0) << "3605 nodes are not enough";
   followed.step({});
   EXPECT_EQ(followed.follower->coarsening(), 1.0);
 }

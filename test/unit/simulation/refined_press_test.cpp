@@ -56,7 +56,7 @@ Trace traceOf(Simulator& simulator, double down = 0.0041, double along = 0.006) 
   return trace;
 }
 
-// 0.1126 N at the end of the press: benchmark/truth/press_drag.csv, 0.2 s, known to 0.4 %. Measured: +3.4 %; 80 % without refinement.
+// 0.1126 N at the end of the press: benchmark/truth/press_drag.csv, 0.2 s, known to 0.4 %. Measured: +2.9 %; 80 % without refinement.
 TEST(RefinedPress, MeetsTheTruthOfPressAndDrag) {
   Simulator simulator = simulatorOf("auto");
   const Trace trace = traceOf(simulator, 0.004, 0.0);
