@@ -97,7 +97,8 @@ TEST(MeshFollower, SeesAheadByTheSpeedOfWhatTouches) {
   followed.step({at(0.0)});
   EXPECT_EQ(followed.stepsUntilItMoves({at(0.0006)}), 100);
   EXPECT_EQ(followed.stepsUntilItMoves({at(0.0006, 0.1)}), 20);
-  for (double x = 0.0; x <= 0.0046; x += 0.0002) {
+  for (int k = 0; k <= 23; ++k) {
+    const double x = 0.0002 * k;
     EXPECT_TRUE(followed.refinement.cells().isCovered({Vector3(x, 0.0, 0.04), 0.00125}, FineCells::kCovered)) << x;
   }
 }
@@ -277,6 +278,7 @@ TEST(MeshFollower, TellsOfLongerCellsWhileSomethingTouches) {
   followed.step({at(0.0)});
   EXPECT_EQ(followed.follower->coarsening(), 1.0);
   std::vector<TouchedPlace> places;
+  places.reserve(60);
   for (int k = 0; k < 60; ++k) places.push_back(at(-0.04 + 0.0014 * k));
   followed.step(places);
   EXPECT_GT(followed.follower->coarsening(), 1.0) << "3605 nodes are not enough";
