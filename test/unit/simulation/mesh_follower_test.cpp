@@ -103,6 +103,23 @@ TEST(MeshFollower, SeesAheadByTheSpeedOfWhatTouches) {
   }
 }
 
+// Twice the 20 ms that a mesh takes are 8 mm at 200 mm/s: within 3.5 reaches.
+TEST(MeshFollower, SeesAsFarAheadAsAFastToolGoes) {
+  Followed followed;
+  followed.step({at(0.0)});
+  EXPECT_EQ(followed.stepsUntilItMoves({at(0.0, 0.2)}), 20);
+  EXPECT_TRUE(followed.refinement.cells().isCovered({Vector3(0.008, 0.0, 0.04), 0.00125}, FineCells::kCovered));
+}
+
+// One and a half reaches are 3.75 mm.
+TEST(MeshFollower, WaitsForAMeshWhereCellsHaveHardlyGrown) {
+  for (const bool is_near : {true, false}) {
+    Followed followed;
+    followed.step({at(0.0)});
+    EXPECT_EQ(followed.step({at(is_near ? 0.0036 : 0.0039)}) == nullptr, is_near);
+  }
+}
+
 TEST(MeshFollower, HasOneAtOnceWhereSomethingTouchesThatJumpedThere) {
   Followed followed;
   followed.step({at(0.0)});

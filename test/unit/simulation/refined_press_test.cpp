@@ -87,7 +87,7 @@ TEST(RefinedPress, TheForceDoesNotJumpWhereTheMeshMoves) {
 }
 
 // The same fine cells all along the path, so that the mesh never moves. Both reach far, since a mesh that is fine all along is finer
-// far from the ball as well: 1 % of the force, RMS. (9 mm: with less that is more.)
+// far from the ball as well: .7 % of the force, RMS. (9 mm: with less that is more.)
 TEST(RefinedPress, AMovingMeshGivesTheForcesOfOneThatIsFineAllAlong) {
   Simulator moving = simulatorOf("{cell_m: 0.0025, reach_m: 0.009, nodes_at_most: 12000}");
   Simulator still = simulatorOf("{cell_m: 0.0025, reach_m: 0.020, nodes_at_most: 12000}");
