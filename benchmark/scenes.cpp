@@ -110,10 +110,10 @@ ScenePlan pressDragPlan(const SceneOptions& options) {
   plan.meshes = {{20, 20, 6}, {35, 35, 10}};
   using Mode = RefinementDescription::Mode;
   plan.refinements = {
-      {Mode::kGiven, 0.0025, 0.0, 3000}, {Mode::kGiven, 0.00128, 0.0, 3605}, {Mode::kGiven, 0.0009, 0.004, 6000}};
+      {Mode::kGiven, 0.0025, 0.0, 3000}, {Mode::kGiven, 0.00128, 0.0, 2605}, {Mode::kGiven, 0.0009, 0.004, 6000}};
   if (options.quick) {
     plan.meshes = {{20, 20, 6}};
-    plan.refinements = {{Mode::kGiven, 0.00128, 0.0, 3605}};
+    plan.refinements = {{Mode::kGiven, 0.00128, 0.0, 2605}};
     plan.steps_s = {0.005};
   }
   plan.truth.table = truthTable("press_drag");

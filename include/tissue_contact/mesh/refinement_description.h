@@ -30,7 +30,7 @@ struct RefinementDescription {
     double cells_across;
   };
   Choice choice() const {
-    return mode == Mode::kFine ? Choice{8.0, 3.0, 0.2, 20000, 12.0} : Choice{3.9, 2.0, 0.35, 3000, 6.0};
+    return mode == Mode::kFine ? Choice{8.0, 3.0, 0.2, 20000, 12.0} : Choice{3.9, 2.0, 0.35, 2000, 6.0};
   }
 };
 

@@ -298,7 +298,7 @@ TEST(MeshFollower, TellsOfLongerCellsWhileSomethingTouches) {
   places.reserve(60);
   for (int k = 0; k < 60; ++k) places.push_back(at(-0.04 + 0.0014 * k));
   followed.step(places);
-  EXPECT_GT(followed.follower->coarsening(), 1.0) << "3605 nodes are not enough";
+  EXPECT_GT(followed.follower->coarsening(), 1.0) << "2605 nodes are not enough";
   followed.step({});
   EXPECT_EQ(followed.follower->coarsening(), 1.0);
 }

@@ -331,9 +331,9 @@ TEST(RefinedPress, OfTwoTissuesTheOneWithTheLongestCellsIsTold) {
 
 TEST(RefinedPress, AdviceSaysWhatWasChosen) {
   const std::pair<std::string, std::vector<std::string>> choices[] = {
-      {"auto", {"cells of 1.28 mm", "growing by 0.35", "3605 nodes"}},
+      {"auto", {"cells of 1.28 mm", "growing by 0.35", "2605 nodes"}},
       {"fine", {"cells of 0.625 mm", "growing by 0.2", "20605 nodes"}},
-      {"{cell_m: 0.002, growth: 0.3}", {"cells of 2 mm", "growing by 0.3", "3605 nodes"}}};
+      {"{cell_m: 0.002, growth: 0.3}", {"cells of 2 mm", "growing by 0.3", "2605 nodes"}}};
   for (const auto& [refinement, words] : choices) {
     const std::vector<Advice> lines = simulatorOf(refinement).advice();
     const auto about = std::find_if(lines.begin(), lines.end(), [](const Advice& line) {

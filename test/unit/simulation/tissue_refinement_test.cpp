@@ -76,7 +76,7 @@ TEST(FineCells, GrowAsTheRefinementSays) {
 TEST(TissueRefinement, FineMayHaveMoreNodes) {
   using Mode = RefinementDescription::Mode;
   const auto nodesAtMost = [](const RefinementDescription& refinement) { return mostNodes(refinement, 605); };
-  EXPECT_EQ(nodesAtMost({Mode::kAuto}), 3605U);
+  EXPECT_EQ(nodesAtMost({Mode::kAuto}), 2605U);
   EXPECT_EQ(nodesAtMost({Mode::kFine}), 20605U);
   EXPECT_EQ(mostNodes({Mode::kAuto}, 8000), 12000U);
   EXPECT_EQ(nodesAtMost({Mode::kFine, 0.0, 0.0, 700}), 700U);
