@@ -59,13 +59,13 @@ class TissueFixture:
         self._statuses = []
         self._diagnosis = "no diagnostics came"
         self._starter = None
+        self._name = node.strip("/")
+        self._diagnostics = rospy.Subscriber("/diagnostics", DiagnosticArray, self._diagnose)
         self._subscribers = [self._subscribe("%s/%s/wrench" % (node, name), WrenchStamped, self._wrenches[name].append)
                              for name in instruments]
         self._subscribers.append(self._subscribe(node + "/status", Status, self._statuses.append))
         for subscriber in self._subscribers:
             self._wait(lambda one=subscriber: open_connections(one) > 0, "a publisher of " + subscriber.name)
-        self._diagnostics = rospy.Subscriber("/diagnostics", DiagnosticArray, self._diagnose)
-        self._name = node.strip("/")
 
     def _subscribe(self, topic, kind, keep):
         def take(message):

@@ -4,6 +4,7 @@ import os
 import struct
 
 from tissue_contact import _replay
+from tissue_contact._core import Scene
 from tissue_contact._helpers import settings
 
 _FNV_OFFSET, _FNV_PRIME = 14695981039346656037, 1099511628211  # of LockStep::digest() in C++
@@ -55,6 +56,8 @@ def replay(scene, bag, *, set=None, csv=None, urdf=None, from_s=0.0, duration_s=
         raise ValueError("from_s is %s; it must be finite and not negative" % from_s)
     if not duration_s > 0.0:
         raise ValueError("duration_s is %s; it must be more than 0" % duration_s)
+    if isinstance(scene, Scene):
+        raise TypeError("scene must be a file, and not what load_scene() makes of it; give that file, and its set={...}")
     files = ["" if one is None else os.fspath(one) for one in (csv, urdf)]
     return Replayed(*_replay.replay(os.fspath(scene), os.fspath(bag), settings(set), files[0], files[1], from_s, duration_s, changes))
 

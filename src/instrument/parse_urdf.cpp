@@ -89,6 +89,7 @@ class UrdfReader {
       const bool limited = joint.limits && joint.type != urdf::Joint::CONTINUOUS;
       independent.lower = limited ? joint.limits->lower : -std::numeric_limits<double>::infinity();
       independent.upper = limited ? joint.limits->upper : std::numeric_limits<double>::infinity();
+      independent.turns_on = joint.type == urdf::Joint::CONTINUOUS;
       joints_.push_back(independent);
     }
   }
@@ -99,10 +100,11 @@ class UrdfReader {
                        : joint.type == urdf::Joint::UNKNOWN  ? "unknown"
                                                              : nullptr;
     if (type != nullptr) {
-      refuse(
-          "joint '" + joint.name + "' has the unsupported type '" + type +
-          "'; use fixed, revolute, continuous or prismatic (for a base that moves: fixed, and tf_frame in the scene's "
-          "base_pose)");
+      refuse("joint '" + joint.name + "' has the unsupported type '" + type +
+             "'; use fixed, revolute, continuous or prismatic (a base that moves: three prismatic and three revolute "
+             "joints whose "
+             "positions are published; one that stands elsewhere each time: fixed, and tf_frame in the scene's "
+             "base_pose)");
     }
   }
 
@@ -136,6 +138,7 @@ class UrdfReader {
     link.joint = drive.joint;
     link.multiplier = drive.multiplier;
     link.offset = drive.offset;
+    if (joint.mimic) link.mimic = joint.name;
   }
 
   /// The joint that `joint` mimics.

@@ -5,7 +5,10 @@
 #include <cstddef>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
+
+#include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 namespace {
@@ -60,6 +63,12 @@ void requireDifferentNames(const std::vector<Named>& all, const std::string& com
 
 }  // namespace
 
+double IndependentJoint::nearest(double position, double to) const {
+  const double way = position - to;
+  if (!turns_on || std::abs(way) <= M_PI || !std::isfinite(way)) return position;
+  return to + std::remainder(way, 2.0 * M_PI);
+}
+
 RobotModel::RobotModel(std::string name, std::vector<Link> links, std::vector<IndependentJoint> joints)
     : name_(std::move(name)), links_(std::move(links)), joints_(std::move(joints)) {
   if (links_.empty()) throw std::invalid_argument("robot '" + name_ + "' has no link; it needs at least a root link");
@@ -71,6 +80,17 @@ RobotModel::RobotModel(std::string name, std::vector<Link> links, std::vector<In
 }
 
 int RobotModel::findLink(const std::string& name) const { return indexOf(links_, name); }
+
+std::string RobotModel::mimicsText(const std::vector<std::string>& names) const {
+  const std::set<std::string_view> given(names.begin(), names.end());  // a message may name a million
+  std::vector<std::string> mimics;
+  for (const Link& link : links_) {
+    if (link.mimic.empty() || given.count(link.mimic) == 0) continue;
+    mimics.push_back(link.mimic + " of " + joints_[static_cast<std::size_t>(link.joint)].name);
+  }
+  return mimics.empty() ? std::string()
+                        : "mimics, which only follow a joint: " + listOf(mimics) + "; give that joint's position";
+}
 
 int RobotModel::findJoint(const std::string& name) const { return indexOf(joints_, name); }
 

@@ -89,17 +89,19 @@ std::vector<std::string> JointWatch::takeNews(double now_s) {
 
 /// Empty where names are as they should be.
 std::string JointWatch::namesText(std::size_t instrument) const {
-  const std::vector<IndependentJoint>& joints = simulator_.instruments()[instrument].model().joints();
+  const RobotModel& model = simulator_.instruments()[instrument].model();
+  const std::vector<IndependentJoint>& joints = model.joints();
   const Seen& seen = seen_[instrument];
   std::vector<std::string> still;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     if (seen.joints.count(static_cast<int>(j)) == 0) still.push_back(joints[j].name);
   }
   if (still.empty() || seen.foreign.empty()) return {};
+  const std::string mimics = model.mimicsText(seen.foreign);
   return "no joint state names these joints of '" + simulator_.instruments()[instrument].name() +
          "', which stay where the scene puts them: " + listOf(still) +
          "; those that come name others, which are none of its independent joints: " + listOf(seen.foreign) +
-         ". If they are the same, map them by joint_names";
+         (mimics.empty() ? ". If they are the same, map them by joint_names" : ". Of these are " + mimics);
 }
 
 /// Empty where no joint was far outside its limits.

@@ -223,6 +223,52 @@ std::optional<Advice> heldDoubt(const TissueDescription& description, const Tiss
                 true};
 }
 
+std::optional<Advice> unitDoubt(const TissueDescription& tissue) {
+  constexpr double kSoft = 100.0;   // Pa; brain has some 500
+  constexpr double kLight = 100.0;  // kg/m^3; lung has some 300
+  constexpr double kSlow = 0.5;     // s; figures of organs are some milliseconds
+  const auto doubt = [&](const char* key, double value, const char* question) {
+    return Advice{
+        "tissue " + quoted(tissue.name) + ": " + key + " is " + twoDigits(value) + ", which no tissue has: " + question,
+        true};
+  };
+  if (tissue.material.youngs_modulus_pa < kSoft) {
+    return doubt("material.youngs_modulus_pa", tissue.material.youngs_modulus_pa,
+                 "is it in kPa? Give 1000 times as much");
+  }
+  if (tissue.material.density_kg_per_m3 < kLight) {
+    return doubt("material.density_kg_per_m3", tissue.material.density_kg_per_m3,
+                 "is it in g/cm^3? Give 1000 times as much");
+  }
+  if (tissue.damping.stiffness_s > kSlow) {
+    return doubt("damping.stiffness_s", tissue.damping.stiffness_s, "is it in milliseconds? Give a thousandth");
+  }
+  return std::nullopt;
+}
+
+std::optional<Advice> supportDoubt(const Scene& scene, std::size_t tissue, const std::vector<Tissue>& tissues) {
+  const TissueDescription& description = scene.tissues[tissue];
+  const std::vector<bool>& fixed = tissues[tissue].fixed();
+  if (std::find(fixed.begin(), fixed.end(), false) == fixed.end()) {
+    return Advice{
+        "tissue " + quoted(description.name) +
+            ": `fixed` holds all of its nodes, so nothing presses on it and all wrenches are zero; of a plane it "
+            "holds what lies against its normal",
+        true};
+  }
+  const bool is_in_pair =
+      std::any_of(scene.tissue_pairs.begin(), scene.tissue_pairs.end(), [&](const TissuePair& pair) {
+        return pair.tissue != pair.other && (pair.tissue == description.name || pair.other == description.name);
+      });
+  const bool is_held = std::find(fixed.begin(), fixed.end(), true) != fixed.end();
+  if (is_held || is_in_pair || tissues[tissue].attachmentStiffness() > 0.0) return std::nullopt;
+  return Advice{
+      "tissue " + quoted(description.name) +
+          ": nothing holds it, so what touches it pushes it away and forces are those of its inertia; give it "
+          "`fixed` or `attachments`, or something to lie on in tissue_pairs",
+      true};
+}
+
 Advice meshLine(const TissueDescription& tissue, double edge_m, const HalfExtents& shapes) {
   return withExpectedError(tissue,
                            "mesh of tissue " + quoted(tissue.name) + ": as it is, cells of " + twoDigits(1e3 * edge_m) +
@@ -244,7 +290,7 @@ Advice refinementLine(const TissueDescription& tissue, const TissueRefinement& r
   if (is_coarse) {
     line << "where nothing touches, its cells or those at the border of a part are " << refinement.bodyCoarsening()
          << " times as long as they should be, since it may have " << refinement.nodesAtMost()
-         << " nodes: raise refinement.nodes_at_most; ";
+         << " nodes: raise tissues[].refinement.nodes_at_most, in a map with the numbers that follow; ";
   }
   if (cells_m.empty()) {
     line << "stays as it is, since no instrument touches; for other tissues give refinement.cell_m";

@@ -37,6 +37,12 @@ std::optional<Advice> sizeDoubt(const TissueDescription& tissue, const NodalVect
 /// `fixed` runs through them; else none.
 std::optional<Advice> heldDoubt(const TissueDescription& description, const Tissue& tissue);
 
+/// A warning where a constant of a tissue is such as that of no tissue, and likely in another unit; else none.
+std::optional<Advice> unitDoubt(const TissueDescription& tissue);
+
+/// A warning where nothing holds a tissue, or all of it is held, so that nothing can press on it; else none.
+std::optional<Advice> supportDoubt(const Scene& scene, std::size_t tissue, const std::vector<Tissue>& tissues);
+
 /// What the mesh of a volume is, and what it is likely to do to the forces of the instruments' shapes: a warning where
 /// even the largest shape meets coarse cells.
 /// @param edge_m of the shorter triangles of the surface.

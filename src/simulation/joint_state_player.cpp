@@ -102,6 +102,7 @@ void JointStatePlayer::place(int topic, JointStateSample sample) {
       state.held.push_back(std::move(sample));
       return;
     default:
+      if (hasNews(state, sample)) return keep(state, sample);
       refuseByClock(ruling, topic, sample.stamp_ns, was_late);
   }
 }
@@ -111,13 +112,18 @@ void JointStatePlayer::accept(int topic, int epoch, JointStateSample sample) {
   const Moment moment = {epoch, sample.stamp_ns};
   const bool begins = newest_ && newest_->epoch < epoch;
   noteMoment(moment);
+  if (state.last && state.last->epoch != epoch) forgetKept(state);
   state.last = moment;
-  state.queue.push_back({moment, std::move(sample)});
+  for (const std::string& name : sample.names) state.named[name] = moment;
+  const std::size_t count = 1 + std::exchange(state.kept.count, 0);
+  addUnnamed(std::exchange(state.kept.sample, {}), sample);
+  state.queue.push_back({moment, std::move(sample), count});
   ++waiting_;
   if (!state.triggers && state.queue.size() > kMaxWaiting) {
+    const std::size_t oldest = state.queue.front().count;
     state.queue.pop_front();  // nothing triggers: the newer ones tell where the joints are
-    --waiting_;
-    ++merged_;
+    waiting_ -= oldest;
+    merged_ += static_cast<std::int64_t>(oldest);
   }
   if (!begins) return;
   for (std::size_t t = 0; t < topic_states_.size(); ++t) {
@@ -146,6 +152,7 @@ void JointStatePlayer::restart() {
 void JointStatePlayer::finish() {
   finished_ = true;
   for (std::size_t t = 0; t < topic_states_.size(); ++t) refuseHeld(static_cast<int>(t));
+  for (Topic& topic : topic_states_) forgetKept(topic);
 }
 
 void JointStatePlayer::noteMoment(const Moment& moment) {
@@ -302,9 +309,9 @@ void JointStatePlayer::take(const Moment& moment, int topic, PlayedSample& playe
       state.taken = next.moment;
     }
     if (state.triggers && !is_passed_over && played.topic < 0) played.topic = topic;
-    ++(is_passed_over ? played.merged : played.accepted);
+    (is_passed_over ? played.merged : played.accepted) += static_cast<int>(next.count);
+    waiting_ -= next.count;
     state.queue.pop_front();
-    --waiting_;
   }
   headForNext(moment, state);
 }
@@ -338,9 +345,12 @@ void JointStatePlayer::headForNext(const Moment& moment, const Topic& topic) {
   for (const Listener& listener : topic.listeners) {
     const auto index = static_cast<std::size_t>(listener.instrument);
     for (std::size_t k = 0; k < next.sample.names.size(); ++k) {
-      const int joint = simulator_.instruments()[index].jointOfRecordedName(next.sample.names[k]);
+      const Instrument& instrument = simulator_.instruments()[index];
+      const int joint = instrument.jointOfRecordedName(next.sample.names[k]);
       if (joint < 0 || heard_[index][static_cast<std::size_t>(joint)] == Heard::kNever) continue;
-      targets_[index][joint] += fraction * (next.sample.positions[k] - targets_[index][joint]);
+      double& target = targets_[index][joint];
+      const IndependentJoint& described = instrument.model().joints()[static_cast<std::size_t>(joint)];
+      target += fraction * (described.nearest(next.sample.positions[k], target) - target);
     }
   }
 }

@@ -94,8 +94,13 @@ Verdict JointStatePlayer::judgeJoints(const JointStateSample& sample, const Topi
     }
   }
   if (any_known) return Verdict::kAccepted;
-  detail = "none of its joints (" + listOf(sample.names) +
-           ") is a joint of an instrument on this topic; map them by joint_names";
+  detail = "none of its joints (" + listOf(sample.names) + ") is a joint of an instrument on this topic; ";
+  std::string mimics;
+  for (const Listener& listener : topic.listeners) {
+    if (!mimics.empty()) break;
+    mimics = simulator_.instruments()[static_cast<std::size_t>(listener.instrument)].model().mimicsText(sample.names);
+  }
+  detail += mimics.empty() ? "map them by joint_names" : "of these are " + mimics;
   for (const Listener& listener : topic.listeners) {
     const Instrument& instrument = simulator_.instruments()[static_cast<std::size_t>(listener.instrument)];
     std::vector<std::string> own;
@@ -126,6 +131,45 @@ void JointStatePlayer::keepKnown(const Topic& topic, JointStateSample& sample) c
   sample = std::move(known);
 }
 
+/// Whether a sample that is not later than its topic's last, by no more than a gap, says something new all the same: each of its joints
+/// was last named by a sample before it. So it is of another publisher than those since.
+bool JointStatePlayer::hasNews(const Topic& topic, const JointStateSample& sample) const {
+  if (!topic.last || sample.stamp_ns > topic.last->stamp_ns) return false;
+  if (topic.last->stamp_ns - sample.stamp_ns > max_gap_ns_) return false;
+  const Moment moment = {topic.last->epoch, sample.stamp_ns};
+  return std::all_of(sample.names.begin(), sample.names.end(), [&](const std::string& name) {
+    const auto named = topic.named.find(name);
+    return named == topic.named.end() || named->second < moment;
+  });
+}
+
+/// Adds the joints that `sample` does not name, as they are in `kept`.
+void JointStatePlayer::addUnnamed(const JointStateSample& kept, JointStateSample& sample) {
+  const std::size_t own = sample.names.size();
+  for (std::size_t k = 0; k < kept.names.size(); ++k) {
+    const auto end = sample.names.begin() + static_cast<std::ptrdiff_t>(own);
+    if (std::find(sample.names.begin(), end, kept.names[k]) != end) continue;
+    sample.names.push_back(kept.names[k]);
+    sample.positions.push_back(kept.positions[k]);
+  }
+}
+
+/// For the topic's next sample to take along.
+void JointStatePlayer::keep(Topic& topic, JointStateSample sample) {
+  for (const std::string& name : sample.names) topic.named[name] = {topic.last->epoch, sample.stamp_ns};
+  addUnnamed(topic.kept.sample, sample);
+  topic.kept.sample = std::move(sample);
+  ++topic.kept.count;
+  ++waiting_;
+}
+
+/// No sample of its loop follows.
+void JointStatePlayer::forgetKept(Topic& topic) {
+  topic.kept.sample = {};
+  waiting_ -= topic.kept.count;
+  merged_ += static_cast<std::int64_t>(std::exchange(topic.kept.count, 0));
+}
+
 /// Whether a sample of a topic that is a loop behind fits the newest.
 bool JointStatePlayer::joinsNewest(std::int64_t stamp_ns, const Topic& topic) const {
   if (!topic.last || topic.last->epoch >= newest_->epoch) return false;
@@ -137,7 +181,7 @@ bool JointStatePlayer::joinsNewest(std::int64_t stamp_ns, const Topic& topic) co
 void JointStatePlayer::refuseByClock(ClockRuling ruling, int topic, std::int64_t stamp_ns, bool was_late) {
   const std::int64_t last_ns = *topic_states_[static_cast<std::size_t>(topic)].clock.last();
   if (ruling == ClockRuling::kDuplicate) {
-    refuse(Verdict::kDuplicateStamp, topic, stamp_ns, "same stamp as the topic's last joint state");
+    refuse(Verdict::kDuplicateStamp, topic, stamp_ns, "same stamp as the topic's last joint state with these joints");
   } else if (ruling == ClockRuling::kStray) {
     refuse(Verdict::kTwoClocks, topic, stamp_ns, twoClocksText(stamp_ns, last_ns));
   } else {
@@ -172,8 +216,9 @@ void JointStatePlayer::refuseLate() {
       refuse(Verdict::kLate, static_cast<int>(t), moment.stamp_ns,
              is_old_loop ? "time went backwards on another topic but not on this one"
                          : "the simulation is already at " + stampText(*time_ns_) + " s");
+      waiting_ -= topic.queue.front().count;
+      merged_ += static_cast<std::int64_t>(topic.queue.front().count) - 1;
       topic.queue.pop_front();
-      --waiting_;
     }
   }
 }

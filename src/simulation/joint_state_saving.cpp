@@ -24,6 +24,8 @@ void JointStatePlayer::forgetSamples() {
   for (Topic& topic : topic_states_) {
     topic.clock = TopicClock(max_gap_ns_);
     topic.queue.clear();
+    topic.kept = {};
+    topic.named.clear();
     topic.held.clear();
     topic.last.reset();
   }

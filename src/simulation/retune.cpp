@@ -2,6 +2,11 @@
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <variant>
+#include <vector>
 
 #include "simulation/simulator_implementation.h"
 #include "tissue_contact/baselines/make_contact_solver.h"
@@ -9,16 +14,80 @@
 namespace tissue_contact {
 namespace {
 
-bool haveSameParts(const Scene& a, const Scene& b) {
-  const auto same_tissue = [](const TissueDescription& s, const TissueDescription& t) {
-    return s.name == t.name && s.regions.size() == t.regions.size();
-  };
-  const auto same_law = [](const FrictionDescription& s, const FrictionDescription& t) {
-    return s.law.static_coefficients.size() == t.law.static_coefficients.size() &&
-           s.law.kinetic_coefficients.size() == t.law.kinetic_coefficients.size();
-  };
-  return std::equal(a.tissues.begin(), a.tissues.end(), b.tissues.begin(), b.tissues.end(), same_tissue) &&
-         std::equal(a.friction.begin(), a.friction.end(), b.friction.begin(), b.friction.end(), same_law);
+/// As numbers and text, what a mesh is made from.
+auto parts(const BlockDescription& block) {
+  return std::make_tuple(block.size_m.x(), block.size_m.y(), block.size_m.z(), block.cells, block.grading[0].growth,
+                         block.grading[1].growth, block.grading[2].growth);
+}
+auto parts(const MeshDescription& mesh) {
+  return std::tie(mesh.file, mesh.scale_m_per_unit, mesh.cell_size_m, mesh.cell_size_inside_m);
+}
+auto parts(const SheetDescription& sheet) {
+  return std::make_tuple(sheet.size_m.x(), sheet.size_m.y(), sheet.cells, sheet.thickness_m);
+}
+auto parts(const ShellDescription& shell) { return std::tie(shell.file, shell.scale_m_per_unit, shell.thickness_m); }
+
+bool haveSameGeometry(const TissueDescription& a, const TissueDescription& b) {
+  return a.geometry.index() == b.geometry.index() &&
+         std::visit(
+             [&](const auto& of_a) { return parts(of_a) == parts(std::get<std::decay_t<decltype(of_a)>>(b.geometry)); },
+             a.geometry);
+}
+
+auto parts(const RefinementDescription& refinement) {
+  return std::tie(refinement.mode, refinement.cell_m, refinement.reach_m, refinement.nodes_at_most, refinement.growth);
+}
+
+auto fixedParts(const MaterialDescription& material) {
+  return std::tie(material.model, material.density_kg_per_m3, material.bending_stiffness_n_m, material.dilatation,
+                  material.distortion);
+}
+
+const char* difference(const TissueDescription& a, const TissueDescription& b) {
+  if (a.name != b.name) return "tissues";
+  if (!haveSameGeometry(a, b)) return "the mesh of a tissue";
+  if (parts(a.refinement) != parts(b.refinement)) return "tissues[].refinement";
+  if (fixedParts(a.material) != fixedParts(b.material)) return "a tissue's material but for its constants";
+  if (a.regions.size() != b.regions.size()) return "tissues[].regions";
+  if (a.fixed.size() != b.fixed.size()) return "tissues[].fixed";
+  if (a.pressure_pa != b.pressure_pa) return "tissues[].pressure_pa";
+  return nullptr;
+}
+
+const char* difference(const InstrumentDescription& a, const InstrumentDescription& b) {
+  const bool are_same = a.name == b.name && a.urdf_file == b.urdf_file && a.tip_link == b.tip_link &&
+                        a.robot_description_parameter == b.robot_description_parameter &&
+                        a.contact_links.size() == b.contact_links.size();
+  return are_same ? nullptr : "instruments";
+}
+
+const char* difference(const FrictionDescription& a, const FrictionDescription& b) {
+  const bool are_same = a.instrument == b.instrument && a.tissue == b.tissue && a.other_tissue == b.other_tissue &&
+                        a.law.static_coefficients.size() == b.law.static_coefficients.size() &&
+                        a.law.kinetic_coefficients.size() == b.law.kinetic_coefficients.size();
+  return are_same ? nullptr : "friction but for its coefficients";
+}
+
+template <typename Part>
+const char* difference(const std::vector<Part>& a, const std::vector<Part>& b, const char* name) {
+  if (a.size() != b.size()) return name;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (const char* const what = difference(a[i], b[i])) return what;
+  }
+  return nullptr;
+}
+
+/// What retune() would leave as it is though the scenes differ in it, as far as they are looked at: whoever compares scenes that way
+/// would get the same forces and believe them. nullptr: nothing.
+const char* difference(const Scene& a, const Scene& b) {
+  if (const char* const what = difference(a.tissues, b.tissues, "tissues")) return what;
+  if (const char* const what = difference(a.instruments, b.instruments, "instruments")) return what;
+  if (const char* const what = difference(a.friction, b.friction, "friction")) return what;
+  if (a.gravity_m_per_s2 != b.gravity_m_per_s2) return "gravity_m_per_s2";
+  if (a.step.max_step_s != b.step.max_step_s || a.step.max_gap_s != b.step.max_gap_s) return "step";
+  if (a.solver.method != b.solver.method || a.solver.relaxation != b.solver.relaxation) return "solver.method";
+  if (a.tissue_pairs.size() != b.tissue_pairs.size()) return "tissue_pairs";
+  return nullptr;
 }
 
 /// @return whether it was another.
@@ -64,9 +133,12 @@ bool takeSolver(const SolverDescription& from, SolverDescription& to) {
 }  // namespace
 
 void Simulator::retune(const Scene& changed) {
-  if (!haveSameParts(changed, implementation_->scene)) {
+  if (const char* const what = difference(changed, implementation_->scene)) {
     throw std::invalid_argument(
-        "a running scene may change in numbers only, and this one has other tissues or friction");
+        std::string(
+            "a running scene may change in moduli, Poisson's ratios, damping, coefficients of friction and limits "
+            "of the solver only; this one has other ") +
+        what + ": make a simulator of it");
   }
   implementation_->retuned = changed;
 }

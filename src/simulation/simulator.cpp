@@ -49,6 +49,8 @@ std::vector<Advice> Simulator::advice() const {
   for (std::size_t t = 0; t < meshes.size(); ++t) {
     const TissueDescription& tissue = scene().tissues[t];
     if (const auto doubt = sizeDoubt(tissue, all.tissues[t].restPositions(), shapes)) meshes[t].push_back(*doubt);
+    if (const auto doubt = unitDoubt(tissue)) meshes[t].push_back(*doubt);
+    if (const auto doubt = supportDoubt(scene(), t, all.tissues)) meshes[t].push_back(*doubt);
     if (!isContinuum(tissue.material.model)) continue;
     if (!all.refinements[t]) {
       if (const auto doubt = heldDoubt(tissue, all.tissues[t])) meshes[t].push_back(*doubt);

@@ -33,6 +33,7 @@ class BadStartup(harness.TestCase):
 
     def test_scene_parameter_missing(self):
         self.assert_refused([], "/tissue_contact/scene", "_scene:=")
+        self.assert_refused(["scene:=" + harness.SCENE], "underscore", "_scene:=")
 
     def test_scene_parameter_is_no_text(self):
         self.assert_refused(["_scene:=3"], "/tissue_contact/scene")

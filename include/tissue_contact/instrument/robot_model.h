@@ -16,6 +16,10 @@ struct IndependentJoint {
   /// URDF limits (infinite for continuous joints), for reference only: positions outside are simulated as recorded.
   double lower = 0.0;
   double upper = 0.0;
+  bool turns_on = false;  ///< continuous: whole turns more or less are the same pose, and drivers leave them out
+
+  /// Of the positions that are the same pose as `position`, that nearest to `to`; of other joints `position`.
+  double nearest(double position, double to) const;
 };
 
 /// Geometry of one link as the URDF gives it, meshes not yet read. Mesh paths are resolved; one that cannot be (unknown
@@ -35,6 +39,7 @@ class RobotModel {
     enum class Motion { kFixed, kRevolute, kPrismatic } motion = Motion::kFixed;
     Vector3 axis = Vector3::UnitX();  ///< unit, in the joint frame
     int joint = -1;                   ///< independent joint that drives this one (through mimic chains), -1 if fixed
+    std::string mimic;                ///< name of its own joint, where that mimics the one that drives it
     double multiplier = 1.0;          ///< joint position = multiplier * position[joint] + offset, chains composed
     double offset = 0.0;
     LinkGeometry geometry;
@@ -51,6 +56,8 @@ class RobotModel {
   /// Index of a link or independent joint by name, -1 when there is none.
   int findLink(const std::string& name) const;
   int findJoint(const std::string& name) const;
+  /// What to tell somebody who gives positions of these joints: which are mimics, and of what; empty where none is.
+  std::string mimicsText(const std::vector<std::string>& names) const;
 
   /// Pose of every link in the root link's frame B. `positions`: one per independent joint (rad or m).
   /// `X_BL` is resized to links().size(). No allocation once sized. Formula: X_BL = X_BP * X_PJ * motion(position).

@@ -27,12 +27,12 @@ struct JointStateSample {
 
 enum class Verdict {
   kAccepted,        ///< its joints were taken
-  kDuplicateStamp,  ///< same stamp as the topic's last one: ignored
+  kDuplicateStamp,  ///< same stamp as the topic's last one with these joints: ignored
   kBadStamp,        ///< zero or negative stamp, or one that ROS time does not reach: ignored
   kNotFinite,       ///< a position of a known joint is NaN or infinite: ignored
   kBadLength,       ///< as many positions as names are needed: ignored
   kNoKnownJoint,    ///< none of the names means a joint of an instrument on this topic: ignored
-  kLate,            ///< its stamp lies before its topic's last, or in time already simulated: ignored
+  kLate,            ///< its stamp lies before its topic's last with these joints, or in time already simulated: ignored
   kTwoClocks,       ///< far off the stamps that the topic follows, and these go on: ignored
 };
 constexpr int kVerdictCount = 8;
@@ -66,12 +66,16 @@ struct PlayedSample {
 /// between instruments move linearly. A joint heard for the first time since the start or a reset is placed. Joints not
 /// heard stay at the scene's initial position. The first moment of a run places instruments without any step.
 ///
+/// Publishers. Several may share a topic, each with joints of its own (drivers of an arm and of its gripper). A sample that is no later
+/// than its topic's last one, by at most max_gap_s, but later than all that named one of its joints, makes no moment: its joints are taken
+/// with the topic's next sample. So of what they send alike the order of arrival on that topic counts, and nothing waits for it.
+///
 /// Waiting. A moment waits until every other topic has delivered its stamp or a later one, so that what arrives first
 /// does not matter. A topic is waited for only while its newest stamp is less than max_gap_s behind the newest of all
 /// (if it was never heard: that behind the first of all): beyond that it is missing or stuck. Under kNewestState the
 /// bound is a quarter of max_lag_s (kWaitShare) or stopWaiting(), and topics that only update are not waited for.
 ///
-/// Time. A stamp before its topic's last by at most max_gap_s is late: refused, nothing else changes. Farther back is a
+/// Time. A stamp before its topic's last by at most max_gap_s that says nothing new is late: refused, nothing else changes. Farther back is a
 /// loop, once the topic's next two go on from there (TopicClock has the rules); till then it waits. The first moment of
 /// a loop resets the scene. So does any stamp that goes back after restart(). A topic first heard joins the newest
 /// loop; so does one that fits it within max_gap_s after another topic has begun it. Stamps of a second clock on a
@@ -84,7 +88,7 @@ struct PlayedSample {
 /// the step before, and its time and motion are part of the next interval.
 ///
 /// Counts. pushed = accepted + merged + refused (count() of the other verdicts) + waiting(), at any time. Accepted are
-/// the samples of moments that were played, and those of update-only topics up to them. Merged are those that were
+/// the samples of moments that were played, with those kept for them, and those of update-only topics up to them. Merged are those that were
 /// passed over: under kNewestState older moments, which only shape the motion by their last positions; and those of an
 /// interrupted advance.
 ///
@@ -184,6 +188,12 @@ class JointStatePlayer {
   struct Queued {
     Moment moment;
     JointStateSample sample;
+    std::size_t count = 1;  ///< samples in it, those kept for it included
+  };
+  /// Joints of samples that came too late to be a moment, for the topic's next sample.
+  struct Kept {
+    JointStateSample sample;
+    std::size_t count = 0;
   };
   struct Listener {
     int instrument = 0;
@@ -194,9 +204,11 @@ class JointStatePlayer {
 
     TopicClock clock;
     std::deque<Queued> queue;
-    std::vector<JointStateSample> held;  ///< by the clock: a loop perhaps
-    std::optional<Moment> last;          ///< of the last sample queued, to see time go backwards
-    std::optional<Moment> taken;         ///< of the last sample whose joints were taken
+    Kept kept;
+    std::map<std::string, Moment> named;  ///< of the newest sample that names the joint
+    std::vector<JointStateSample> held;   ///< by the clock: a loop perhaps
+    std::optional<Moment> last;           ///< of the last sample queued, to see time go backwards
+    std::optional<Moment> taken;          ///< of the last sample whose joints were taken
     std::vector<Listener> listeners;
     bool triggers = false;  ///< any listener
   };
@@ -216,6 +228,10 @@ class JointStatePlayer {
   void refuseByClock(ClockRuling ruling, int topic, std::int64_t stamp_ns, bool was_late);
   void keepKnown(const Topic& topic, JointStateSample& sample) const;
   bool resumes(const Moment& moment) const;
+  bool hasNews(const Topic& topic, const JointStateSample& sample) const;
+  static void addUnnamed(const JointStateSample& kept, JointStateSample& sample);
+  void keep(Topic& topic, JointStateSample sample);
+  void forgetKept(Topic& topic);
   void accept(int topic, int epoch, JointStateSample sample);
   void acceptHeld(int topic, int epoch);
   void noteMoment(const Moment& moment);

@@ -70,38 +70,62 @@ void requireInside(const DistanceGrid& grid, const std::string& name) {
       "that touches tissue must be a closed solid");
 }
 
-/// At points spread evenly over the triangles (additive recurrence of the plastic number, folded into each triangle).
-void measureDeviation(const TriangleMesh& outer, double points, MeshField& field) {
-  const auto corner = [&](const Triangle& t, int k) -> Vector3 { return outer.vertices.col(t[k]); };
+/// Points spread evenly over the triangles (additive recurrence of the plastic number, folded into each triangle).
+/// @param visit gets a point, its share of the area and the triangle.
+template <typename Visit>
+void eachPoint(const TriangleMesh& mesh, double points, const Visit& visit) {
+  const auto corner = [&](const Triangle& t, int k) -> Vector3 { return mesh.vertices.col(t[k]); };
   double total = 0.0;
-  for (const Triangle& t : outer.triangles) total += triangleArea(outer.vertices, t);
-  std::vector<std::pair<double, double>> found;  // deviation, area
-  double squares = 0.0;
+  for (const Triangle& t : mesh.triangles) total += triangleArea(mesh.vertices, t);
   double u = 0.5;
   double v = 0.5;
-  for (const Triangle& t : outer.triangles) {
-    const double area = triangleArea(outer.vertices, t);
-    const int count = static_cast<int>(std::ceil(points * area / total));
+  for (const Triangle& t : mesh.triangles) {
+    const double share = triangleArea(mesh.vertices, t) / total;
+    const int count = static_cast<int>(std::ceil(points * share));
     for (int i = 0; i < count; ++i) {
       u = std::fmod(u + 0.7548776662466927, 1.0);
       v = std::fmod(v + 0.5698402909980532, 1.0);
       const bool fold = u + v > 1.0;
       const double a = fold ? 1.0 - u : u;
       const double b = fold ? 1.0 - v : v;
-      const Vector3 p = corner(t, 0) + a * (corner(t, 1) - corner(t, 0)) + b * (corner(t, 2) - corner(t, 0));
-      const double deviation = std::abs(field.grid.at(p).distance);
-      found.emplace_back(deviation, area / count);
-      squares += deviation * deviation * area / count;
+      visit(corner(t, 0) + a * (corner(t, 1) - corner(t, 0)) + b * (corner(t, 2) - corner(t, 0)), share / count, t);
     }
   }
+}
+
+void measureDeviation(const TriangleMesh& outer, double points, MeshField& field) {
+  std::vector<std::pair<double, double>> found;  // deviation, share of the area
+  double squares = 0.0;
+  eachPoint(outer, points, [&](const Vector3& p, double share, const Triangle&) {
+    const double deviation = std::abs(field.grid.at(p).distance);
+    found.emplace_back(deviation, share);
+    squares += deviation * deviation * share;
+  });
   std::sort(found.begin(), found.end());
   double below = 0.0;
-  for (const auto& [deviation, area] : found) {
-    if (below <= 0.5 * total) field.median_deviation = deviation;
-    below += area;
+  for (const auto& [deviation, share] : found) {
+    if (below <= 0.5) field.median_deviation = deviation;
+    below += share;
   }
   field.largest_deviation = found.back().first;
-  field.rms_deviation = std::sqrt(squares / total);
+  field.rms_deviation = std::sqrt(squares);
+}
+
+/// Share of the mesh's area behind which the grid has next to nothing of the solid, half a spacing and one deep: walls thinner than about a
+/// spacing, which fall between the samples.
+double thinShare(const TriangleMesh& mesh, const DistanceGrid& grid) {
+  constexpr double kPoints = 5000.0;
+  constexpr double kSolid = 0.25;  // spacings; behind a flat face half a spacing deep the distance is .5
+  double thin = 0.0;
+  eachPoint(mesh, kPoints, [&](const Vector3& p, double share, const Triangle& t) {
+    const Vector3 normal = triangleNormal(mesh.vertices.col(t[0]), mesh.vertices.col(t[1]), mesh.vertices.col(t[2]));
+    double lowest = 0.0;
+    for (const double depth : {-1.0, -0.5, 0.5, 1.0}) {  // triangles may look either way
+      lowest = std::min(lowest, grid.valueAt(p + depth * grid.spacing * normal));
+    }
+    if (lowest > -kSolid * grid.spacing) thin += share;
+  });
+  return thin;
 }
 
 /// Says how far a long preparation has come.
@@ -155,8 +179,24 @@ void reportJump(const std::string& name, const DistanceGrid& grid, const MeshPre
   preparation.say("mesh " + name + text.data());
 }
 
-void report(const std::string& name, std::size_t triangles, const MeshField& field, const std::string& origin,
-            const MeshPreparation& preparation) {
+/// Tissue goes through walls that the samples do not hold, without a force.
+void reportThin(const std::string& name, const TriangleMesh& mesh, const DistanceGrid& grid,
+                const MeshPreparation& preparation) {
+  constexpr double kMuch = 0.2;  // edges of blades and small parts make some per cent
+  const double thin = thinShare(mesh, grid);
+  if (!(thin > kMuch)) return;
+  std::array<char, 384> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      ": behind %.0f %% of its surface is less than about %.3g mm of it, one spacing of the grid: tissue goes "
+      "through walls as thin as that, with too little force or none; make them thicker in the mesh, or build "
+      "them of boxes, cylinders or shorter meshes, whose grids are finer",
+      100.0 * thin, 1e3 * grid.spacing);
+  preparation.say("mesh " + name + text.data());
+}
+
+void report(const std::string& name, std::size_t triangles, const TriangleMesh& mesh, const MeshField& field,
+            const std::string& origin, const MeshPreparation& preparation) {
   if (!preparation.say) return;
   std::array<char, 256> text{};
   const DistanceGrid& grid = field.grid;
@@ -167,6 +207,7 @@ void report(const std::string& name, std::size_t triangles, const MeshField& fie
                 1e3 * field.rms_deviation, 1e3 * field.median_deviation);
   preparation.say("mesh " + name + text.data() + origin);
   reportJump(name, grid, preparation);
+  reportThin(name, mesh, grid, preparation);
   constexpr double kLargeTool = 2.0;   // m
   constexpr double kSmallTool = 1e-3;  // m
   const double extent = (field.high - field.low).maxCoeff();
@@ -186,7 +227,7 @@ std::shared_ptr<const MeshField> prepareMeshField(const TriangleMesh& original, 
   auto field = std::make_shared<MeshField>();
   if (readField(preparation.cache_directory, key, *field)) {
     field->tips = tipsOf(mesh, field->grid);
-    report(name, original.triangles.size(), *field, "from the cache", preparation);
+    report(name, original.triangles.size(), mesh, *field, "from the cache", preparation);
     return field;
   }
   const double start = preparation.clock ? preparation.clock() : 0.0;
@@ -195,7 +236,7 @@ std::shared_ptr<const MeshField> prepareMeshField(const TriangleMesh& original, 
   std::array<char, 64> took{"built"};
   if (preparation.clock) std::snprintf(took.data(), took.size(), "built in %.1f s", preparation.clock() - start);
   const std::string trouble = writeField(preparation.cache_directory, key, *field);
-  report(name, original.triangles.size(), *field, took.data(), preparation);
+  report(name, original.triangles.size(), mesh, *field, took.data(), preparation);
   if (!trouble.empty()) {
     if (preparation.say) preparation.say("meshes are prepared again at every start: " + trouble);
     preparation.cache_directory.clear();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "mesh/nodes.h"
@@ -18,8 +19,10 @@ class OuterSurface {
     const Vector3 normal = triangleNormal(corners[0], corners[1], corners[2]);
     if (normal.isZero(0.0)) return;
     const int outer = outerPoints(corners, normal);
-    const double longest = std::max(
-        {(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(), (corners[0] - corners[2]).norm()});
+    const std::array<double, 3> edges = {(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(),
+                                         (corners[0] - corners[2]).norm()};
+    const auto at = static_cast<std::size_t>(std::max_element(edges.begin(), edges.end()) - edges.begin());
+    const double longest = edges[at];
     // Four points tell little of a triangle that is long beside what it may pass through.
     constexpr double kTold = 16.0;
     if (longest < finest_ || ((outer == 0 || outer == 4) && longest < kTold * finest_)) {
@@ -27,13 +30,14 @@ class OuterSurface {
       for (const Vector3& corner : corners) points_.push_back(corner);
       return;
     }
-    const Vector3 ab = 0.5 * (corners[0] + corners[1]);
-    const Vector3 bc = 0.5 * (corners[1] + corners[2]);
-    const Vector3 ca = 0.5 * (corners[2] + corners[0]);
-    add({corners[0], ab, ca});
-    add({ab, corners[1], bc});
-    add({ca, bc, corners[2]});
-    add({ab, bc, ca});
+    // In two, and not into four alike: of a shaft's long and narrow triangles those would be as narrow, and as near to its axis as
+    // a thousand others.
+    const Vector3& a = corners[at];
+    const Vector3& b = corners[(at + 1) % 3];
+    const Vector3& c = corners[(at + 2) % 3];
+    const Vector3 middle = 0.5 * (a + b);
+    add({a, middle, c});
+    add({middle, b, c});
   }
 
   TriangleMesh mesh() const { return separateTriangles(points_); }

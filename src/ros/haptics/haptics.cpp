@@ -68,6 +68,7 @@ constexpr Range kAngle{-6.3, 6.3, "rad"};
 
 /// How long zeros go on once it is asked to stop: for a device that reads its commands now and then. Less than ShutdownGuard's grace.
 constexpr std::chrono::milliseconds kFarewell(100);
+constexpr std::chrono::seconds kPatience(10);  // for a first wrench
 
 using Clock = std::chrono::steady_clock;
 
@@ -135,11 +136,18 @@ class Haptics {
     const Clock::duration period =
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate_hz_));
     Clock::time_point next = Clock::now();
+    const Clock::time_point patient_until = next + kPatience;
     Clock::time_point end = Clock::time_point::max();
     while (ros::ok() && next < end) {
       const bool asked = guard.asked() || g_killed;
       if (asked && end == Clock::time_point::max()) end = std::max(next, Clock::now()) + kFarewell;
       publish(asked);
+      if (!heard_ && next > patient_until) {
+        heard_ = true;  // told once
+        ROS_WARN_STREAM("no wrench yet on "
+                        << wrenches.getTopic() << ", which has " << wrenches.getNumPublishers()
+                        << " publishers: commands are zero; give the topic, wrench:=/tissue_contact/NAME/wrench");
+      }
       next = std::max(next + period, Clock::now());  // a late one is not made up for by a burst
       std::this_thread::sleep_until(std::min(next, end));
     }
@@ -150,6 +158,7 @@ class Haptics {
   void take(const geometry_msgs::WrenchStamped& message) {
     const geometry_msgs::Vector3& force = message.wrench.force;
     const geometry_msgs::Vector3& torque = message.wrench.torque;
+    heard_ = true;
     std::unique_lock<std::mutex> lock(mutex_);
     output_.take({{force.x, force.y, force.z}, {torque.x, torque.y, torque.z}}, nowNs());
     if (frame_.empty()) command_.header.frame_id = message.header.frame_id;
@@ -175,7 +184,8 @@ class Haptics {
   ros::NodeHandle private_node_;
   ros::Publisher publisher_;
   MasterWatch master_;
-  std::mutex mutex_;  ///< guards what follows
+  std::atomic<bool> heard_{false};  ///< a wrench, or that none came was told
+  std::mutex mutex_;                ///< guards what follows
   HapticOutput output_;
   geometry_msgs::WrenchStamped command_;
   std::int64_t told_not_finite_ = 0;
@@ -198,7 +208,12 @@ int runHaptics(int argc, char** argv) {
     return 1;
   }
   ShutdownGuard guard;
-  ros::init(argc, argv, "haptics", ros::init_options::NoSigintHandler);
+  try {
+    startRos(argc, argv, "haptics");
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM(error.what());
+    return 1;
+  }
   ros::XMLRPCManager::instance()->unbind("shutdown");
   ros::XMLRPCManager::instance()->bind("shutdown", onKill);
   int code = 0;

@@ -1,14 +1,18 @@
 #include "ros/node/health.h"
 
 #include <ros/console.h>
+#include <ros/names.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "ros/conversions.h"
+#include "tissue_contact/core/text.h"
 #include "tissue_contact/ros/environment.h"
 
 namespace tissue_contact {
@@ -325,9 +329,22 @@ void Health::fill(std::int64_t missing, diagnostic_updater::DiagnosticStatusWrap
   const LiveFigures now = figures();
   const double worst_lag_s = worstLag(now);
   summarize(now, worst_lag_s, status);
+  tellSilence(now);
   addFigures(now, worst_lag_s, status);
   status.add("joint states: missing by header.seq", missing);
   told_ = now;
+}
+
+/// Once, where no joint state has come in so many calls, which are a second apart.
+void Health::tellSilence(const LiveFigures& now) {
+  constexpr int kPatience = 10;
+  if (now.received > 0 || now.paused || ++silent_ != kPatience) return;
+  std::vector<std::string> topics;
+  for (const std::string& topic : player_.topics()) topics.push_back(ros::names::resolve(topic));
+  ROS_WARN_STREAM("no joint state yet, within "
+                  << kPatience << " s, on " << listOf(topics)
+                  << ": nothing moves. See `rostopic info` of it; joint_state_topics of the "
+                     "scene name what is listened to");
 }
 
 void Health::summarize(const LiveFigures& now, double worst_lag_s,

@@ -97,6 +97,7 @@ class Health {
   void noteCells(const CoarseCells& cells);
   static void tellBroken(const PlayedSample& played, bool finite);
   double worstLag(const LiveFigures& figures);
+  void tellSilence(const LiveFigures& now);
   void summarize(const LiveFigures& now, double worst_lag_s, diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const Simulator& simulator_;
@@ -131,6 +132,7 @@ class Health {
   // The diagnostics thread's alone.
   LiveFigures told_;
   bool advised_ = false;
+  int silent_ = 0;  ///< calls of fill() without a joint state
 };
 
 }  // namespace tissue_contact

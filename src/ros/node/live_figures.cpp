@@ -38,7 +38,7 @@ std::string keepUpAdvice(const LiveFigures& figures, double max_step_s, double m
        << std::lround(wanted_per_s) << " steps per second of motion are asked for: " << work
        << " s of work per second. ";
   if (work < 1.0) {
-    text << "That fits, so something else keeps the processor busy. ";
+    text << "That fits, so something else keeps the processor busy, or a recording is played faster. ";
   }
   if (figures.newest_state) {
     text << "Steps are taken longer, and solved less exactly, so that wrenches lag by no more than step.max_lag_s ("

@@ -230,9 +230,9 @@ int runNode(int argc, char** argv) {
   }
   ShutdownGuard guard;
   const std::vector<std::string> arguments = privateArguments(argc, argv);
-  ros::init(argc, argv, "tissue_contact", ros::init_options::NoSigintHandler);
   int code = 1;
   try {
+    startRos(argc, argv, "tissue_contact");
     const ros::NodeHandle keep_alive;  // so that the fatal message still reaches /rosout
     try {
       code = runUntilAsked(guard, arguments);

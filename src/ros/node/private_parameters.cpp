@@ -1,6 +1,8 @@
 #include "ros/node/private_parameters.h"
 
 #include <ros/console.h>
+#include <ros/exceptions.h>
+#include <ros/init.h>
 #include <ros/param.h>
 
 #include <algorithm>
@@ -76,6 +78,17 @@ bool asksForHelp(int argc, const char* const* argv) {
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(std::string(error.what()) +
                                 ", _parameter:=value (the scene: _scene:=/path/scene.yaml), from:=to and __name:=name");
+  }
+}
+
+void startRos(int& argc, char** argv, const std::string& node_name) {
+  try {
+    ros::init(argc, argv, node_name, ros::init_options::NoSigintHandler);
+  } catch (const ros::InvalidNameException& error) {
+    throw std::invalid_argument(
+        std::string(error.what()) +
+        "; from:=to renames a topic, service or node; a parameter has an underscore before its name: "
+        "_scene:=/path/scene.yaml");
   }
 }
 

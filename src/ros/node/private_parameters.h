@@ -16,6 +16,10 @@ namespace tissue_contact {
 /// @throws std::invalid_argument naming one that is none of the two and no name:=value.
 bool asksForHelp(int argc, const char* const* argv);
 
+/// ros::init() without its handler of SIGINT.
+/// @throws std::invalid_argument where an argument renames what is no name in ROS: mostly a parameter that lacks its underscore.
+void startRos(int& argc, char** argv, const std::string& node_name);
+
 /// "scene" for every argument _scene:=value.
 std::vector<std::string> privateArguments(int argc, const char* const* argv);
 

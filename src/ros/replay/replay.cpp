@@ -221,6 +221,11 @@ class Replay {
   /// Writes the contact problem of the step asked for, the first time it is taken.
   void dumpIfWanted() {
     if (!dump_ || simulator_.stepCount() != options_.dump_step) return;
+    if (simulator_.contacts().empty()) {
+      throw std::runtime_error("--dump-step " + std::to_string(options_.dump_step) + ": in that step, which ends at " +
+                               stampText(player_.time().value_or(0)) +
+                               " s or before, nothing touches: there is no contact problem; ask for a later one");
+    }
     writeContactProblem(dump_->stream(), makeDelassusProblem(simulator_.lastProblem()),
                         simulator_.lastSolution().states);
     dump_->commit();

@@ -244,6 +244,15 @@ TEST(ParseUrdf, XacroIsCalledThatUnlessItIsInAComment) {
   EXPECT_EQ(parse("<link name=\"a\"/><gazebo>${x}</gazebo>").links().size(), 1u);
 }
 
+TEST(ParseUrdf, TellsWhichNamesAreMimics) {
+  const RobotModel model =
+      parse("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" + joint("drive", "revolute", "a", "b") +
+            joint("j", "revolute", "b", "c", "<mimic joint=\"drive\" multiplier=\"0.5\"/>"));
+  EXPECT_EQ(model.mimicsText({"elbow", "j"}),
+            "mimics, which only follow a joint: j of drive; give that joint's position");
+  EXPECT_EQ(model.mimicsText({"drive", "elbow", ""}), "");
+}
+
 TEST(LoadUrdf, RelativeMeshesAreBesideTheFile) {
   const TemporaryDirectory directory;
   const std::string file = directory.write(

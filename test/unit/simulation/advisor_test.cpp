@@ -141,6 +141,42 @@ TEST(Advisor, DoubtsTheUnitOfAMeshThatIsSmallerThanTheToolOrLongerThanTwoMetres)
   }
 }
 
+std::vector<std::string> warningsOf(const std::string& scene) {
+  const Simulator simulator = makeSimulator(scene + onlyBall("[0, 0, 0.0251]"), {{"probe", probeUrdf(0.005)}});
+  std::vector<std::string> warnings;
+  for (const Advice& advice : simulator.advice()) {
+    if (advice.is_warning) warnings.push_back(advice.text);
+  }
+  return warnings;
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  return text.replace(text.find(what), what.size(), by);
+}
+
+// Each ran without a word, to forces a thousand times too small, of a body that flies off, or to none.
+TEST(Advisor, DoubtsUnitsAndWhatHoldsATissue) {
+  const std::string scene = blockScene("[0.02, 0.02, 0.02]", "[8, 8, 8]");
+  EXPECT_EQ(warningsOf(scene), std::vector<std::string>());
+  const auto only = [&](const std::string& what, const std::string& by) {
+    const std::vector<std::string> warnings = warningsOf(replaced(scene, what, by));
+    EXPECT_EQ(warnings.size(), 1U) << by;
+    return warnings.empty() ? std::string() : warnings.front();
+  };
+  EXPECT_EQ(
+      only("pa: 5000", "pa: 5"),
+      "tissue 'block': material.youngs_modulus_pa is 5, which no tissue has: is it in kPa? Give 1000 times as much");
+  EXPECT_EQ(only("m3: 1000", "m3: 1.06").find("tissue 'block': material.density_kg_per_m3 is 1.1, "), 0U);
+  EXPECT_EQ(only("stiffness_s: 0.003", "stiffness_s: 3").find("tissue 'block': damping.stiffness_s is 3, "), 0U);
+  EXPECT_EQ(only("normal: [0, 0, 1]", "normal: [0, 0, -1]").find("tissue 'block': `fixed` holds all of its nodes"), 0U);
+  const std::string fixed = "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n";
+  EXPECT_EQ(only(fixed, "").find("tissue 'block': nothing holds it"), 0U);
+  EXPECT_EQ(warningsOf(replaced(scene, fixed,
+                                "    attachments: [{where: [plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}], "
+                                "stiffness_pa_per_m: 1e6}]\n")),
+            std::vector<std::string>());
+}
+
 /// Lines about materials by name of a block of such a material, one part of it another's.
 std::vector<std::string> presetLines(const std::string& material, const std::string& of_part = "liver_tumour") {
   std::string scene = blockScene("[0.04, 0.04, 0.02]", "[4, 4, 2]", "poissons_ratio: 0.4");

@@ -237,5 +237,63 @@ TEST(JointStateMoments, NoOrderOfArrivalMattersWithinMaxGap) {
   }
 }
 
+/// Drivers of an arm and of its jaw that share a topic: as their messages come in, every 10 ms; those of the jaw behind by so much.
+Order ofTwoDrivers(int behind_ms) {
+  Order order;
+  for (int i = 0; i < 30; ++i) {
+    const std::int64_t stamp = kSecond + i * 10 * kMillisecond;
+    order.emplace_back(0, arm(stamp, 1e-4 * i));
+    order.emplace_back(0, jaw(stamp - behind_ms * kMillisecond, -2e-4 * i));
+  }
+  return order;
+}
+
+TEST(JointStateMoments, TwoDriversMayShareATopic) {
+  for (const int behind_ms : {0, 3, 15, 49}) {
+    const auto simulator = oneProbe();
+    JointStatePlayer player(*simulator);
+    const Trace trace = runAll(*simulator, player, ofTwoDrivers(behind_ms));
+    EXPECT_EQ(trace.stamps.size(), 30U) << behind_ms << " ms: one moment for each pair";
+    EXPECT_TRUE(trace.pressed());
+    EXPECT_EQ(simulator->jointPositions(0), Vector3(1e-4 * 29, 0.0, -2e-4 * 28)) << "the jaw as of the pair before";
+    EXPECT_EQ(player.count(Verdict::kAccepted), 59);
+    EXPECT_EQ(player.merged(), 1) << "the last of the jaw, for which no moment came";
+  }
+}
+
+TEST(JointStateMoments, WhatTwoDriversShareDoesNotDependOnWhenItIsPlayed) {
+  const Order order = ofTwoDrivers(3);
+  const auto at_once = oneProbe();
+  const auto one_by_one = oneProbe();
+  JointStatePlayer first(*at_once);
+  JointStatePlayer second(*one_by_one);
+  for (const auto& [topic, s] : order) first.push(topic, s);
+  EXPECT_TRUE(run(*at_once, first, {}) == runAll(*one_by_one, second, order));
+}
+
+TEST_F(OneProbe, AJointOfASharedTopicThatSaysTheSameMomentTwiceIsRefused) {
+  player.push(0, arm(kSecond, 0.001));
+  player.push(0, jaw(kSecond, 0.001));
+  player.push(0, jaw(kSecond, 0.002));
+  player.push(0, jaw(kSecond - kMillisecond, 0.003));
+  player.push(0, {kSecond - kMillisecond, {"x", "z"}, {0.003, 0.003}});
+  player.push(0, arm(kSecond + 10 * kMillisecond, 0.001));
+  drain(player);
+  EXPECT_EQ(simulator->jointPositions(0), Vector3(0.001, 0.0, 0.001));
+  EXPECT_EQ(player.count(Verdict::kDuplicateStamp), 1);
+  EXPECT_EQ(player.count(Verdict::kLate), 2);
+  EXPECT_EQ(player.count(Verdict::kAccepted), 3);
+}
+
+TEST_F(OneProbe, WhatASharedTopicKeepsIsNotTakenIntoTheNextLoop) {
+  player.push(0, arm(kSecond, 0.0));
+  player.push(0, jaw(kSecond, -0.002));
+  for (int i = 0; i < 3; ++i) player.push(0, arm(kSecond / 2 + i * 10 * kMillisecond, 0.0));
+  drain(player);
+  EXPECT_EQ(player.resets(), 1);
+  EXPECT_EQ(simulator->jointPositions(0).z(), 0.0);
+  EXPECT_EQ(countedBy(player), 5);
+}
+
 }  // namespace joint_state_moments_test
 }  // namespace tissue_contact

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "support/refusal.h"
@@ -205,13 +207,37 @@ TEST(Retune, RefusesAnotherSceneAndChangesNothing) {
   Simulator simulator = simulatorOf();
   Scene other = simulator.scene();
   other.tissues[0].name = "liver";
-  expectRefusal([&] { simulator.retune(other); }, {"numbers only"});
+  expectRefusal([&] { simulator.retune(other); }, {"limits of the solver only"});
   other = simulator.scene();
   other.friction.clear();
   other.tissues[0].material.youngs_modulus_pa = 1.0;
-  expectRefusal([&] { simulator.retune(other); }, {"numbers only"});
+  expectRefusal([&] { simulator.retune(other); }, {"limits of the solver only"});
   hold(simulator, 1);
   EXPECT_EQ(simulator.scene().tissues[0].material.youngs_modulus_pa, 5000.0);
+}
+
+// What it does not take would go on as it was, and the forces of one scene be taken for those of the other.
+TEST(Retune, RefusesAScenesOtherPartsByName) {
+  Simulator simulator = simulatorOf();
+  const auto expectRefused = [&](const std::string& name, const std::function<void(Scene&)>& differ) {
+    Scene other = simulator.scene();
+    differ(other);
+    expectRefusal([&] { simulator.retune(other); }, {"limits of the solver only", "this one has other " + name});
+  };
+  expectRefused("the mesh of a tissue",
+                [](Scene& s) { std::get<BlockDescription>(s.tissues[0].geometry).cells[0] = 7; });
+  expectRefused("the mesh of a tissue", [](Scene& s) { s.tissues[0].geometry = MeshDescription(); });
+  expectRefused("tissues[].refinement",
+                [](Scene& s) { s.tissues[0].refinement.mode = RefinementDescription::Mode::kAuto; });
+  expectRefused("a tissue's material", [](Scene& s) { s.tissues[0].material.model = ElasticModel::kNeoHookean; });
+  expectRefused("tissues[].fixed", [](Scene& s) { s.tissues[0].fixed.clear(); });
+  expectRefused("tissues[].pressure_pa", [](Scene& s) { s.tissues[0].pressure_pa = 100.0; });
+  expectRefused("instruments", [](Scene& s) { s.instruments[0].urdf_file = "/other.urdf"; });
+  expectRefused("friction", [](Scene& s) { s.friction.clear(); });
+  expectRefused("gravity_m_per_s2", [](Scene& s) { s.gravity_m_per_s2.z() = -9.81; });
+  expectRefused("step", [](Scene& s) { s.step.max_step_s = 0.001; });
+  expectRefused("solver.method", [](Scene& s) { s.solver.method = SolverMethod::kReference; });
+  expectRefused("tissue_pairs", [](Scene& s) { s.tissue_pairs.push_back({"block", "block"}); });
 }
 
 }  // namespace retune_test
