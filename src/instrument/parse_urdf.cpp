@@ -102,8 +102,8 @@ class UrdfReader {
     if (type != nullptr) {
       refuse("joint '" + joint.name + "' has the unsupported type '" + type +
              "'; use fixed, revolute, continuous or prismatic (a base that moves: three prismatic and three revolute "
-             "joints whose "
-             "positions are published; one that stands elsewhere each time: fixed, and tf_frame in the scene's "
+             "joints whose positions are published; one that stands elsewhere each time: fixed, and tf_frame in the "
+             "scene's "
              "base_pose)");
     }
   }
@@ -119,6 +119,14 @@ class UrdfReader {
     }
     if (urdf_link.parent_joint) readJoint(*urdf_link.parent_joint, link);
     return link;
+  }
+
+  /// A link that follows at a tenth, or slides, is elsewhere after a whole turn of its joint.
+  void checkTurns(const RobotModel::Link& link) {
+    if (link.joint < 0) return;
+    const bool is_same =
+        link.motion == RobotModel::Link::Motion::kRevolute && link.multiplier == std::round(link.multiplier);
+    if (!is_same) joints_[static_cast<std::size_t>(link.joint)].turns_on = false;
   }
 
   void readJoint(const urdf::Joint& joint, RobotModel::Link& link) {
@@ -139,6 +147,7 @@ class UrdfReader {
     link.multiplier = drive.multiplier;
     link.offset = drive.offset;
     if (joint.mimic) link.mimic = joint.name;
+    checkTurns(link);
   }
 
   /// The joint that `joint` mimics.

@@ -7,8 +7,11 @@
 #include <exception>
 #include <mutex>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "instrument/xml_tags.h"
+#include "tissue_contact/core/text.h"
 #include "tissue_contact/instrument/parse_urdf.h"
 
 namespace tissue_contact {
@@ -74,8 +77,15 @@ void checkText(const std::string& xml, const std::string& source) {
   }
   checkXmlNesting(xml, source, kMaxXmlDepth);
   std::size_t links = 0;
+  bool is_root = true;
   XmlTagScanner scanner(xml);
-  for (XmlTag tag; scanner.next(tag);) links += tag.kind != XmlTag::Kind::kClose && tag.name == "link" ? 1 : 0;
+  for (XmlTag tag; scanner.next(tag);) {
+    if (std::exchange(is_root, false) && tag.name != "robot") {
+      throw std::invalid_argument(source + ": its outermost element is <" + printable(std::string(tag.name)) +
+                                  ">, and that of a URDF is <robot>: convert it, if it is SDF or MJCF");
+    }
+    links += tag.kind != XmlTag::Kind::kClose && tag.name == "link" ? 1 : 0;
+  }
   if (links > kMaxLinks) {
     throw std::invalid_argument(source + ": the URDF has " + std::to_string(links) + " links; at most " +
                                 std::to_string(kMaxLinks) + " are read");
@@ -99,7 +109,7 @@ urdf::ModelInterfaceSharedPtr parseWithUrdfdom(const std::string& xml, const std
   if (model && !captured.lostSomething()) return model;
   if (!captured.errors().empty()) reason += (reason.empty() ? "" : "; ") + captured.errors();
   if (reason.empty()) reason = "no reason given";
-  throw std::invalid_argument(source + ": urdfdom refuses this URDF: " + reason +
+  throw std::invalid_argument(source + ": urdfdom refuses this URDF: " + printable(reason, kMaxReasonLength) +
                               "; correct or delete what it names, which check_urdf finds as well");
 }
 

@@ -232,9 +232,12 @@ std::optional<Advice> unitDoubt(const TissueDescription& tissue) {
         "tissue " + quoted(tissue.name) + ": " + key + " is " + twoDigits(value) + ", which no tissue has: " + question,
         true};
   };
-  if (tissue.material.youngs_modulus_pa < kSoft) {
-    return doubt("material.youngs_modulus_pa", tissue.material.youngs_modulus_pa,
-                 "is it in kPa? Give 1000 times as much");
+  double softest_pa = tissue.material.youngs_modulus_pa;
+  for (const TissueRegion& region : tissue.regions) {
+    softest_pa = std::min(softest_pa, region.material.youngs_modulus_pa);
+  }
+  if (softest_pa < kSoft) {
+    return doubt("material.youngs_modulus_pa", softest_pa, "is it in kPa? Give 1000 times as much");
   }
   if (tissue.material.density_kg_per_m3 < kLight) {
     return doubt("material.density_kg_per_m3", tissue.material.density_kg_per_m3,
@@ -261,7 +264,8 @@ std::optional<Advice> supportDoubt(const Scene& scene, std::size_t tissue, const
         return pair.tissue != pair.other && (pair.tissue == description.name || pair.other == description.name);
       });
   const bool is_held = std::find(fixed.begin(), fixed.end(), true) != fixed.end();
-  if (is_held || is_in_pair || tissues[tissue].attachmentStiffness() > 0.0) return std::nullopt;
+  const bool may_lie_somewhere = !scene.gravity_m_per_s2.isZero();  // on an instrument, as a body on an inclined plate
+  if (is_held || is_in_pair || may_lie_somewhere || tissues[tissue].attachmentStiffness() > 0.0) return std::nullopt;
   return Advice{
       "tissue " + quoted(description.name) +
           ": nothing holds it, so what touches it pushes it away and forces are those of its inertia; give it "

@@ -100,10 +100,6 @@ int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vec
     state.start = state.positions;
     state.target = targets[i];
     if (instruments_[i].isObstacle()) continue;
-    const std::vector<IndependentJoint>& joints = instruments_[i].model().joints();
-    for (Eigen::Index j = 0; j < state.target.size(); ++j) {
-      state.target[j] = joints[static_cast<std::size_t>(j)].nearest(state.target[j], state.start[j]);
-    }
     const double turn = farthestTurn(instruments_[i].model(), state.start, state.target);
     joint_steps = std::max(joint_steps, std::ceil(turn / kLargestTurn));
   }
@@ -115,7 +111,7 @@ int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vec
   }
   jumped_ = !(steps <= most);
   if (jumped_) {
-    for (std::size_t i = 0; i < states_.size(); ++i) place(static_cast<int>(i), states_[i].target);
+    for (std::size_t i = 0; i < states_.size(); ++i) place(static_cast<int>(i), targets[i]);
     steps = by_time;
   }
   return most_steps > 0 ? std::min(most_steps, static_cast<int>(steps)) : static_cast<int>(steps);

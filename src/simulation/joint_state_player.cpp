@@ -84,6 +84,7 @@ void JointStatePlayer::place(int topic, JointStateSample sample) {
     accept(topic, newest, std::move(sample));
     return;
   }
+  if (!state.clock.isRestarted() && hasNews(state, sample)) return keepForNext(state, sample);
   const bool was_late = state.clock.isLateInARow();
   const ClockRuling ruling = state.clock.judge(sample.stamp_ns);
   const int epoch = state.last ? state.last->epoch : newest;
@@ -102,8 +103,9 @@ void JointStatePlayer::place(int topic, JointStateSample sample) {
       state.held.push_back(std::move(sample));
       return;
     default:
-      if (hasNews(state, sample)) return keep(state, sample);
-      refuseByClock(ruling, topic, sample.stamp_ns, was_late);
+      if (!fitsHeld(state, sample)) return refuseByClock(ruling, topic, sample.stamp_ns, was_late);
+      ++waiting_;
+      state.held.push_back(std::move(sample));
   }
 }
 
@@ -112,18 +114,16 @@ void JointStatePlayer::accept(int topic, int epoch, JointStateSample sample) {
   const Moment moment = {epoch, sample.stamp_ns};
   const bool begins = newest_ && newest_->epoch < epoch;
   noteMoment(moment);
-  if (state.last && state.last->epoch != epoch) forgetKept(state);
+  if (state.last && state.last->epoch != epoch) state.kept = {};
   state.last = moment;
   for (const std::string& name : sample.names) state.named[name] = moment;
-  const std::size_t count = 1 + std::exchange(state.kept.count, 0);
-  addUnnamed(std::exchange(state.kept.sample, {}), sample);
-  state.queue.push_back({moment, std::move(sample), count});
+  addUnnamed(std::exchange(state.kept, {}), sample);
+  state.queue.push_back({moment, std::move(sample)});
   ++waiting_;
   if (!state.triggers && state.queue.size() > kMaxWaiting) {
-    const std::size_t oldest = state.queue.front().count;
     state.queue.pop_front();  // nothing triggers: the newer ones tell where the joints are
-    waiting_ -= oldest;
-    merged_ += static_cast<std::int64_t>(oldest);
+    --waiting_;
+    ++merged_;
   }
   if (!begins) return;
   for (std::size_t t = 0; t < topic_states_.size(); ++t) {
@@ -137,7 +137,12 @@ void JointStatePlayer::accept(int topic, int epoch, JointStateSample sample) {
 void JointStatePlayer::acceptHeld(int topic, int epoch) {
   for (JointStateSample& sample : std::exchange(topic_states_[static_cast<std::size_t>(topic)].held, {})) {
     --waiting_;
-    accept(topic, epoch, std::move(sample));
+    Topic& state = topic_states_[static_cast<std::size_t>(topic)];
+    if (hasNews(state, sample)) {
+      keepForNext(state, sample);
+    } else {
+      accept(topic, epoch, std::move(sample));
+    }
   }
 }
 
@@ -152,7 +157,6 @@ void JointStatePlayer::restart() {
 void JointStatePlayer::finish() {
   finished_ = true;
   for (std::size_t t = 0; t < topic_states_.size(); ++t) refuseHeld(static_cast<int>(t));
-  for (Topic& topic : topic_states_) forgetKept(topic);
 }
 
 void JointStatePlayer::noteMoment(const Moment& moment) {
@@ -309,9 +313,9 @@ void JointStatePlayer::take(const Moment& moment, int topic, PlayedSample& playe
       state.taken = next.moment;
     }
     if (state.triggers && !is_passed_over && played.topic < 0) played.topic = topic;
-    (is_passed_over ? played.merged : played.accepted) += static_cast<int>(next.count);
-    waiting_ -= next.count;
+    ++(is_passed_over ? played.merged : played.accepted);
     state.queue.pop_front();
+    --waiting_;
   }
   headForNext(moment, state);
 }
@@ -322,11 +326,14 @@ void JointStatePlayer::takeJoints(const JointStateSample& sample, const Topic& t
     const auto index = static_cast<std::size_t>(listener.instrument);
     bool any_known = false;
     for (std::size_t k = 0; k < sample.names.size(); ++k) {
-      const int joint = simulator_.instruments()[index].jointOfRecordedName(sample.names[k]);
+      const Instrument& instrument = simulator_.instruments()[index];
+      const int joint = instrument.jointOfRecordedName(sample.names[k]);
       if (joint < 0) continue;
       any_known = true;
-      targets_[index][joint] = sample.positions[k];
+      double& target = targets_[index][joint];
       Heard& heard = heard_[index][static_cast<std::size_t>(joint)];
+      const IndependentJoint& described = instrument.model().joints()[static_cast<std::size_t>(joint)];
+      target = heard == Heard::kNever ? sample.positions[k] : described.nearest(sample.positions[k], target);
       if (heard == Heard::kNever) heard = Heard::kNow;
     }
     if (any_known && listener.triggers) owes_[index] = true;

@@ -22,7 +22,7 @@ std::string twoClocksText(std::int64_t stamp_ns, std::int64_t followed_ns) {
   std::ostringstream text;
   text << "far off the stamps that this topic follows, now at " << stampText(followed_ns)
        << " s, and not confirmed by those after it (off by " << 1e-9 * static_cast<double>(stamp_ns - followed_ns)
-       << " s); let one publisher alone send this topic, and set the clocks of all computers by one (NTP)";
+       << " s); let the publishers of a topic have one clock, and set those of all computers by one (NTP)";
   return text.str();
 }
 
@@ -155,19 +155,27 @@ void JointStatePlayer::addUnnamed(const JointStateSample& kept, JointStateSample
 }
 
 /// For the topic's next sample to take along.
-void JointStatePlayer::keep(Topic& topic, JointStateSample sample) {
+void JointStatePlayer::keepForNext(Topic& topic, JointStateSample sample) {
   for (const std::string& name : sample.names) topic.named[name] = {topic.last->epoch, sample.stamp_ns};
-  addUnnamed(topic.kept.sample, sample);
-  topic.kept.sample = std::move(sample);
-  ++topic.kept.count;
-  ++waiting_;
+  addUnnamed(topic.kept, sample);
+  topic.kept = std::move(sample);
+  ++merged_;
 }
 
-/// No sample of its loop follows.
-void JointStatePlayer::forgetKept(Topic& topic) {
-  topic.kept.sample = {};
-  waiting_ -= topic.kept.count;
-  merged_ += static_cast<std::int64_t>(std::exchange(topic.kept.count, 0));
+/// Whether a sample is that of another publisher beside those that are held as a loop perhaps: behind the newest of them, without a joint of
+/// theirs.
+bool JointStatePlayer::fitsHeld(const Topic& topic, const JointStateSample& sample) const {
+  constexpr std::size_t kMost = 100;  // of some publishers, until one of them has confirmed the loop
+  if (!topic.clock.isHolding() || topic.held.empty() || topic.held.size() >= kMost) return false;
+  const auto is_apart = [&](const JointStateSample& held) {
+    return held.stamp_ns < sample.stamp_ns ||
+           std::none_of(held.names.begin(), held.names.end(), [&](const std::string& name) {
+             return std::find(sample.names.begin(), sample.names.end(), name) != sample.names.end();
+           });
+  };
+  return sample.stamp_ns >= topic.held.front().stamp_ns - max_gap_ns_ &&
+         sample.stamp_ns <= topic.held.back().stamp_ns + max_gap_ns_ &&
+         std::all_of(topic.held.begin(), topic.held.end(), is_apart);
 }
 
 /// Whether a sample of a topic that is a loop behind fits the newest.
@@ -216,9 +224,8 @@ void JointStatePlayer::refuseLate() {
       refuse(Verdict::kLate, static_cast<int>(t), moment.stamp_ns,
              is_old_loop ? "time went backwards on another topic but not on this one"
                          : "the simulation is already at " + stampText(*time_ns_) + " s");
-      waiting_ -= topic.queue.front().count;
-      merged_ += static_cast<std::int64_t>(topic.queue.front().count) - 1;
       topic.queue.pop_front();
+      --waiting_;
     }
   }
 }

@@ -196,7 +196,10 @@ std::string implausibleLoadText(const Simulator& simulator) {
       << "mean contact pressure " << load.pressure_pa << " Pa at a Young's modulus of " << load.modulus_pa
       << " Pa; the forces are not to be trusted. Check where the tool is (base_pose, joint_names, units); deep or wide "
          "motion needs "
-      << (is_for_large_strain ? "" : "material.model neo_hookean and ") << "smaller cells under the tool";
+      << (is_for_large_strain ? "" : "material.model neo_hookean and ")
+      << "smaller cells under the tool, and edges turn elements inside out with any: forces that stay the same with "
+         "smaller "
+         "cells are right";
   return text.str();
 }
 

@@ -27,6 +27,10 @@ auto parts(const SheetDescription& sheet) {
 }
 auto parts(const ShellDescription& shell) { return std::tie(shell.file, shell.scale_m_per_unit, shell.thickness_m); }
 
+bool areSame(const PoseDescription& a, const PoseDescription& b) {
+  return a.tf_frame == b.tf_frame && a.X.matrix() == b.X.matrix();
+}
+
 bool haveSameGeometry(const TissueDescription& a, const TissueDescription& b) {
   return a.geometry.index() == b.geometry.index() &&
          std::visit(
@@ -43,12 +47,38 @@ auto fixedParts(const MaterialDescription& material) {
                   material.distortion);
 }
 
+bool relaxesAlike(const MaterialDescription& a, const MaterialDescription& b) {
+  return std::equal(a.prony_series.begin(), a.prony_series.end(), b.prony_series.begin(), b.prony_series.end(),
+                    [](const PronyTerm& one, const PronyTerm& other) {
+                      return one.modulus_ratio == other.modulus_ratio && one.time_s == other.time_s;
+                    });
+}
+
+bool haveSameRegions(const TissueDescription& a, const TissueDescription& b) {
+  return std::equal(a.regions.begin(), a.regions.end(), b.regions.begin(), b.regions.end(),
+                    [](const TissueRegion& one, const TissueRegion& other) {
+                      return one.name == other.name && one.where.size() == other.where.size() &&
+                             fixedParts(one.material) == fixedParts(other.material);
+                    });
+}
+
+bool haveSameAttachments(const TissueDescription& a, const TissueDescription& b) {
+  return std::equal(a.attachments.begin(), a.attachments.end(), b.attachments.begin(), b.attachments.end(),
+                    [](const Attachment& one, const Attachment& other) {
+                      return one.stiffness_pa_per_m == other.stiffness_pa_per_m &&
+                             one.stiffness_n_per_m == other.stiffness_n_per_m;
+                    });
+}
+
 const char* difference(const TissueDescription& a, const TissueDescription& b) {
   if (a.name != b.name) return "tissues";
   if (!haveSameGeometry(a, b)) return "the mesh of a tissue";
   if (parts(a.refinement) != parts(b.refinement)) return "tissues[].refinement";
   if (fixedParts(a.material) != fixedParts(b.material)) return "a tissue's material but for its constants";
-  if (a.regions.size() != b.regions.size()) return "tissues[].regions";
+  if (!relaxesAlike(a.material, b.material)) return "tissues[].material.prony_series";
+  if (!areSame(a.pose, b.pose)) return "tissues[].pose";
+  if (!haveSameRegions(a, b)) return "tissues[].regions";
+  if (!haveSameAttachments(a, b)) return "tissues[].attachments";
   if (a.fixed.size() != b.fixed.size()) return "tissues[].fixed";
   if (a.pressure_pa != b.pressure_pa) return "tissues[].pressure_pa";
   return nullptr;
@@ -57,12 +87,14 @@ const char* difference(const TissueDescription& a, const TissueDescription& b) {
 const char* difference(const InstrumentDescription& a, const InstrumentDescription& b) {
   const bool are_same = a.name == b.name && a.urdf_file == b.urdf_file && a.tip_link == b.tip_link &&
                         a.robot_description_parameter == b.robot_description_parameter &&
+                        areSame(a.base_pose, b.base_pose) && a.joint_names == b.joint_names &&
                         a.contact_links.size() == b.contact_links.size();
   return are_same ? nullptr : "instruments";
 }
 
 const char* difference(const FrictionDescription& a, const FrictionDescription& b) {
   const bool are_same = a.instrument == b.instrument && a.tissue == b.tissue && a.other_tissue == b.other_tissue &&
+                        a.link == b.link && a.region == b.region && a.law.kind == b.law.kind &&
                         a.law.static_coefficients.size() == b.law.static_coefficients.size() &&
                         a.law.kinetic_coefficients.size() == b.law.kinetic_coefficients.size();
   return are_same ? nullptr : "friction but for its coefficients";
@@ -77,17 +109,21 @@ const char* difference(const std::vector<Part>& a, const std::vector<Part>& b, c
   return nullptr;
 }
 
-/// What retune() would leave as it is though the scenes differ in it, as far as they are looked at: whoever compares scenes that way
-/// would get the same forces and believe them. nullptr: nothing.
+/// What retune() would leave as it is though the scenes differ in it: whoever compares scenes that way would get the same forces and
+/// believe them. Places of regions, of `fixed` and of shapes are not looked at, but how many there are. nullptr: nothing.
 const char* difference(const Scene& a, const Scene& b) {
   if (const char* const what = difference(a.tissues, b.tissues, "tissues")) return what;
   if (const char* const what = difference(a.instruments, b.instruments, "instruments")) return what;
   if (const char* const what = difference(a.friction, b.friction, "friction")) return what;
   if (a.gravity_m_per_s2 != b.gravity_m_per_s2) return "gravity_m_per_s2";
   if (a.step.max_step_s != b.step.max_step_s || a.step.max_gap_s != b.step.max_gap_s) return "step";
-  if (a.solver.method != b.solver.method || a.solver.relaxation != b.solver.relaxation) return "solver.method";
-  if (a.tissue_pairs.size() != b.tissue_pairs.size()) return "tissue_pairs";
-  return nullptr;
+  if (a.solver.method != b.solver.method) return "solver.method";
+  if (a.solver.relaxation != b.solver.relaxation) return "solver.relaxation";
+  const bool have_same_pairs = std::equal(a.tissue_pairs.begin(), a.tissue_pairs.end(), b.tissue_pairs.begin(),
+                                          b.tissue_pairs.end(), [](const TissuePair& one, const TissuePair& other) {
+                                            return one.tissue == other.tissue && one.other == other.other;
+                                          });
+  return have_same_pairs ? nullptr : "tissue_pairs";
 }
 
 /// @return whether it was another.

@@ -69,6 +69,21 @@ def test_refused(simulator, kind, call, words):
     assert simulator.save_state() == before
 
 
+@pytest.mark.parametrize("key,value,part", [
+    ("step.max_step_s", 0.0005, "step"),
+    ("tissues.block.block.cells", "[5, 4, 3]", "the mesh of a tissue"),
+    ("tissues.block.material.model", "neo_hookean", "a tissue's material"),
+])
+def test_retune_takes_no_other_scene(source, simulator, key, value, part):
+    with pytest.raises(ValueError, match="this one has other " + part):
+        simulator.retune(tc.load_scene(str(source / "test/ros/press.yaml"), set={key: value}))
+
+
+def test_replay_wants_a_file(scene):
+    with pytest.raises(TypeError, match="a file"):
+        tc.replay(scene, "x.bag")
+
+
 @pytest.mark.parametrize("kind,set_,words", [
     (ValueError, {"tissues.block.material.youngs_modulus_pa": -4}, "youngs_modulus_pa"),
     (ValueError, {"tissues.block.material.youngs_modulus_pa": NAN}, "youngs_modulus_pa"),

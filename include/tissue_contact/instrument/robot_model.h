@@ -16,7 +16,8 @@ struct IndependentJoint {
   /// URDF limits (infinite for continuous joints), for reference only: positions outside are simulated as recorded.
   double lower = 0.0;
   double upper = 0.0;
-  bool turns_on = false;  ///< continuous: whole turns more or less are the same pose, and drivers leave them out
+  /// Continuous, and so are those that follow it, at whole multiples: whole turns more or less are the same pose, and drivers leave them out.
+  bool turns_on = false;
 
   /// Of the positions that are the same pose as `position`, that nearest to `to`; of other joints `position`.
   double nearest(double position, double to) const;

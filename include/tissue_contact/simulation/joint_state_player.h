@@ -68,7 +68,9 @@ struct PlayedSample {
 ///
 /// Publishers. Several may share a topic, each with joints of its own (drivers of an arm and of its gripper). A sample that is no later
 /// than its topic's last one, by at most max_gap_s, but later than all that named one of its joints, makes no moment: its joints are taken
-/// with the topic's next sample. So of what they send alike the order of arrival on that topic counts, and nothing waits for it.
+/// with the topic's next sample, and it counts as merged. So the order of arrival on that topic counts, and nothing waits for a publisher.
+///
+/// Continuous joints go the shorter way from one sample to the next: drivers give their angle between -pi and pi.
 ///
 /// Waiting. A moment waits until every other topic has delivered its stamp or a later one, so that what arrives first
 /// does not matter. A topic is waited for only while its newest stamp is less than max_gap_s behind the newest of all
@@ -88,9 +90,9 @@ struct PlayedSample {
 /// the step before, and its time and motion are part of the next interval.
 ///
 /// Counts. pushed = accepted + merged + refused (count() of the other verdicts) + waiting(), at any time. Accepted are
-/// the samples of moments that were played, with those kept for them, and those of update-only topics up to them. Merged are those that were
-/// passed over: under kNewestState older moments, which only shape the motion by their last positions; and those of an
-/// interrupted advance.
+/// the samples of moments that were played, and those of update-only topics up to them. Merged are those that were
+/// passed over: under kNewestState older moments, which only shape the motion by their last positions; what is taken with a topic's
+/// next sample; and those of an interrupted advance.
 ///
 /// Memory. Played or refused samples are forgotten; waiting ones span at most max_gap_s of message time per loop and
 /// are at most kMaxWaiting (of update-only topics: each), provided that playNext() is called until it returns nothing
@@ -150,7 +152,7 @@ class JointStatePlayer {
   void reset();
 
   /// The simulator's state (Simulator::saveState()), the moment it is at and where joints were heard to be, as bytes for restoreState().
-  /// Samples that wait are not in it.
+  /// Samples that wait are not in it, nor what is to be taken with a topic's next sample.
   std::string saveState();
 
   /// Goes on from a saved state of the same scene, with what is pushed from now on; what waits counts as merged. If the first stamp
@@ -188,12 +190,6 @@ class JointStatePlayer {
   struct Queued {
     Moment moment;
     JointStateSample sample;
-    std::size_t count = 1;  ///< samples in it, those kept for it included
-  };
-  /// Joints of samples that came too late to be a moment, for the topic's next sample.
-  struct Kept {
-    JointStateSample sample;
-    std::size_t count = 0;
   };
   struct Listener {
     int instrument = 0;
@@ -204,7 +200,7 @@ class JointStatePlayer {
 
     TopicClock clock;
     std::deque<Queued> queue;
-    Kept kept;
+    JointStateSample kept;                ///< joints of samples that came too late to be a moment, for the next
     std::map<std::string, Moment> named;  ///< of the newest sample that names the joint
     std::vector<JointStateSample> held;   ///< by the clock: a loop perhaps
     std::optional<Moment> last;           ///< of the last sample queued, to see time go backwards
@@ -230,8 +226,8 @@ class JointStatePlayer {
   bool resumes(const Moment& moment) const;
   bool hasNews(const Topic& topic, const JointStateSample& sample) const;
   static void addUnnamed(const JointStateSample& kept, JointStateSample& sample);
-  void keep(Topic& topic, JointStateSample sample);
-  void forgetKept(Topic& topic);
+  void keepForNext(Topic& topic, JointStateSample sample);
+  bool fitsHeld(const Topic& topic, const JointStateSample& sample) const;
   void accept(int topic, int epoch, JointStateSample sample);
   void acceptHeld(int topic, int epoch);
   void noteMoment(const Moment& moment);

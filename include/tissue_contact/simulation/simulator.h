@@ -141,8 +141,9 @@ class Simulator {
   /// damping of tissues and their regions, friction coefficients, and the solver's iterations, contact passes and tolerance. Positions,
   /// velocities, contacts and what bodies remember go on; reset() keeps the numbers. Until that step scene() and all results
   /// are as they were; of two calls before it the later one counts.
-  /// @param changed scene() but for such numbers, as tuned() (scene/tuning.h) makes it. All else of it is ignored.
-  /// @throws std::invalid_argument when it has other tissues, regions, friction entries or numbers of coefficients; nothing changes then.
+  /// @param changed scene() but for such numbers, as tuned() (scene/tuning.h) makes it.
+  /// @throws std::invalid_argument naming what else differs (places of regions, of `fixed` and of shapes are not looked at); nothing changes
+  ///   then.
   void retune(const Scene& changed);
 
   /// Puts an instrument somewhere without motion in between (no speed, no contact until the next advance).

@@ -142,11 +142,13 @@ class Haptics {
       const bool asked = guard.asked() || g_killed;
       if (asked && end == Clock::time_point::max()) end = std::max(next, Clock::now()) + kFarewell;
       publish(asked);
-      if (!heard_ && next > patient_until) {
+      if (!asked && !heard_ && next > patient_until) {
         heard_ = true;  // told once
-        ROS_WARN_STREAM("no wrench yet on "
-                        << wrenches.getTopic() << ", which has " << wrenches.getNumPublishers()
-                        << " publishers: commands are zero; give the topic, wrench:=/tissue_contact/NAME/wrench");
+        ROS_WARN_STREAM(
+            "no wrench yet on "
+            << wrenches.getTopic() << ", which has " << wrenches.getNumPublishers()
+            << " publishers: commands are zero. Is it the topic, wrench:=/tissue_contact/NAME/wrench, and do "
+               "joint states come?");
       }
       next = std::max(next + period, Clock::now());  // a late one is not made up for by a burst
       std::this_thread::sleep_until(std::min(next, end));

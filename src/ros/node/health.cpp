@@ -343,7 +343,7 @@ void Health::tellSilence(const LiveFigures& now) {
   for (const std::string& topic : player_.topics()) topics.push_back(ros::names::resolve(topic));
   ROS_WARN_STREAM("no joint state yet, within "
                   << kPatience << " s, on " << listOf(topics)
-                  << ": nothing moves. See `rostopic info` of it; joint_state_topics of the "
+                  << ": nothing moves. Does `rostopic info` name a publisher? joint_state_topics of the "
                      "scene name what is listened to");
 }
 

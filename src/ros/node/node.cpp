@@ -23,6 +23,7 @@
 #include "ros/parameter.h"
 #include "ros/publish/publish_options.h"
 #include "scene/read_more.h"
+#include "tissue_contact/core/text.h"
 #include "tissue_contact/core/whole_file.h"
 #include "tissue_contact/ros/environment.h"
 #include "tissue_contact/simulation/scene.h"
@@ -99,8 +100,13 @@ Simulator makeSimulator(const ros::NodeHandle& private_node, const std::vector<s
   };
   Scene scene;
   try {
-    scene = loadScene(file, packagePath, textsParameter(private_node, "set"),
-                      [&](const YamlMap& sections) { publish = parsePublish(sections); });
+    const std::vector<std::string> settings = textsParameter(private_node, "set");
+    if (!settings.empty()) {
+      ROS_INFO_STREAM("the scene is changed by "
+                      << private_node.resolveName("set") << ": " << listOf(settings)
+                      << ". On the parameter server it stays in force for later starts, until rosparam delete");
+    }
+    scene = loadScene(file, packagePath, settings, [&](const YamlMap& sections) { publish = parsePublish(sections); });
   } catch (const std::exception& error) {
     throw naming_file(error);
   }

@@ -222,9 +222,8 @@ class Replay {
   void dumpIfWanted() {
     if (!dump_ || simulator_.stepCount() != options_.dump_step) return;
     if (simulator_.contacts().empty()) {
-      throw std::runtime_error("--dump-step " + std::to_string(options_.dump_step) + ": in that step, which ends at " +
-                               stampText(player_.time().value_or(0)) +
-                               " s or before, nothing touches: there is no contact problem; ask for a later one");
+      log_ << kPrefix << "warning: --dump-step " << options_.dump_step
+           << ": nothing touches in that step, so its problem has no contact to solve; ask for a later one\n";
     }
     writeContactProblem(dump_->stream(), makeDelassusProblem(simulator_.lastProblem()),
                         simulator_.lastSolution().states);

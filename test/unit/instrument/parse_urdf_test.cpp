@@ -36,7 +36,13 @@ std::string nameOf(const testing::TestParamInfo<Malformed>& info) { return info.
 const Malformed kTexts[] = {
     {"Empty", "", {"empty"}},
     {"NotXml", "hello", {"urdfdom refuses"}},
-    {"NotARobot", "<house name=\"r\"/>", {"robot"}},
+    {"NotARobot",
+     "<?xml version=\"1.0\"?><!-- <robot> --><sdf version=\"1.6\"/>",
+     {"outermost element is <sdf>", "<robot>", "SDF"}},
+    {"NumbersOnSeveralLines",
+     robot(kTwoLinks +
+           "<joint name=\"j\" type=\"fixed\"><origin xyz=\" 0\n 0\"/><parent link=\"a\"/><child link=\"b\"/></joint>"),
+     {"urdfdom refuses", "[0?]"}},
     {"UnclosedElement",
      "<robot name=\"r\">\n  <link name=\"a\">\n</robot>",
      {"test.urdf:3:", "</robot>", "<link> of line 2"}},

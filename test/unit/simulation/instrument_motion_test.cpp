@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "unit/instrument/instrument_fixture.h"
 
@@ -18,7 +16,7 @@ constexpr double kRadius = 0.004;   // m, of the ball
 constexpr double kMaxStep = 0.001;  // s
 
 /// slide, prismatic; turn and bend, revolute; a finger that follows bend twice as far, with a ball beside its joint.
-std::vector<Instrument> arm(const std::string& turn = "revolute") {
+std::vector<Instrument> arm() {
   InstrumentDescription description;
   description.name = "arm";
   description.joint_state_topics = {{"/joint_states"}};
@@ -29,7 +27,7 @@ std::vector<Instrument> arm(const std::string& turn = "revolute") {
       "name='finger'><collision>"
       "<origin xyz='0.03 0 0.01'/><geometry><sphere radius='0.004'/></geometry></collision></link>" +
       joint("slide", "prismatic", "base", "carriage", "<origin xyz='0 0.1 0'/><axis xyz='0 0 1'/>") +
-      joint("turn", turn, "carriage", "upper", "<origin xyz='0.1 0 0'/><axis xyz='0 0 1'/>") +
+      joint("turn", "continuous", "carriage", "upper", "<origin xyz='0.1 0 0'/><axis xyz='0 0 1'/>") +
       joint("bend", "revolute", "upper", "lower", "<origin xyz='0.2 0 0.1' rpy='0.3 0 1'/><axis xyz='0 1 0'/>") +
       joint("follow", "revolute", "lower", "finger",
             "<origin xyz='0.05 0 0'/><axis xyz='1 0 0'/><mimic joint='bend' multiplier='2' offset='0.4'/>"));
@@ -99,26 +97,6 @@ TEST(InstrumentMotion, CutsIntoABillionStepsAtOnce) {
   }
   EXPECT_EQ(motion.begin(1e6, kMaxStep, {Vector3(1e8, 0.0, 0.5)}), 1000000000);
   EXPECT_TRUE(motion.jumped());
-}
-
-// Drivers give the angle of a continuous joint between -pi and pi.
-TEST(InstrumentMotion, AContinuousJointGoesTheShortWay) {
-  const std::vector<Instrument> instruments = arm("continuous");
-  InstrumentMotion motion(instruments);
-  motion.place(0, Vector3(0.1, M_PI - 0.02, 0.5));
-  for (const double turn : {-M_PI + 0.02, -M_PI + 0.06, M_PI - 0.02, 5.0 * M_PI - 0.02}) {
-    const double before = motion.positions(0)[1];
-    EXPECT_LE(motion.begin(0.01, kMaxStep, {Vector3(0.1, turn, 0.5)}), 16) << turn;
-    EXPECT_FALSE(motion.jumped());
-    motion.moveTo(1.0);
-    motion.finishStep();
-    EXPECT_LT(std::abs(motion.positions(0)[1] - before), 0.1) << turn;
-    std::vector<Pose> expected;
-    instruments[0].linkPoses(Vector3(0.1, turn, 0.5), expected);
-    EXPECT_LT((motion.startPoses()[0].back().matrix() - expected.back().matrix()).norm(), 1e-13) << turn;
-  }
-  // One that is not continuous has turned all the way.
-  EXPECT_GT(motion.begin(0.01, kMaxStep, {Vector3(0.1, M_PI - 0.02, 0.5 - 2.0 * M_PI)}), 100);
 }
 
 }  // namespace instrument_motion_test

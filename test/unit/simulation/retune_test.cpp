@@ -237,6 +237,13 @@ TEST(Retune, RefusesAScenesOtherPartsByName) {
   expectRefused("gravity_m_per_s2", [](Scene& s) { s.gravity_m_per_s2.z() = -9.81; });
   expectRefused("step", [](Scene& s) { s.step.max_step_s = 0.001; });
   expectRefused("solver.method", [](Scene& s) { s.solver.method = SolverMethod::kReference; });
+  expectRefused("tissues[].material.prony_series", [](Scene& s) { s.tissues[0].material.prony_series = {{0.5, 1.0}}; });
+  expectRefused("tissues[].pose", [](Scene& s) { s.tissues[0].pose.X.translation().x() = 0.01; });
+  expectRefused("tissues[].attachments", [](Scene& s) { s.tissues[0].attachments.emplace_back(); });
+  expectRefused("tissues[].regions", [](Scene& s) { s.tissues[0].regions.emplace_back(); });
+  expectRefused("instruments", [](Scene& s) { s.instruments[0].base_pose.X.translation().z() = 0.1; });
+  expectRefused("friction", [](Scene& s) { s.friction[0].law.kind = FrictionLawDescription::Kind::kOrthotropic; });
+  expectRefused("solver.relaxation", [](Scene& s) { s.solver.relaxation = RelaxationKind::kCholesky; });
   expectRefused("tissue_pairs", [](Scene& s) { s.tissue_pairs.push_back({"block", "block"}); });
 }
 
