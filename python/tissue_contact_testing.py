@@ -133,7 +133,7 @@ class TissueFixture:
         last = statuses[-1]
         for count, what in [(last.joint_states_refused, "joint states were refused (the node's log says why)"),
                             (last.joint_states_dropped, "joint states were dropped: they came faster than the node could take them"),
-                            (last.joint_states_merged, "joint states were merged: set step.joint_states to every_state"),
+                            (last.joint_states_merged, "joint states were merged: set step.joint_states to every_state, and give each publisher a topic of its own"),
                             (last.gaps, "intervals were longer than step.max_gap_s, and were cut"),
                             (last.resets, "times time went back, and the scene was reset")]:
             if count:
