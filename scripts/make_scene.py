@@ -56,6 +56,9 @@ instruments:
 friction:  # wet tissue on metal: our choice, to be measured
   - {{instrument: probe, tissue: {name}, static: 0.3, kinetic: 0.2}}
 
+solver:
+  iterations: 100  # at most: 30, the default, leave every fourth step of a long and thin organ unfinished
+
 step:
   max_step_s: 0.002  # one for each joint state of the recording,
   joint_states: every_state  # also where the computer is slower than it
