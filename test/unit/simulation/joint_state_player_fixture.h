@@ -49,6 +49,10 @@ class TwoProbes : public testing::Test {
 
 inline JointStateSample sample(std::int64_t stamp_ns, double z) { return {stamp_ns, {"x", "y", "z"}, {0.0, 0.0, z}}; }
 
+/// Of the drivers of an arm and of its jaw.
+inline JointStateSample arm(std::int64_t stamp_ns, double x) { return {stamp_ns, {"x", "y"}, {x, 0.0}}; }
+inline JointStateSample jaw(std::int64_t stamp_ns, double z) { return {stamp_ns, {"z"}, {z}}; }
+
 /// Everything that is ready, in the order it is played.
 inline std::vector<PlayedSample> drain(JointStatePlayer& player) {
   std::vector<PlayedSample> all;
@@ -101,6 +105,15 @@ inline Trace run(Simulator& simulator, JointStatePlayer& player, const Order& or
   }
   player.finish();
   take();
+  return trace;
+}
+
+/// run(), where nothing is refused.
+inline Trace runAll(Simulator& simulator, JointStatePlayer& player, const Order& order) {
+  Trace trace = run(simulator, player, order);
+  for (int v = 1; v < kVerdictCount; ++v) {
+    EXPECT_EQ(player.count(static_cast<Verdict>(v)), 0) << verdictText(static_cast<Verdict>(v));
+  }
   return trace;
 }
 

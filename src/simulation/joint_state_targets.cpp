@@ -1,0 +1,83 @@
+/// @file
+/// Room `simulation`: where JointStatePlayer has the joints at a moment.
+#include <algorithm>
+#include <cstdint>
+
+#include "tissue_contact/simulation/joint_state_player.h"
+
+namespace tissue_contact {
+
+/// Takes everything of a topic up to the moment, and sets its joints to where they are then.
+void JointStatePlayer::take(const Moment& moment, int topic, PlayedSample& played) {
+  Topic& state = topic_states_[static_cast<std::size_t>(topic)];
+  while (!state.queue.empty() && !(moment < state.queue.front().moment)) {
+    const Queued& next = state.queue.front();
+    const bool is_passed_over = state.triggers && next.moment < moment;
+    if (next.moment.epoch == moment.epoch) {
+      takeJoints(next.sample, state);
+      state.taken = next.moment;
+    }
+    if (state.triggers && !is_passed_over && played.topic < 0) played.topic = topic;
+    ++(is_passed_over ? played.merged : played.accepted);
+    state.queue.pop_front();
+    --waiting_;
+  }
+  headForNext(moment, state);
+}
+
+/// Sets the targets of the joints in `sample`.
+void JointStatePlayer::takeJoints(const JointStateSample& sample, const Topic& topic) {
+  for (const Listener& listener : topic.listeners) {
+    const auto index = static_cast<std::size_t>(listener.instrument);
+    bool any_known = false;
+    for (std::size_t k = 0; k < sample.names.size(); ++k) {
+      const Instrument& instrument = simulator_.instruments()[index];
+      const int joint = instrument.jointOfRecordedName(sample.names[k]);
+      if (joint < 0) continue;
+      any_known = true;
+      double& target = targets_[index][joint];
+      Heard& heard = heard_[index][static_cast<std::size_t>(joint)];
+      const IndependentJoint& described = instrument.model().joints()[static_cast<std::size_t>(joint)];
+      target = heard == Heard::kNever ? sample.positions[k] : described.nearest(sample.positions[k], target);
+      if (heard == Heard::kNever) heard = Heard::kNow;
+    }
+    if (any_known && listener.triggers) owes_[index] = true;
+  }
+}
+
+/// Moves the joints' targets from where they were last known towards the topic's next sample, as far as the moment
+/// lies between the two.
+void JointStatePlayer::headForNext(const Moment& moment, const Topic& topic) {
+  if (!topic.taken || topic.taken->stamp_ns >= moment.stamp_ns || topic.queue.empty()) return;
+  const Queued& next = topic.queue.front();
+  if (next.moment.epoch != moment.epoch || next.moment.stamp_ns - topic.taken->stamp_ns >= max_gap_ns_) return;
+  const std::int64_t from_ns = std::max(topic.taken->stamp_ns, time_ns_.value_or(topic.taken->stamp_ns));
+  const double fraction =
+      static_cast<double>(moment.stamp_ns - from_ns) / static_cast<double>(next.moment.stamp_ns - from_ns);
+  for (const Listener& listener : topic.listeners) {
+    const auto index = static_cast<std::size_t>(listener.instrument);
+    for (std::size_t k = 0; k < next.sample.names.size(); ++k) {
+      const Instrument& instrument = simulator_.instruments()[index];
+      const int joint = instrument.jointOfRecordedName(next.sample.names[k]);
+      if (joint < 0 || heard_[index][static_cast<std::size_t>(joint)] == Heard::kNever) continue;
+      double& target = targets_[index][joint];
+      const IndependentJoint& described = instrument.model().joints()[static_cast<std::size_t>(joint)];
+      target += fraction * (described.nearest(next.sample.positions[k], target) - target);
+    }
+  }
+}
+
+void JointStatePlayer::placeNewJoints() {
+  for (std::size_t i = 0; i < heard_.size(); ++i) {
+    if (std::find(heard_[i].begin(), heard_[i].end(), Heard::kNow) == heard_[i].end()) continue;
+    VectorX placed = simulator_.jointPositions(static_cast<int>(i));
+    for (std::size_t k = 0; k < heard_[i].size(); ++k) {
+      if (heard_[i][k] != Heard::kNow) continue;
+      placed[static_cast<Eigen::Index>(k)] = targets_[i][static_cast<Eigen::Index>(k)];
+      heard_[i][k] = Heard::kBefore;
+    }
+    simulator_.placeInstrument(static_cast<int>(i), placed);
+  }
+}
+
+}  // namespace tissue_contact
