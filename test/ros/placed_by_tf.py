@@ -1,14 +1,21 @@
 #!/usr/bin/python3
-"""A base placed by tf: the node waits for the frame, then stands where tf says; the URDF comes from a parameter."""
+"""A base placed by tf: the node waits for the frame, then stands where tf says, and tells when that moves; the URDF comes from a parameter."""
 import os
 
 import rospy
+from diagnostic_msgs.msg import DiagnosticStatus
 from tf2_msgs.msg import TFMessage
 
 import harness
 
 
 class PlacedByTf(harness.TestCase):
+    @staticmethod
+    def frames_level(arrays):
+        """Of the last diagnostics about tf frames; None before."""
+        levels = [status.level for array in arrays for status in array.status if status.name.endswith("tf frames")]
+        return levels[-1] if levels else None
+
     def test_same_wrenches_as_placed_by_the_scene(self):
         with open(os.path.join(harness.PACKAGE, "urdf", "probe.urdf"), encoding="utf-8") as stream:
             rospy.set_param("/robot_description", stream.read())
@@ -23,6 +30,10 @@ class PlacedByTf(harness.TestCase):
             wrenches = harness.wrenches()
             harness.JointSource().send_all(samples)
             got = wrenches.wait_for_stamp(samples[-1][0])
+            told = harness.diagnostics()
+            told.wait(lambda all: self.frames_level(all) == DiagnosticStatus.OK, "a base that stands still")
+            static.publish(harness.stage_at(0.028))
+            told.wait(lambda all: self.frames_level(all) == DiagnosticStatus.WARN, "a base that has moved by 2 mm")
         self.assertEqual(len(got), len(samples))
 
         csv = self.path("out.csv")

@@ -94,6 +94,10 @@ class ReplayErrors(harness.TestCase):
                 out.write(topic, harness.stage_at(0.026), self.samples[5][0])
             self.replayed(scene, bag, self.csv)
             self.assertEqual(harness.read_csv(self.csv), harness.read_csv(self.path("direct.csv")), topic)
+        with rosbag.Bag(bag, "a") as out:
+            out.write("/tf", harness.stage_at(0.028), self.samples[9][0])
+        self.assertIn("tf frame 'stage' has moved by 2 mm", self.replayed(scene, bag, self.csv))
+        self.assertEqual(harness.read_csv(self.csv), harness.read_csv(self.path("direct.csv")))
 
 
 if __name__ == "__main__":

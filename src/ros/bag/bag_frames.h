@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "ros/frame_motion.h"
 #include "tissue_contact/core/types.h"
 
 namespace tissue_contact {
@@ -13,5 +14,9 @@ namespace tissue_contact {
 /// @throws std::runtime_error when the bag cannot be read; std::invalid_argument when it never says, or not within its
 ///   first 10^6 transforms; those with frame names longer than 256 bytes are left out.
 Pose frameInBag(const std::string& frame, const std::string& world_frame, const std::string& bag_file);
+
+/// The farthest that `frame` ever is in the bag from where frameInBag() finds it, all of the bag's /tf read for it.
+/// @throws as frameInBag().
+FrameMotion farthestInBag(const std::string& frame, const std::string& world_frame, const std::string& bag_file);
 
 }  // namespace tissue_contact

@@ -85,7 +85,7 @@ example
 constexpr std::size_t kJointStateQueue = 100000;
 
 Simulator makeSimulator(const ros::NodeHandle& private_node, const std::vector<std::string>& arguments,
-                        PublishOptions& publish) {
+                        PublishOptions& publish, std::vector<PlacedFrame>& frames) {
   const std::string parameter = private_node.resolveName("scene");
   std::string file;
   if (!private_node.getParam("scene", file) || file.empty()) {
@@ -112,7 +112,14 @@ Simulator makeSimulator(const ros::NodeHandle& private_node, const std::vector<s
   }
   refuseUnknownParameters(private_node, &scene, arguments);
   try {
-    return {scene, nodeEnvironment(private_node, scene.world_frame)};
+    SceneEnvironment environment = nodeEnvironment(private_node, scene.world_frame);
+    environment.frame_pose = [&frames, look_up = std::move(environment.frame_pose)](const std::string& frame) {
+      const Pose X_WF = look_up(frame);
+      const auto is_it = [&frame](const PlacedFrame& placed) { return placed.name == frame; };
+      if (std::none_of(frames.begin(), frames.end(), is_it)) frames.push_back({frame, X_WF});
+      return X_WF;
+    };
+    return {scene, environment};
   } catch (const std::exception& error) {
     throw naming_file(error);
   }
@@ -123,7 +130,7 @@ Simulator makeSimulator(const ros::NodeHandle& private_node, const std::vector<s
 Node::Node(const ros::NodeHandle& node, const ros::NodeHandle& private_node, const std::string& name,
            const std::vector<std::string>& arguments)
     : private_node_(private_node),
-      simulator_(makeSimulator(private_node_, arguments, publish_)),
+      simulator_(makeSimulator(private_node_, arguments, publish_, placed_frames_)),
       player_(simulator_),
       inbox_(kJointStateQueue),
       health_(simulator_, player_, inbox_),
@@ -145,6 +152,10 @@ Node::Node(const ros::NodeHandle& node, const ros::NodeHandle& private_node, con
   updater_.add("tissue contact", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {
     health_.fill(receiver_.missing(), status);
   });
+  if (!placed_frames_.empty()) {
+    frames_ = std::make_unique<FrameWatch>(placed_frames_, simulator_.scene().world_frame);
+    updater_.add("tf frames", [this](diagnostic_updater::DiagnosticStatusWrapper& status) { frames_->fill(status); });
+  }
   updater_.add("ROS master", [this](diagnostic_updater::DiagnosticStatusWrapper& status) { master_.fill(status); });
 }
 

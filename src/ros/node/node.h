@@ -8,12 +8,14 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "ros/node/control_services.h"
+#include "ros/node/frame_watch.h"
 #include "ros/node/health.h"
 #include "ros/node/joint_state_inbox.h"
 #include "ros/node/live_tuning.h"
@@ -70,6 +72,7 @@ class Node {
 
   ros::NodeHandle private_node_;
   PublishOptions publish_;
+  std::vector<PlacedFrame> placed_frames_;
   Simulator simulator_;
   JointStatePlayer player_;
   JointStateInbox inbox_;
@@ -81,6 +84,7 @@ class Node {
   Receiver receiver_;
   ros::ServiceServer loggers_;
   MasterWatch master_;
+  std::unique_ptr<FrameWatch> frames_;  ///< null: the scene names none
   std::atomic<bool> counts_told_{false};
 
   diagnostic_updater::Updater updater_;

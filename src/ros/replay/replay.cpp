@@ -19,9 +19,11 @@
 #include <vector>
 
 #include "ros/approach_text.h"
+#include "ros/bag/bag_frames.h"
 #include "ros/bag/joint_state_bag.h"
 #include "ros/bag/recorded_changes.h"
 #include "ros/conversions.h"
+#include "ros/frame_motion.h"
 #include "ros/joint_watch.h"
 #include "ros/replay/bag_recorder.h"
 #include "ros/replay/interruption.h"
@@ -286,6 +288,10 @@ class Replay {
 
   void summarize() const {
     for (const std::string& line : joint_watch_.findings()) log_ << kPrefix << "warning: " << line << "\n";
+    for (const std::string& frame : framesOf(scene_)) {
+      const FrameMotion motion = farthestInBag(frame, scene_.world_frame, options_.bag_file);
+      if (motion.counts()) log_ << kPrefix << "warning: " << frameMotionText(frame, motion) << "\n";
+    }
     log_ << kPrefix << player_.count(Verdict::kAccepted) << " joint states accepted";
     for (int v = 1; v < kVerdictCount; ++v) {
       const auto verdict = static_cast<Verdict>(v);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <cmath>
 #include <limits>
 
 #include "bag_fixture.h"
@@ -92,6 +93,47 @@ TEST_F(BagFramesTest, LongNamesOfFramesAreLeftOutAndCounted) {
   EXPECT_EQ(frameInBag(std::string(256, 'c'), "world", file_).translation().z(), 0.5);
   expectRefusal([&] { frameInBag("lost", "world", file_); },
                 {"1001 transforms with names of frames longer than 256 bytes"});
+}
+
+/// There and back again, through a frame between them, and where a frame above them both moves: nothing between the two does then.
+TEST_F(BagFramesTest, FarthestThatAFrameIsFromWhereItWasFirst) {
+  EXPECT_EQ(farthestInBag("tool", "world", file_).way_m, 0.25);
+  {
+    rosbag::Bag bag(file_, rosbag::bagmode::Append);
+    bag.write("/tf", ros::Time(1010), transform("base", "tool", 0.25, 1010));
+    bag.write("/tf", ros::Time(1011), transform("base", "other", 9.0, 1011));
+    bag.write("/tf", ros::Time(1012), transform("map", "world", 9.0, 1012));
+    bag.write("/tf", ros::Time(1013), transform("map", "world", 3.0, 1013));
+  }
+  const FrameMotion motion = farthestInBag("tool", "world", file_);
+  EXPECT_EQ(motion.way_m, 0.25);
+  EXPECT_EQ(motion.turn_rad, 0.0);
+  EXPECT_TRUE(motion.counts());
+  EXPECT_FALSE(farthestInBag("base", "world", file_).counts());
+}
+
+TEST_F(BagFramesTest, FarthestTurnCounts) {
+  {
+    rosbag::Bag bag(file_, rosbag::bagmode::Append);
+    tf2_msgs::TFMessage turned = transform("base", "tool", 0.25, 1020);
+    turned.transforms[0].transform.rotation.x = 1.0;  // by 90 degrees, of no length that tf2 takes
+    turned.transforms[0].transform.rotation.w = 1.0;
+    bag.write("/tf", ros::Time(1020), turned);
+  }
+  EXPECT_NEAR(farthestInBag("tool", "world", file_).turn_rad, M_PI_2, 1e-12);
+}
+
+/// What goes round, stands on itself or is no pose ends neither the search nor the process.
+TEST_F(BagFramesTest, FarthestOfImpossibleFrames) {
+  {
+    rosbag::Bag bag(file_, rosbag::bagmode::Append);
+    tf2_msgs::TFMessage nothing = transform("base", "tool", 9.0, 1030);
+    nothing.transforms[0].transform.rotation.w = 0.0;
+    bag.write("/tf", ros::Time(1030), nothing);
+    bag.write("/tf", ros::Time(1031), transform("tool", "base", 9.0, 1031));
+    bag.write("/tf", ros::Time(1032), transform("tool", "tool", 9.0, 1032));
+  }
+  EXPECT_LE(farthestInBag("tool", "world", file_).way_m, 0.25);
 }
 
 }  // namespace bag_frames_test
