@@ -114,7 +114,7 @@ Simulator makeSimulator(const ros::NodeHandle& private_node, const std::vector<s
   try {
     SceneEnvironment environment = nodeEnvironment(private_node, scene.world_frame);
     environment.frame_pose = [&frames, look_up = std::move(environment.frame_pose)](const std::string& frame) {
-      const Pose X_WF = look_up(frame);
+      Pose X_WF = look_up(frame);
       const auto is_it = [&frame](const PlacedFrame& placed) { return placed.name == frame; };
       if (std::none_of(frames.begin(), frames.end(), is_it)) frames.push_back({frame, X_WF});
       return X_WF;
