@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Makes the tables of doc/performance.md anew: what an implicit step costs, before and after, both run at the same time on one
-processor. What stands below its first heading of the second order is written by hand and stays.
+processor. They are its section "The tables"; all else on that page is written by hand and stays.
 
 usage, after scripts/build and `make -C "$(scripts/build --where)" step_costs memory`:
     scripts/make_performance_doc.py --before DIR [--before-name NAME] [--no-counts]
@@ -55,6 +55,17 @@ PARTS = [
     ("residuals", r"bodyDefect|offDiagonalProduct|computeResiduals"),
     ("surface tree, detection", r"TriangleTree|MovingSurface|detect|NarrowPhase|projectOnTriangle"),
 ]
+
+
+SECTION = "## The tables"
+
+
+def with_tables(page, tables):
+    """`page` with that section made of `tables` (lines); what stands before and behind it stays."""
+    found = re.fullmatch(r"(.*^%s\n).*?(^## .*)" % SECTION, page, re.M | re.S)
+    if not found:
+        sys.exit("make_performance_doc.py: %s has no section \"%s\" with another behind it" % (DOC, SECTION))
+    return found[1] + "\n" + "\n".join(tables) + "\n\n" + found[2]
 
 
 def checked(command, code, output, errors):
@@ -119,7 +130,8 @@ def growth_table(build):
     logs = [(math.log(nodes), math.log(median)) for nodes, median, _ in rows]
     mean = [sum(column) / len(logs) for column in zip(*logs)]
     exponent = sum((x - mean[0]) * (y - mean[1]) for x, y in logs) / sum((x - mean[0]) ** 2 for x, _ in logs)
-    return ["", "Growth (uniform, tolerance 3e-2): exponent %.2f (1.1 wanted)" % exponent, "", "| nodes | median, ms | µs per node |", "|---|---|---|"] + [
+    head = ["", "### Growth with the number of nodes", "", "Uniform, tolerance 3e-2: exponent %.2f (1.1 wanted)." % exponent, ""]
+    return head + ["| nodes | median, ms | µs per node |", "|---|---|---|"] + [
         "| %d | %.2f | %.2f |" % (nodes, median, 1e3 * median / nodes) for nodes, median, _ in rows]
 
 
@@ -154,8 +166,9 @@ def main():
             sys.exit("make_performance_doc.py: %s is not built" % step_costs(needed))
     before = options.before_name or options.before
     commit = run(["git", "-C", PACKAGE, "rev-parse", "--short", "HEAD"]).strip()
-    with open(DOC, encoding="utf-8") as old:  # what stands there by hand
-        notes = re.search(r"^## .*", old.read(), re.M | re.S)[0].rstrip()
+    with open(DOC, encoding="utf-8") as old:
+        page = old.read()
+    with_tables(page, [])  # refused now, not after half an hour
     with tempfile.TemporaryDirectory() as scratch:
         def mesh_of(mesh):
             if "," in mesh:
@@ -165,10 +178,10 @@ def main():
                 run(["gmsh", "-3", "-format", "msh22", "-setnumber", "h", mesh,
                      os.path.join(PACKAGE, "benchmark", "drivers", "refined_block.geo"), "-o", file])
             return file
-        text = ["# What a step costs", "",
-                "The tables by `scripts/make_performance_doc.py`, the notes below them by hand: press and drag of `benchmark/drivers/step_costs.cpp` (5 mm ball, 4 mm deep,",
-                "μ .5; E 5 kPa, ν .45, 1 ms steps where nothing else is said), processor time of the steps in contact, both programs at once on one processor.",
-                "Solver error: RMS of the force's difference from that of steps solved to the end, over the force's RMS.", "",
+        text = ["Made by `scripts/make_performance_doc.py`: press and drag of `benchmark/drivers/step_costs.cpp` (ball of 5 mm, 4 mm deep, μ 0.5;",
+                "E 5 kPa, ν 0.45, steps of 1 ms where nothing else is said), processor time of the steps in contact, both programs at once on one",
+                "processor. Solver error: RMS of the force's difference from that of steps solved to the end, over the force's RMS. Wanted: what was",
+                "aimed for. A ratio above 1 means faster than before.", "", "### Time of a step", "",
                 "%s. Before: %s; after: commit %s." % (machine(), before, commit), "",
                 "| mesh | tolerance (iterations at most) | nodes | before: median / p99, ms | after | ratio of medians | wanted | solver error | wanted |",
                 "|---|---|---|---|---|---|---|---|---|"]
@@ -182,19 +195,19 @@ def main():
                            wanted_error))
             print(text[-1], flush=True)
         text += growth_table(build)
-        text += ["", "Memory (`benchmark/drivers/memory.cpp`; 1.5 kB per node wanted with Gauss–Seidel):", ""]
+        text += ["", "### Memory", "", "`benchmark/drivers/memory.cpp`; 1.5 kB per node wanted with Gauss–Seidel:", ""]
         text += ["    " + line for line in run([os.path.join(os.path.dirname(step_costs(build)), "memory")], env=environment(build)).splitlines()]
         if not options.no_counts:
-            text += ["", "Instructions (callgrind), millions per step, and the shares of its parts:", "",
+            text += ["", "### Profile: shares of the instructions", "",
+                     "Instructions (callgrind), millions per step, and the shares of its parts:", "",
                      "| | in all | " + " | ".join(name for name, _ in PARTS) + " | rest |", "|---" * (len(PARTS) + 3) + "|"]
             for name, mesh in COUNTED:
                 for which, counted in zip(("before", "after"), builds):
                     total, parts = count(counted, mesh_of(mesh), scratch)
                     text.append("| %s, %s | %.2f | " % (name, which, total / 1e6)
                                 + " | ".join("%.0f %%" % (100 * part) for part in parts) + " |")
-    text += ["", notes]
     with whole_file(DOC) as path, open(path, "w", encoding="utf-8") as out:
-        out.write("\n".join(text) + "\n")
+        out.write(with_tables(page, text))
 
 
 if __name__ == "__main__":
