@@ -94,7 +94,7 @@ Scene twoToolsScene(ElasticModel model) {
 
 Scene sharpToolsScene(const std::string& stl_file) {
   Scene scene = makeScene(makeSoftBlock(ElasticModel::kNeoHookean));
-  // By element: over what is averaged an edge snaps from one vertex to the next, at a step that round-off decides (doc/method.md).
+  // By element: over what is averaged an edge snaps from one vertex to the next, at a step that round-off decides (doc/notes/method.md).
   scene.tissues[0].material.dilatation = Dilatation::kElement;
   TissueRegion core;
   core.name = "core";

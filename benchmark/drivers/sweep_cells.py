@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Prints how far the forces of the recorded dVRK sweep over config/psm_dvrk.yaml are off with other cells and tolerances, against cells of 1 mm, what
-each replay expects of itself, and what it takes of a processor (doc/accuracy.md). Some five minutes.
+each replay expects of itself, and what it takes of a processor (doc/notes/accuracy.md). Some five minutes.
 
 usage, after `source scripts/env.bash`: benchmark/drivers/sweep_cells.py psm2_classic_motion.bag
 """

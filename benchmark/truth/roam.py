@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Prints how far forces on a ball that wanders over a block are off, on meshes that follow it and on even ones, against Gmsh meshes refined
-along all of its way (doc/accuracy.md).
+along all of its way (doc/notes/accuracy.md).
 
 usage, after scripts/build and `make -C "$(scripts/build --where)" moving_mesh`:
   roam.py SCENE --runs DIR        (Debian: gmsh, python3-numpy)

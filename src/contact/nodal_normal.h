@@ -17,7 +17,7 @@ namespace tissue_contact {
 /// at the centroids of these, (22 x + 7 a + 7 b) / 36 with the other corners a and b, by area. That differs from
 /// the normal at the vertex where triangles are larger on one side: a dragged ball stretches the tissue behind it
 /// to some 1.7 times its length and presses that ahead together, to some .65, and with vertices' own normals its
-/// load is too far ahead by a tenth of an edge (doc/method.md). Where the shape bends by more than kMostTurn on
+/// load is too far ahead by a tenth of an edge (doc/notes/method.md). Where the shape bends by more than kMostTurn on
 /// the way from the vertex, its normal there counts less, from kNoTurn on not at all: edges, and tips that poke
 /// into triangles. Of a shape with flat parts it counts by the share of the turn that is made at kBegins of the
 /// way: where none is, the vertex is on a flat face beside an edge, and that face presses straight.

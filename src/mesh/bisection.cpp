@@ -9,7 +9,7 @@
 namespace tissue_contact {
 namespace {
 
-/// Tetrahedra of a patch of parts: two cuts make four. (Of eight, contact is too soft: doc/method.md.)
+/// Tetrahedra of a patch of parts: two cuts make four. (Of eight, contact is too soft: doc/notes/method.md.)
 constexpr int kLargestPatch = 4;
 /// Fewer, stiff on their own, join a patch beside them, but for what is left where one of an unrefined patch's few is cut.
 constexpr int kSmallestPatch = 3;

@@ -18,7 +18,7 @@ constexpr double kRadiiLookedAt = 4.0;
 /// Under a shape that so few nodes carry, strain is as smooth as the few elements around make it, however wrong: lengths tell more.
 constexpr int kFewNodes = 5;
 /// What a step leaves of the turn of normals in a slide, which frames follow (doc/method.md, "Sliding"): between the 0.13 to 0.30 of it that
-/// drags of a ball and the recorded robot meet (doc/accuracy.md).
+/// drags of a ball and the recorded robot meet (doc/notes/accuracy.md).
 constexpr double kOfTurn = 0.18;
 
 /// What is left unbalanced acts on the tissue as a force that nobody exerts. Near the tool or on tissue that moves with it as a whole, all of

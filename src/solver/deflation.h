@@ -5,7 +5,7 @@
 ///
 /// Nicolaides, "Deflation of Conjugate Gradients with Applications to Boundary Value Problems", SIAM J. Numer. Anal. 24 (1987) 355-365;
 /// vectors kept from one system to the next: Parks et al., "Recycling Krylov Subspaces for Sequences of Linear Systems", SIAM J. Sci.
-/// Comput. 28 (2006) 1651-1674. Figures, and what was tried: doc/method.md.
+/// Comput. 28 (2006) 1651-1674. Figures, and what was tried: doc/notes/method.md.
 #pragma once
 
 #include <vector>

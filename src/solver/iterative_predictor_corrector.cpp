@@ -22,7 +22,7 @@ constexpr double kPassShare = 0.3;
 constexpr double kFalls = 0.9;
 
 /// Of the tolerance: what all nodes of a body may lack together, over the sum of impulses. Defects of many nodes that point the same way
-/// hold the whole body back while their squares say little: a liver under a probe erred by eleven to sixteen times its tolerance (doc/method.md).
+/// hold the whole body back while their squares say little: a liver under a probe erred by eleven to sixteen times its tolerance (doc/notes/method.md).
 constexpr double kNetShare = 2.0;
 
 /// Of all contacts together, N s.

@@ -4,7 +4,7 @@
 /// shifted and turned to where the energy v'A v / 2 - (b + J'lambda)'v is least.
 ///
 /// Jonsthovel, van Gijzen, Vuik, Kasbergen & Scarpas, "Preconditioned Conjugate Gradient Method Enhanced by Deflation of Rigid Body Modes
-/// Applied to Composite Materials", CMES 47 (2009) 97-118. Figures: doc/method.md.
+/// Applied to Composite Materials", CMES 47 (2009) 97-118. Figures: doc/notes/method.md.
 #pragma once
 
 #include <Eigen/Cholesky>

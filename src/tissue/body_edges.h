@@ -3,7 +3,7 @@
 /// lasting cuts out.
 ///
 /// Meshes of organs that others made are often so coarse that a few nodes hold them where `fixed` says, that no element shows a tumour,
-/// or that they bend much too stiffly far from any tool, however fine the cells under it (doc/accuracy.md, "Coarse organs of others").
+/// or that they bend much too stiffly far from any tool, however fine the cells under it (doc/notes/accuracy.md, "Coarse organs of others").
 #pragma once
 
 #include <vector>

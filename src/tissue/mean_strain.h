@@ -23,7 +23,7 @@
 namespace tissue_contact {
 
 /// s, also of neo-Hookean tissue. With 0.6 the five tetrahedra of a cell bend exactly (mean_strain_test). Less than that, since contact at vertices is somewhat
-/// soft: doc/method.md has what was measured.
+/// soft: doc/notes/method.md has what was measured.
 constexpr double kPatchShapeShare = 0.45;
 
 /// Model: const after construction. Thread-safe for different states.

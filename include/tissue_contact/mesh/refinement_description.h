@@ -18,15 +18,15 @@ struct RefinementDescription {
   int nodes_at_most = 0;  ///< of the refined mesh: cells grow until it has no more; 0: chosen
   double growth = 0.0;    ///< length that cells gain per length of distance beyond the reach; 0: chosen
 
-  /// What is chosen where it is not given. Errors and times of these and of others: table in doc/method.md, "Cells and
-  /// growth". `auto` is what a step of a millisecond allows one ball. `fine` has cells small enough for vertices
+  /// What is chosen where it is not given. Errors and times of these and of others: tables in doc/notes/method.md, "Cells
+  /// and growth". `auto` is what a step of a millisecond allows one ball. `fine` has cells small enough for vertices
   /// to carry all of the contact, and a growth below which the error falls no more.
   struct Choice {
     double cells_per_half_extent;  ///< along the smallest half extent of a shape
     double cells_of_reach;
     double growth;
     int nodes_to_come;  ///< beside the unrefined mesh's, or half as many as those if that is more
-    /// Where no tool is, along the side of a cube of the body's volume and across a region (doc/accuracy.md, "Coarse organs of others").
+    /// Where no tool is, along the side of a cube of the body's volume and across a region (doc/notes/accuracy.md, "Coarse organs of others").
     double cells_across;
   };
   Choice choice() const {

@@ -36,7 +36,7 @@ MeshErrorFactors meshErrorFactors(const ElementMaterials& materials);
 /// on meshes of 288 to 3714 nodes, which err by 4 to 350 %; 1.3 where a part of all strain is, from presses of a ball at nu .45 and .49 (force_error_test). An energy's error would be `recovered` itself. Forces of contact at vertices
 /// err by less where cells are small, since what is held at vertices only is soft while cells are stiff; and by more where the contact is
 /// smaller than a cell. Where five nodes or fewer carry a shape, what its lengths say (expectedMeshError()) counts if that is more. How well
-/// it does: doc/accuracy.md.
+/// it does: doc/accuracy.md, and doc/notes/accuracy.md for fits that were tried.
 double likelyMeshError(double recovered, const MeshErrorFactors& factors);
 
 /// Likely error of the force on a shape pressed in by most of its half extent, relative, from the lengths alone: for a word of warning before
