@@ -166,7 +166,7 @@ PLANS = {
         "grasp", (0.004, 0.01, 0.03), (-0.002, 0.002), 5.0, 1e-5,
         [Run(0.7, 0.3, 4, 0.002), Run(0.7, 0.15, 2, 0.002), Run(0.5, 0.3, 4, 0.002), Run(0.5, 0.15, 2, 0.002),
          Run(0.5, 0.075, 1, 0.002), Run(0.35, 0.3, 4, 0.002), Run(0.35, 0.15, 2, 0.002), Run(0.35, 0.075, 1, 0.002),
-         Run(0.25, 0.3, 4, 0.002), Run(0.25, 0.15, 2, 0.002)],
+         Run(0.25, 0.3, 4, 0.002), Run(0.25, 0.15, 2, 0.002), Run(0.18, 0.3, 4, 0.002), Run(0.18, 0.15, 2, 0.002)],
         [Run(0.5, 0.3, 4, step) for step in (0.002, 0.001)], [Run(0.7, 0.3, 4, step) for step in (0.002, 0.001, 0.0005)], (0, 1),
         ("config/grasp.yaml", "config/grasp_path.csv", "urdf/psm_classic.urdf")),
     # Joint states come every 10 ms, 10.3 at most: 2.1 ms is five steps each, 1.05 and 0.525 ms are ten and twenty.

@@ -77,6 +77,14 @@ class Haptics(harness.TestCase):
         got = self.commands.wait(lambda all: any(math.dist(force_of(m), expected) < 1e-12 for m in all[after:]), "the force %s" % (expected,))
         return len(got)
 
+    def test_ten_seconds_without_input_are_told_of(self):
+        with harness.node(harness.SCENE) as node, harness.running(
+                [harness.program("tissue_contact_haptics"), "wrench:=" + WRENCH, "servo_cf:=" + COMMAND]) as haptics:
+            harness.wait_until(lambda: "no joint state yet, within 10 s, on %s" % harness.TOPIC in harness.output_of(node),
+                               "the node's warning")
+            harness.wait_until(lambda: "no wrench yet on %s, which has 1 publishers" % WRENCH in harness.output_of(haptics),
+                               "the warning of the haptic output")
+
     def test_scales_bounds_and_falls_to_zero(self):
         with self.haptics("_force_scale:=0.5", "_max_force_n:=1", "_stale_after_s:=0.5"):
             first = self.commands.wait(len, "a command")[0]

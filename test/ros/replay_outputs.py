@@ -47,10 +47,13 @@ class ReplayOutputs(harness.TestCase):
         expected = [float(row["force_z_n"]) for row in harness.read_table(self.path("set.csv"))]
         for given in [settings, "[%s]" % ", ".join(settings)]:
             rospy.set_param(harness.NODE + "/set", given)
-            with harness.node(harness.SCENE):
+            with harness.node(harness.SCENE) as node:
                 wrenches = harness.Listener(harness.NODE + "/probe/wrench", WrenchStamped)
                 harness.JointSource().send_all(self.samples)
                 self.assertEqual([w.wrench.force.z for w in wrenches.wait_for_stamp(self.samples[-1][0])], expected)
+                node.terminate()  # with which its output is written
+                node.wait(harness.DEADLINE_S)
+                self.assertIn("the scene is changed by %s/set" % harness.NODE, harness.output_of(node))
             rospy.delete_param(harness.NODE + "/set")
 
     def test_a_manifest_tells_what_became_of_its_files(self):

@@ -160,6 +160,7 @@ class FilesTest(unittest.TestCase):
         self.assertTrue(self.read("out.csv").startswith(b"stamp_s,"))
         self.assertEqual(self.read("out.csv").count(b"\n"), 41)
         self.assertTrue(self.read("out.csv.part").startswith(b"FC3D"))
+        self.assertIn("--dump-step 3: nothing touches in that step", done.stderr)
 
     def test_permissions(self):
         old = os.umask(0o027)
