@@ -5,6 +5,7 @@
 #include <sstream>
 #include <variant>
 
+#include "core/disjoint_sets.h"
 #include "tissue/body_edges.h"
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/simulation/force_error.h"
@@ -249,6 +250,38 @@ std::optional<Advice> unitDoubt(const TissueDescription& tissue) {
   return std::nullopt;
 }
 
+namespace {
+
+/// Nodes of parts (of which no two share an element) in which none is fixed.
+struct LooseNodes {
+  int count = 0;
+  int first = 0;
+};
+
+LooseNodes looseNodes(const Tissue& tissue) {
+  DisjointSets parts(static_cast<std::size_t>(tissue.nodeCount()));
+  const auto joinAll = [&parts](const auto& elements) {
+    for (const auto& element : elements) {
+      for (const int node : element) parts.join(element[0], node);
+    }
+  };
+  joinAll(tissue.tetrahedra());
+  joinAll(tissue.surface());
+  std::vector<bool> is_held(static_cast<std::size_t>(tissue.nodeCount()), false);  // by a part's first node
+  for (int node = 0; node < tissue.nodeCount(); ++node) {
+    if (tissue.fixed()[static_cast<std::size_t>(node)]) is_held[static_cast<std::size_t>(parts.first(node))] = true;
+  }
+  LooseNodes loose;
+  for (int node = tissue.nodeCount() - 1; node >= 0; --node) {
+    if (is_held[static_cast<std::size_t>(parts.first(node))]) continue;
+    ++loose.count;
+    loose.first = node;
+  }
+  return loose;
+}
+
+}  // namespace
+
 std::optional<Advice> supportDoubt(const Scene& scene, std::size_t tissue, const std::vector<Tissue>& tissues) {
   const TissueDescription& description = scene.tissues[tissue];
   const std::vector<bool>& fixed = tissues[tissue].fixed();
@@ -263,9 +296,23 @@ std::optional<Advice> supportDoubt(const Scene& scene, std::size_t tissue, const
       std::any_of(scene.tissue_pairs.begin(), scene.tissue_pairs.end(), [&](const TissuePair& pair) {
         return pair.tissue != pair.other && (pair.tissue == description.name || pair.other == description.name);
       });
+  if (is_in_pair || tissues[tissue].attachmentStiffness() > 0.0) return std::nullopt;
   const bool is_held = std::find(fixed.begin(), fixed.end(), true) != fixed.end();
+  if (is_held) {
+    const LooseNodes loose = looseNodes(tissues[tissue]);
+    if (loose.count == 0) return std::nullopt;
+    const Vector3 place = tissues[tissue].restPositions().col(loose.first);
+    std::ostringstream text;
+    text.precision(3);
+    text << "tissue " << quoted(description.name) << ": `fixed` holds no node of some of its parts, " << loose.count
+         << " of its " << tissues[tissue].nodeCount() << " nodes, of which one is at (" << place.x() << ", "
+         << place.y() << ", " << place.z()
+         << ") m in the world: what touches them pushes them away. Parts that share no element do not hang together; "
+            "hold each, join them in the mesh, or leave out what is not wanted";
+    return Advice{text.str(), true};
+  }
   const bool may_lie_somewhere = !scene.gravity_m_per_s2.isZero();  // on an instrument, as a body on an inclined plate
-  if (is_held || is_in_pair || may_lie_somewhere || tissues[tissue].attachmentStiffness() > 0.0) return std::nullopt;
+  if (may_lie_somewhere) return std::nullopt;
   return Advice{
       "tissue " + quoted(description.name) +
           ": nothing holds it, so what touches it pushes it away and forces are those of its inertia; give it "

@@ -85,7 +85,7 @@ VolumeMesh volumeMesh(const TissueDescription& description, const std::string& s
       check(source);
     });
     // Of the six around a cell's diagonal three that follow one another, half of the cell: patches as Bisection makes them.
-    made.patch_of = patchesByCells(made.mesh.tetrahedra.size(), follows ? 3 : kTetrahedraPerCell);
+    made.patch_of = patchesByCells(made.mesh.tetrahedra.size(), static_cast<int>(split));
   } else {
     const auto& mesh = std::get<MeshDescription>(description.geometry);
     atEntry("mesh.file", [&] {

@@ -9,6 +9,8 @@
 
 #include "support/temporary_directory.h"
 #include "support/text_scene.h"
+#include "support/tissue_files.h"
+#include "tissue_contact/mesh/tet_mesh.h"
 #include "tissue_contact/tissue/material_preset.h"
 
 namespace tissue_contact {
@@ -175,6 +177,44 @@ TEST(Advisor, DoubtsUnitsAndWhatHoldsATissue) {
                                 "    attachments: [{where: [plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}], "
                                 "stiffness_pa_per_m: 1e6}]\n")),
             std::vector<std::string>());
+}
+
+/// Two blocks of 20 mm, 10 mm apart, of one file: its plane holds the foot of one, or of both.
+TEST(Advisor, DoubtsPartsThatNothingHolds) {
+  TetMesh mesh = makeBlockMesh({Vector3(0.02, 0.02, 0.02), {2, 2, 2}, {}}, BlockSplit::kSix);
+  const auto nodes = static_cast<int>(mesh.positions.cols());
+  const std::size_t elements = mesh.tetrahedra.size();
+  mesh.positions.conservativeResize(3, 2 * nodes);
+  mesh.positions.rightCols(nodes) = mesh.positions.leftCols(nodes).colwise() + Vector3(0.0, 0.0, 0.03);
+  for (std::size_t e = 0; e < elements; ++e) {
+    Tetrahedron shifted = mesh.tetrahedra[e];
+    for (int& node : shifted) node += nodes;
+    mesh.tetrahedra.push_back(shifted);
+  }
+  const TemporaryDirectory directory;
+  const std::string file = directory.write("two.vtk", vtkOf(mesh));
+  const auto looseOf = [&](const std::string& fixed) {
+    std::vector<std::string> texts;
+    for (const Advice& advice :
+         makeSimulator(
+             "tissues:\n  - name: two\n    mesh: {file: " + file +
+             "}\n    material: {youngs_modulus_pa: 5000, density_kg_per_m3: 1000, poissons_ratio: 0.4}\n    fixed: [" +
+             fixed + "]\n")
+             .advice()) {
+      if (advice.text.find("holds no node of some of its parts") != std::string::npos) texts.push_back(advice.text);
+    }
+    return texts;
+  };
+  const std::string foot = "{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}";
+  const std::vector<std::string> of_one = looseOf(foot);
+  ASSERT_EQ(of_one.size(), 1U);
+  EXPECT_EQ(
+      of_one.front().find(
+          "tissue 'two': `fixed` holds no node of some of its parts, 27 of its 54 nodes, of which one is at (-0.01, "
+          "-0.01, 0.03) m"),
+      0U)
+      << of_one.front();
+  EXPECT_EQ(looseOf(foot + ", {sphere: {center_m: [0, 0, 0.05], radius_m: 0.001}}").size(), 0U);
 }
 
 /// Lines about materials by name of a block of such a material, one part of it another's.
