@@ -5,8 +5,6 @@
 #include <sstream>
 #include <variant>
 
-#include "core/disjoint_sets.h"
-#include "tissue/body_edges.h"
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/simulation/force_error.h"
 #include "tissue_contact/simulation/simulator.h"
@@ -16,9 +14,10 @@
 #include "tissue_contact/tissue/tet_elasticity.h"
 
 namespace tissue_contact {
-namespace {
 
 std::string quoted(const std::string& name) { return "'" + name + "'"; }
+
+namespace {
 
 std::string sleepLine(const Scene& scene) {
   if (!scene.advisor.sleep) return "sleep: never, as advisor.sleep asks; every node is solved for in every step";
@@ -178,146 +177,6 @@ double shortSurfaceEdge(const Tissue& tissue) {
   const auto tenth = edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 10);
   std::nth_element(edges.begin(), tenth, edges.end());
   return *tenth;
-}
-
-std::optional<Advice> sizeDoubt(const TissueDescription& tissue, const NodalVectors& rest, const HalfExtents& shapes) {
-  const auto* const mesh = std::get_if<MeshDescription>(&tissue.geometry);
-  const auto* const shell = std::get_if<ShellDescription>(&tissue.geometry);
-  if (mesh == nullptr && shell == nullptr) return std::nullopt;
-  constexpr double kLongOrgan = 2.0;  // m
-  const Vector3 size = rest.rowwise().maxCoeff() - rest.rowwise().minCoeff();
-  const bool is_small = size.maxCoeff() < shapes.smallest_m;
-  if (!is_small && size.maxCoeff() < kLongOrgan) return std::nullopt;
-  std::string text = "tissue " + quoted(tissue.name) + " is " + twoDigits(1e3 * size.x()) + " x " +
-                     twoDigits(1e3 * size.y()) + " x " + twoDigits(1e3 * size.z()) + " mm";
-  if (is_small) {
-    text +=
-        ", smaller than every instrument's shape (" + twoDigits(1e3 * shapes.smallest_m) + " mm half extent and more)";
-  }
-  return Advice{text + ": is the unit of its file that of the scene? It has scale_m_per_unit " +
-                    twoDigits(mesh != nullptr ? mesh->scale_m_per_unit : shell->scale_m_per_unit) +
-                    " (1 for metres, 0.001 for millimetres)",
-                true};
-}
-
-std::optional<Advice> heldDoubt(const TissueDescription& description, const Tissue& tissue) {
-  if (!std::holds_alternative<MeshDescription>(description.geometry)) return std::nullopt;
-  const auto is_fixed = [&](int node) { return tissue.fixed()[static_cast<std::size_t>(node)]; };
-  double longest_m = 0.0;
-  for (const Tetrahedron& nodes : tissue.tetrahedra()) {
-    const auto fixed = std::count_if(nodes.begin(), nodes.end(), is_fixed);
-    if (fixed == 0 || fixed == 4) continue;
-    for (const int a : nodes) {
-      for (const int b : nodes) {
-        longest_m = std::max(longest_m, (tissue.restPositions().col(a) - tissue.restPositions().col(b)).norm());
-      }
-    }
-  }
-  if (longest_m <= longestBodyEdge(tissue.restPositions(), tissue.tetrahedra(), description.refinement)) {
-    return std::nullopt;
-  }
-  const auto held = std::count(tissue.fixed().begin(), tissue.fixed().end(), true);
-  return Advice{"tissue " + quoted(description.name) + ": `fixed` holds " + std::to_string(held) + " of " +
-                    std::to_string(tissue.nodeCount()) + " nodes, beside edges of up to " + twoDigits(1e3 * longest_m) +
-                    " mm. The body bends too stiffly with such, and where the border of `fixed` runs through them it "
-                    "is held elsewhere: forces may be off by a third; refinement (auto, fine or a map) cuts them",
-                true};
-}
-
-std::optional<Advice> unitDoubt(const TissueDescription& tissue) {
-  constexpr double kSoft = 100.0;   // Pa; brain has some 500
-  constexpr double kLight = 100.0;  // kg/m^3; lung has some 300
-  constexpr double kSlow = 0.5;     // s; figures of organs are some milliseconds
-  const auto doubt = [&](const char* key, double value, const char* question) {
-    return Advice{
-        "tissue " + quoted(tissue.name) + ": " + key + " is " + twoDigits(value) + ", which no tissue has: " + question,
-        true};
-  };
-  double softest_pa = tissue.material.youngs_modulus_pa;
-  for (const TissueRegion& region : tissue.regions) {
-    softest_pa = std::min(softest_pa, region.material.youngs_modulus_pa);
-  }
-  if (softest_pa < kSoft) {
-    return doubt("material.youngs_modulus_pa", softest_pa, "is it in kPa? Give 1000 times as much");
-  }
-  if (tissue.material.density_kg_per_m3 < kLight) {
-    return doubt("material.density_kg_per_m3", tissue.material.density_kg_per_m3,
-                 "is it in g/cm^3? Give 1000 times as much");
-  }
-  if (tissue.damping.stiffness_s > kSlow) {
-    return doubt("damping.stiffness_s", tissue.damping.stiffness_s, "is it in milliseconds? Give a thousandth");
-  }
-  return std::nullopt;
-}
-
-namespace {
-
-/// Nodes of parts (of which no two share an element) in which none is fixed.
-struct LooseNodes {
-  int count = 0;
-  int first = 0;
-};
-
-LooseNodes looseNodes(const Tissue& tissue) {
-  DisjointSets parts(static_cast<std::size_t>(tissue.nodeCount()));
-  const auto joinAll = [&parts](const auto& elements) {
-    for (const auto& element : elements) {
-      for (const int node : element) parts.join(element[0], node);
-    }
-  };
-  joinAll(tissue.tetrahedra());
-  joinAll(tissue.surface());
-  std::vector<bool> is_held(static_cast<std::size_t>(tissue.nodeCount()), false);  // by a part's first node
-  for (int node = 0; node < tissue.nodeCount(); ++node) {
-    if (tissue.fixed()[static_cast<std::size_t>(node)]) is_held[static_cast<std::size_t>(parts.first(node))] = true;
-  }
-  LooseNodes loose;
-  for (int node = tissue.nodeCount() - 1; node >= 0; --node) {
-    if (is_held[static_cast<std::size_t>(parts.first(node))]) continue;
-    ++loose.count;
-    loose.first = node;
-  }
-  return loose;
-}
-
-}  // namespace
-
-std::optional<Advice> supportDoubt(const Scene& scene, std::size_t tissue, const std::vector<Tissue>& tissues) {
-  const TissueDescription& description = scene.tissues[tissue];
-  const std::vector<bool>& fixed = tissues[tissue].fixed();
-  if (std::find(fixed.begin(), fixed.end(), false) == fixed.end()) {
-    return Advice{
-        "tissue " + quoted(description.name) +
-            ": `fixed` holds all of its nodes, so nothing presses on it and all wrenches are zero; of a plane it "
-            "holds what lies against its normal",
-        true};
-  }
-  const bool is_in_pair =
-      std::any_of(scene.tissue_pairs.begin(), scene.tissue_pairs.end(), [&](const TissuePair& pair) {
-        return pair.tissue != pair.other && (pair.tissue == description.name || pair.other == description.name);
-      });
-  if (is_in_pair || tissues[tissue].attachmentStiffness() > 0.0) return std::nullopt;
-  const bool is_held = std::find(fixed.begin(), fixed.end(), true) != fixed.end();
-  if (is_held) {
-    const LooseNodes loose = looseNodes(tissues[tissue]);
-    if (loose.count == 0) return std::nullopt;
-    const Vector3 place = tissues[tissue].restPositions().col(loose.first);
-    std::ostringstream text;
-    text.precision(3);
-    text << "tissue " << quoted(description.name) << ": `fixed` holds no node of some of its parts, " << loose.count
-         << " of its " << tissues[tissue].nodeCount() << " nodes, of which one is at (" << place.x() << ", "
-         << place.y() << ", " << place.z()
-         << ") m in the world: what touches them pushes them away. Parts that share no element do not hang together; "
-            "hold each, join them in the mesh, or leave out what is not wanted";
-    return Advice{text.str(), true};
-  }
-  const bool may_lie_somewhere = !scene.gravity_m_per_s2.isZero();  // on an instrument, as a body on an inclined plate
-  if (may_lie_somewhere) return std::nullopt;
-  return Advice{
-      "tissue " + quoted(description.name) +
-          ": nothing holds it, so what touches it pushes it away and forces are those of its inertia; give it "
-          "`fixed` or `attachments`, or something to lie on in tissue_pairs",
-      true};
 }
 
 Advice meshLine(const TissueDescription& tissue, double edge_m, const HalfExtents& shapes) {

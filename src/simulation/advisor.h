@@ -16,6 +16,9 @@
 
 namespace tissue_contact {
 
+/// A name as these lines have it.
+std::string quoted(const std::string& name);
+
 /// Whether nodes at rest may be left out: the scene lets them, and its method is the one meant for use. The others are
 /// there to be compared with, and solve all.
 bool advisedSleep(const Scene& scene);
@@ -42,6 +45,9 @@ std::optional<Advice> unitDoubt(const TissueDescription& tissue);
 
 /// A warning where nothing holds a tissue, or all of it is held, so that nothing can press on it; else none.
 std::optional<Advice> supportDoubt(const Scene& scene, std::size_t tissue, const std::vector<Tissue>& tissues);
+
+/// A warning where a block has so few cells over its thickness that it bends too stiffly, and may bend; else none.
+std::optional<Advice> bendingDoubt(const TissueDescription& description, const Tissue& tissue);
 
 /// What the mesh of a volume is, and what it is likely to do to the forces of the instruments' shapes: a warning where
 /// even the largest shape meets coarse cells.

@@ -84,7 +84,8 @@ TEST(Advisor, SaysWhatItHasChosen) {
     return false;
   };
   const Simulator plain = makeSlab("sleep: auto");
-  EXPECT_EQ(plain.advice().size(), 6U);
+  EXPECT_EQ(plain.advice().size(), 7U);
+  EXPECT_TRUE(has(plain, "2 cells over its thickness of 10 mm"));
   // The shorter triangles are those of two sides, (6.67 + 5 + 8.33) / 3 mm: 0.5 (6.67 / 5)^1.8.
   EXPECT_TRUE(has(
       plain,
@@ -215,6 +216,28 @@ TEST(Advisor, DoubtsPartsThatNothingHolds) {
       0U)
       << of_one.front();
   EXPECT_EQ(looseOf(foot + ", {sphere: {center_m: [0, 0, 0.05], radius_m: 0.001}}").size(), 0U);
+}
+
+TEST(Advisor, DoubtsBlocksOfFewCellsOverTheirThickness) {
+  const auto doubts = [](const std::string& size_m, const std::string& cells, const std::string& normal) {
+    std::vector<std::string> texts;
+    for (const Advice& advice :
+         makeSimulator("tissues:\n  - name: flap\n    block: {size_m: " + size_m + ", cells: " + cells +
+                       "}\n    material: {youngs_modulus_pa: 5000, density_kg_per_m3: 1000, poissons_ratio: 0.4}\n"
+                       "    fixed: [{plane: {point_m: [-0.0199, 0, 0.0001], normal: " +
+                       normal + "}}]\n")
+             .advice()) {
+      if (advice.text.find("over its thickness") != std::string::npos) texts.push_back(advice.text);
+    }
+    return texts;
+  };
+  const std::vector<std::string> thin = doubts("[0.04, 0.01, 0.002]", "[20, 5, 1]", "[1, 0, 0]");
+  ASSERT_EQ(thin.size(), 1U);
+  EXPECT_EQ(thin.front().find("tissue 'flap' has 1 cell over its thickness of 2 mm: where it bends it is too stiff"),
+            0U);
+  EXPECT_EQ(doubts("[0.04, 0.01, 0.002]", "[20, 5, 4]", "[1, 0, 0]").size(), 0U);  // enough
+  EXPECT_EQ(doubts("[0.04, 0.01, 0.002]", "[20, 5, 1]", "[0, 0, 1]").size(), 0U);  // lies on its large face
+  EXPECT_EQ(doubts("[0.04, 0.01, 0.011]", "[20, 5, 1]", "[1, 0, 0]").size(), 0U);  // no flap
 }
 
 /// Lines about materials by name of a block of such a material, one part of it another's.

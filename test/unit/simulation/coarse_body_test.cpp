@@ -156,5 +156,30 @@ TEST_F(Pillar, OfLengthsWhoseProductsUnderflowIsLeftAsItIs) {
   }
 }
 
+/// A flap 2 mm thick under its own weight, one cell over its thickness, which is as stiff with a mesh that follows tools as without one, but for
+/// how cells are cut: 1.24 and 1.09 times the beam's (3.84 when strain was averaged over halves of cells).
+TEST(RefinedFlap, BendsAsItsCellsDo) {
+  const double young = 20000.0, length = 0.04, width = 0.01, thickness = 0.002;
+  const double expected_m = 1000.0 * 0.05 * width * thickness * std::pow(length, 4.0) /
+                            (8.0 * young * width * std::pow(thickness, 3.0) / 12.0);
+  for (const char* const refinement : {"never", "auto"}) {
+    Simulator simulator = makeSimulator(
+        "tissues:\n  - name: flap\n    block: {size_m: [0.04, 0.01, 0.002], cells: [20, 5, 1]}\n    material: "
+        "{youngs_modulus_pa: "
+        "20000, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n    damping: {stiffness_s: 0.003, mass_per_s: 20}\n    "
+        "refinement: " +
+        std::string(refinement) +
+        "\n    fixed: [{plane: {point_m: [-0.019999, 0, 0], normal: [1, 0, 0]}}]\ngravity_m_per_s2: [0, 0, "
+        "-0.05]\nsolver: "
+        "{relaxation: cholesky, iterations: 300, tolerance: 1.0e-6}\nstep: {max_step_s: 0.02}\nadvisor: {sleep: "
+        "never}\n");
+    for (int k = 0; k < 60; ++k) simulator.advance(0.1, {});
+    const NodalVectors moved = simulator.positions(0) - simulator.tissues()[0].restPositions();
+    const double sag_m = -moved.row(2).minCoeff();
+    EXPECT_GT(sag_m, expected_m / 1.35) << refinement;
+    EXPECT_LT(sag_m, expected_m) << refinement;
+  }
+}
+
 }  // namespace coarse_body_test
 }  // namespace tissue_contact
