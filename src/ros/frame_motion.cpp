@@ -5,9 +5,19 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <stdexcept>
+
+#include "ros/conversions.h"
 
 namespace tissue_contact {
 namespace {
+
+constexpr std::size_t kMostFrames = 10000;
+constexpr std::size_t kLongestName = 256;
+constexpr int kDeepest = 100;
+
+/// As tf2 has names: without a slash in front.
+std::string bareName(const std::string& name) { return name.rfind('/', 0) == 0 ? name.substr(1) : name; }
 
 constexpr double kCounts_m = 5e-4;  // a step's way that turns a force by a per cent or more
 constexpr double kArm_m = 0.5;      // from the base of an arm to its tool
@@ -32,6 +42,42 @@ FrameMotion::FrameMotion(const Pose& X_WF_start, const Pose& X_WF_now)
 double FrameMotion::reach() const { return std::max(way_m, kArm_m * turn_rad); }
 
 bool FrameMotion::counts() const { return reach() > kCounts_m; }
+
+bool LatestFrames::take(const geometry_msgs::TransformStamped& transform) {
+  const std::string& parent = transform.header.frame_id;
+  const std::string& child = transform.child_frame_id;
+  if (parent.empty() || child.empty() || std::max(parent.size(), child.size()) > kLongestName) return false;
+  Latest now{bareName(parent), Pose::Identity()};
+  try {
+    now.X = toPose(transform.transform);
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+  const auto at = latest_.find(bareName(child));
+  if (at == latest_.end()) {
+    return latest_.size() < kMostFrames && latest_.emplace(bareName(child), std::move(now)).second;
+  }
+  if (at->second.parent == now.parent && at->second.X.matrix() == now.X.matrix()) return false;
+  at->second = std::move(now);
+  return true;
+}
+
+std::optional<Pose> LatestFrames::pose(const std::string& frame, const std::string& in) const {
+  const auto [root, X_RF] = inRoot(bareName(frame));
+  const auto [other_root, X_RO] = inRoot(bareName(in));
+  if (root != other_root) return std::nullopt;
+  return X_RO.inverse() * X_RF;
+}
+
+std::pair<std::string, Pose> LatestFrames::inRoot(const std::string& frame) const {
+  std::pair<std::string, Pose> found(frame, Pose::Identity());
+  for (int depth = 0; depth < kDeepest; ++depth) {  // frames may go round
+    const auto at = latest_.find(found.first);
+    if (at == latest_.end()) break;
+    found = {at->second.parent, at->second.X * found.second};
+  }
+  return found;
+}
 
 std::string frameMotionText(const std::string& frame, const FrameMotion& motion) {
   constexpr double kMillimetres = 1e3;

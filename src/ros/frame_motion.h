@@ -2,7 +2,13 @@
 /// Room `ros`, private: frames of tf that a scene is placed in, and whether they move after that.
 #pragma once
 
+#include <geometry_msgs/TransformStamped.h>
+
+#include <cstddef>
+#include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tissue_contact/core/types.h"
@@ -27,6 +33,28 @@ struct FrameMotion {
 
  private:
   double reach() const;
+};
+
+/// Where frames are now, by the transforms that came last, whatever their stamps. tf2 keeps ten seconds of all frames for ever, and its listener
+/// ends the process on stamps that its arithmetic does not bear; neither is for a node's whole life.
+class LatestFrames {
+ public:
+  /// What is no pose, has a name longer than 256 bytes or would be one of more than 10 000 frames is left out.
+  /// @return whether a frame is elsewhere by it.
+  bool take(const geometry_msgs::TransformStamped& transform);
+
+  /// Pose of one in the other; none while they do not hang together, within 100 transforms.
+  std::optional<Pose> pose(const std::string& frame, const std::string& in) const;
+
+ private:
+  struct Latest {
+    std::string parent;
+    Pose X;
+  };
+
+  std::pair<std::string, Pose> inRoot(const std::string& frame) const;
+
+  std::map<std::string, Latest> latest_;
 };
 
 /// For people: where the frame is and what that means. Begins with its name.

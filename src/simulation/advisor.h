@@ -47,7 +47,7 @@ std::optional<Advice> unitDoubt(const TissueDescription& tissue);
 std::optional<Advice> supportDoubt(const Scene& scene, std::size_t tissue, const std::vector<Tissue>& tissues);
 
 /// A warning where a block has so few cells over its thickness that it bends too stiffly, and may bend; else none.
-std::optional<Advice> bendingDoubt(const TissueDescription& description, const Tissue& tissue);
+std::optional<Advice> bendingDoubt(const Scene& scene, std::size_t tissue, const std::vector<Tissue>& tissues);
 
 /// What the mesh of a volume is, and what it is likely to do to the forces of the instruments' shapes: a warning where
 /// even the largest shape meets coarse cells.

@@ -109,6 +109,44 @@ LooseNodes looseNodes(const Tissue& tissue) {
   return loose;
 }
 
+bool liesOnAnother(const Scene& scene, const std::string& tissue) {
+  return std::any_of(scene.tissue_pairs.begin(), scene.tissue_pairs.end(), [&](const TissuePair& pair) {
+    return pair.tissue != pair.other && (pair.tissue == tissue || pair.other == tissue);
+  });
+}
+
+Advice loosePartsDoubt(const Tissue& tissue, const LooseNodes& loose) {
+  const Vector3 place = tissue.restPositions().col(loose.first);
+  std::ostringstream text;
+  text.precision(3);
+  text << "tissue " << quoted(tissue.name()) << ": `fixed` holds no node of some of its parts, " << loose.count
+       << " of its " << tissue.nodeCount() << " nodes, of which one is at (" << place.x() << ", " << place.y() << ", "
+       << place.z()
+       << ") m in the world: what touches them pushes them away. Parts that share no element do not hang together; "
+          "hold each, join them in the mesh, or leave out what is not wanted";
+  return Advice{text.str(), true};
+}
+
+/// Whether half of the nodes of one of a block's faces across `axis` are fixed. Nodes of the lattice come first, x fastest.
+bool isHeldAlongAFace(const BlockDescription& block, int axis, const std::vector<bool>& fixed) {
+  const auto along = static_cast<std::size_t>(axis);
+  std::array<int, 2> on_face{};
+  std::array<int, 2> held{};
+  std::array<int, 3> at{};
+  std::size_t node = 0;
+  for (at[2] = 0; at[2] <= block.cells[2]; ++at[2]) {
+    for (at[1] = 0; at[1] <= block.cells[1]; ++at[1]) {
+      for (at[0] = 0; at[0] <= block.cells[0]; ++at[0], ++node) {
+        if (at[along] != 0 && at[along] != block.cells[along]) continue;
+        const std::size_t face = at[along] == 0 ? 0 : 1;
+        ++on_face[face];
+        held[face] += static_cast<int>(fixed[node]);
+      }
+    }
+  }
+  return 2 * held[0] >= on_face[0] || 2 * held[1] >= on_face[1];
+}
+
 }  // namespace
 
 std::optional<Advice> supportDoubt(const Scene& scene, std::size_t tissue, const std::vector<Tissue>& tissues) {
@@ -121,24 +159,12 @@ std::optional<Advice> supportDoubt(const Scene& scene, std::size_t tissue, const
             "holds what lies against its normal",
         true};
   }
-  const bool is_in_pair =
-      std::any_of(scene.tissue_pairs.begin(), scene.tissue_pairs.end(), [&](const TissuePair& pair) {
-        return pair.tissue != pair.other && (pair.tissue == description.name || pair.other == description.name);
-      });
-  if (is_in_pair || tissues[tissue].attachmentStiffness() > 0.0) return std::nullopt;
+  if (liesOnAnother(scene, description.name) || tissues[tissue].attachmentStiffness() > 0.0) return std::nullopt;
   const bool is_held = std::find(fixed.begin(), fixed.end(), true) != fixed.end();
   if (is_held) {
     const LooseNodes loose = looseNodes(tissues[tissue]);
     if (loose.count == 0) return std::nullopt;
-    const Vector3 place = tissues[tissue].restPositions().col(loose.first);
-    std::ostringstream text;
-    text.precision(3);
-    text << "tissue " << quoted(description.name) << ": `fixed` holds no node of some of its parts, " << loose.count
-         << " of its " << tissues[tissue].nodeCount() << " nodes, of which one is at (" << place.x() << ", "
-         << place.y() << ", " << place.z()
-         << ") m in the world: what touches them pushes them away. Parts that share no element do not hang together; "
-            "hold each, join them in the mesh, or leave out what is not wanted";
-    return Advice{text.str(), true};
+    return loosePartsDoubt(tissues[tissue], loose);
   }
   const bool may_lie_somewhere = !scene.gravity_m_per_s2.isZero();  // on an instrument, as a body on an inclined plate
   if (may_lie_somewhere) return std::nullopt;
@@ -149,37 +175,30 @@ std::optional<Advice> supportDoubt(const Scene& scene, std::size_t tissue, const
       true};
 }
 
-std::optional<Advice> bendingDoubt(const TissueDescription& description, const Tissue& tissue) {
-  const auto* const block = std::get_if<BlockDescription>(&description.geometry);
-  if (block == nullptr) return std::nullopt;
+std::optional<Advice> bendingDoubt(const Scene& scene, std::size_t tissue, const std::vector<Tissue>& tissues) {
   constexpr double kSlender = 4.0;  // times as long as thick: with less, shear and compression give way first
   constexpr int kEnoughCells = 4;   // over the thickness
-  Eigen::Index thin = 0;
-  const double thickness_m = block->size_m.minCoeff(&thin);
-  const int cells = block->cells[static_cast<std::size_t>(thin)];
-  if (block->size_m.maxCoeff() < kSlender * thickness_m || cells >= kEnoughCells) return std::nullopt;
-  // What is held along one of its large faces does not bend. Nodes of the lattice come first, x fastest.
-  std::array<int, 2> on_face{};
-  std::array<int, 2> fixed{};
-  std::array<int, 3> at{};
-  std::size_t node = 0;
-  for (at[2] = 0; at[2] <= block->cells[2]; ++at[2]) {
-    for (at[1] = 0; at[1] <= block->cells[1]; ++at[1]) {
-      for (at[0] = 0; at[0] <= block->cells[0]; ++at[0], ++node) {
-        const int layer = at[static_cast<std::size_t>(thin)];
-        if (layer != 0 && layer != cells) continue;
-        const std::size_t face = layer == 0 ? 0 : 1;
-        ++on_face[face];
-        fixed[face] += static_cast<int>(tissue.fixed()[node]);
-      }
-    }
+  const TissueDescription& description = scene.tissues[tissue];
+  const auto* const block = std::get_if<BlockDescription>(&description.geometry);
+  if (block == nullptr || liesOnAnother(scene, description.name) || tissues[tissue].attachmentStiffness() > 0.0) {
+    return std::nullopt;
   }
-  if (2 * fixed[0] >= on_face[0] || 2 * fixed[1] >= on_face[1]) return std::nullopt;
-  return Advice{"tissue " + quoted(description.name) + " has " + std::to_string(cells) +
-                    (cells == 1 ? " cell" : " cells") + " over its thickness of " + twoDigits(1e3 * thickness_m) +
+  int fewest = kEnoughCells;
+  double thickness_m = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (block->size_m.maxCoeff() < kSlender * block->size_m[axis]) continue;
+    if (isHeldAlongAFace(*block, axis, tissues[tissue].fixed())) return std::nullopt;
+    const int cells = block->cells[static_cast<std::size_t>(axis)];
+    if (cells >= fewest) continue;
+    fewest = cells;
+    thickness_m = block->size_m[axis];
+  }
+  if (fewest == kEnoughCells) return std::nullopt;
+  return Advice{"tissue " + quoted(description.name) + " has " + std::to_string(fewest) +
+                    (fewest == 1 ? " cell" : " cells") + " over its thickness of " + twoDigits(1e3 * thickness_m) +
                     " mm: where it bends it is too stiff, by a tenth to three times, most with long cells, whatever is "
                     "expected of the mesh under the tool; block.cells: " +
-                    std::to_string(kEnoughCells) + " there, as long as they are thick, leave a tenth",
+                    std::to_string(kEnoughCells) + " there, no longer than they are thick, leave less than a tenth",
                 true};
 }
 

@@ -211,8 +211,16 @@ void JointStatePlayer::refuseHeld(int topic) {
   }
 }
 
+/// Whether a topic's states all wait behind the time of the simulation, and have done so for more than a gap of their own time: no moment
+/// comes that would take them along.
+bool JointStatePlayer::isLeftBehind(const Topic& topic) const {
+  const Moment& front = topic.queue.front().moment;
+  const Moment& back = topic.queue.back().moment;
+  return topic.triggers && isPast(back) && front.epoch == back.epoch && back.stamp_ns - front.stamp_ns > max_gap_ns_;
+}
+
 /// Refuses what waits for a moment that has been played without it, except where its joints still say something new:
-/// those of an update-only topic, and under kNewestState of every one, are taken at the next moment.
+/// those of an update-only topic, and under kNewestState of every one, are taken at the next moment, if it comes within a gap.
 void JointStatePlayer::refuseLate() {
   for (std::size_t t = 0; t < topic_states_.size(); ++t) {
     Topic& topic = topic_states_[t];
@@ -220,10 +228,14 @@ void JointStatePlayer::refuseLate() {
     while (!topic.queue.empty()) {
       const Moment moment = topic.queue.front().moment;
       const bool is_old_loop = moment.epoch < epoch_;
-      if (!is_old_loop && (is_taken_later || !isPast(moment))) break;
-      refuse(Verdict::kLate, static_cast<int>(t), moment.stamp_ns,
-             is_old_loop ? "time went backwards on another topic but not on this one"
-                         : "the simulation is already at " + stampText(*time_ns_) + " s");
+      const bool is_late = is_taken_later ? isLeftBehind(topic) : isPast(moment);
+      if (!is_old_loop && !is_late) break;
+      std::string detail = is_old_loop ? "time went backwards on another topic but not on this one"
+                                       : "the simulation is already at " + stampText(*time_ns_) + " s";
+      if (!is_old_loop && is_taken_later) {
+        detail += ", where stamps of another topic have taken it; let all publishers have one clock (NTP)";
+      }
+      refuse(Verdict::kLate, static_cast<int>(t), moment.stamp_ns, detail);
       topic.queue.pop_front();
       --waiting_;
     }

@@ -236,6 +236,7 @@ class JointStatePlayer {
   bool mustWait(const Moment& moment) const;
   std::int64_t ageOf(const std::optional<Moment>& moment) const;
   bool isPast(const Moment& moment) const;
+  bool isLeftBehind(const Topic& topic) const;
   void refuseLate();
   void play(const Moment& moment, PlayedSample& played);
   void take(const Moment& moment, int topic, PlayedSample& played);

@@ -7,12 +7,10 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "ros/bag/bag_reader.h"
 #include "ros/bag/message_reader.h"
@@ -43,7 +41,7 @@ class BagTransforms {
   explicit BagTransforms(const std::string& file) : bag_(file) {}
 
   /// @param topic global; a relative one of that name is the same.
-  /// @param goes_on asked before every message.
+  /// @param goes_on asked before every message, with when it was recorded.
   /// @param take gets every transform.
   template <typename GoesOn, typename Take>
   void read(const std::string& topic, const GoesOn& goes_on, const Take& take) {
@@ -52,7 +50,7 @@ class BagTransforms {
              connection.md5sum == ros::message_traits::md5sum<tf2_msgs::TFMessage>();
     });
     bag_.forEach([&](const BagMessage& message) {
-      if (!goes_on()) return false;
+      if (!goes_on(message.recorded)) return false;
       try {
         readMessage(message.data, take);
       } catch (const BagError& error) {
@@ -91,10 +89,13 @@ class FirstFrames {
   FirstFrames(const std::string& frame, const std::string& world_frame, const std::string& bag_file)
       : buffer_(ros::Duration(1e6)) {  // a bag is not forgotten while it is read
     BagTransforms transforms(bag_file);
-    const auto has_room = [&] { return count_ < kMaxTransforms; };
+    const auto has_room = [&](ros::Time /*recorded*/) { return count_ < kMaxTransforms; };
     transforms.read("/tf_static", has_room, [&](const auto& transform) { add(transform, true); });
     transforms.read(
-        "/tf", [&] { return has_room() && !buffer_.canTransform(world_frame, frame, ros::Time(0)); },
+        "/tf",
+        [&](ros::Time recorded) {
+          return has_room(recorded) && !buffer_.canTransform(world_frame, frame, ros::Time(0));
+        },
         [&](const auto& transform) { add(transform, false); });
     try {
       pose_ = toPose(buffer_.lookupTransform(world_frame, frame, ros::Time(0)).transform);
@@ -111,14 +112,6 @@ class FirstFrames {
 
   const Pose& pose() const { return pose_; }
 
-  /// `frame` and all above it.
-  std::vector<std::string> chainOf(const std::string& frame) const {
-    std::vector<std::string> chain = {frame};
-    std::string parent;
-    while (buffer_._getParent(chain.back(), ros::Time(0), parent)) chain.push_back(parent);
-    return chain;
-  }
-
  private:
   /// What tf2 itself refuses (NaN, a frame that is its own parent, a stamp out of range) is left out.
   void add(const geometry_msgs::TransformStamped& transform, bool is_static) {
@@ -134,79 +127,35 @@ class FirstFrames {
   std::size_t count_ = 0;
 };
 
-/// Where some frames are now, whatever their transforms' stamps: a recording is in the order in which these came.
-class LatestFrames {
- public:
-  explicit LatestFrames(const std::vector<std::string>& frames) {
-    for (const std::string& frame : frames) latest_.emplace(frame, Latest());
-  }
-
-  /// @return whether it is of these frames and moves one of them. What is no pose is left out.
-  bool take(const geometry_msgs::TransformStamped& transform) {
-    const auto at = latest_.find(transform.child_frame_id);
-    if (at == latest_.end()) return false;
-    Latest& latest = at->second;
-    Latest now{transform.header.frame_id, Pose::Identity()};
-    try {
-      now.X = toPose(transform.transform);
-    } catch (const std::invalid_argument&) {
-      return false;
-    }
-    if (latest.parent == now.parent && latest.X.matrix() == now.X.matrix()) return false;
-    latest = std::move(now);
-    return true;
-  }
-
-  /// Pose of one in the other; none while they do not hang together.
-  std::optional<Pose> pose(const std::string& frame, const std::string& in) const {
-    const auto [root, X_RF] = inRoot(frame);
-    const auto [other_root, X_RO] = inRoot(in);
-    if (root != other_root) return std::nullopt;
-    return X_RO.inverse() * X_RF;
-  }
-
- private:
-  struct Latest {
-    std::string parent;  ///< empty: not known yet
-    Pose X = Pose::Identity();
-  };
-
-  std::pair<std::string, Pose> inRoot(const std::string& frame) const {
-    std::pair<std::string, Pose> found(frame, Pose::Identity());
-    for (std::size_t depth = 0; depth < latest_.size(); ++depth) {  // a recording may say that frames go round
-      const auto at = latest_.find(found.first);
-      if (at == latest_.end() || at->second.parent.empty()) break;
-      found = {at->second.parent, at->second.X * found.second};
-    }
-    return found;
-  }
-
-  std::map<std::string, Latest> latest_;
-};
-
 }  // namespace
 
 Pose frameInBag(const std::string& frame, const std::string& world_frame, const std::string& bag_file) {
   return FirstFrames(frame, world_frame, bag_file).pose();
 }
 
-FrameMotion farthestInBag(const std::string& frame, const std::string& world_frame, const std::string& bag_file) {
-  const FirstFrames first(frame, world_frame, bag_file);
-  std::vector<std::string> chain = first.chainOf(frame);
-  for (std::string& above : first.chainOf(world_frame)) chain.push_back(std::move(above));
-  LatestFrames latest(chain);
+FrameMotion farthestInBag(const std::string& frame, const std::string& world_frame, const std::string& bag_file,
+                          ros::Time until) {
+  const Pose X_WF_first = frameInBag(frame, world_frame, bag_file);
+  LatestFrames latest;
   FrameMotion farthest;
   BagTransforms transforms(bag_file);
+  bool has_moved = false;
+  const auto measure = [&] {  // between two messages: of one, all transforms belong together
+    if (!std::exchange(has_moved, false)) return;
+    const std::optional<Pose> now = latest.pose(frame, world_frame);
+    if (!now) return;
+    const FrameMotion motion(X_WF_first, *now);
+    if (motion.isFartherThan(farthest)) farthest = motion;
+  };
   for (const char* topic : {"/tf_static", "/tf"}) {
     transforms.read(
-        topic, [] { return true; },
-        [&](const auto& transform) {
-          if (!latest.take(transform)) return;
-          const std::optional<Pose> now = latest.pose(frame, world_frame);
-          if (!now) return;
-          const FrameMotion motion(first.pose(), *now);
-          if (motion.isFartherThan(farthest)) farthest = motion;
-        });
+        topic,
+        [&](ros::Time recorded) {
+          measure();
+          return recorded <= until;
+        },
+        [&](const auto& transform) { has_moved |= latest.take(transform); });
+    measure();
   }
   return farthest;
 }

@@ -2,6 +2,8 @@
 /// Room `ros` (private): poses of frames from the /tf and /tf_static of a bag.
 #pragma once
 
+#include <ros/time.h>
+
 #include <string>
 
 #include "ros/frame_motion.h"
@@ -15,8 +17,9 @@ namespace tissue_contact {
 ///   first 10^6 transforms; those with frame names longer than 256 bytes are left out.
 Pose frameInBag(const std::string& frame, const std::string& world_frame, const std::string& bag_file);
 
-/// The farthest that `frame` ever is in the bag from where frameInBag() finds it, all of the bag's /tf read for it.
+/// The farthest that `frame` is from where frameInBag() finds it, after any message recorded until then.
 /// @throws as frameInBag().
-FrameMotion farthestInBag(const std::string& frame, const std::string& world_frame, const std::string& bag_file);
+FrameMotion farthestInBag(const std::string& frame, const std::string& world_frame, const std::string& bag_file,
+                          ros::Time until = ros::TIME_MAX);
 
 }  // namespace tissue_contact

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
-#include <tf2_ros/buffer.h>
-#include <tf2_ros/transform_listener.h>
+#include <ros/node_handle.h>
+#include <ros/subscriber.h>
+#include <tf2_msgs/TFMessage.h>
 
+#include <array>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -20,13 +23,13 @@ struct PlacedFrame {
   Pose X_WF;
 };
 
-/// Listens to tf as long as it exists; for scenes that name frames.
+/// Listens to tf as long as it exists; for scenes that name frames. Its callbacks are roscpp's; fill() may be another thread's.
 class FrameWatch {
  public:
-  FrameWatch(std::vector<PlacedFrame> frames, std::string world_frame);
+  FrameWatch(ros::NodeHandle node, std::vector<PlacedFrame> frames, std::string world_frame);
 
-  /// Where the frames are by now: a warning in the diagnostics for those that have moved, and once in the log. One that tf no longer
-  /// knows is taken to be where it was.
+  /// Where the frames are by now: a warning in the diagnostics for those that have moved, and once in the log. Of one that tf does not
+  /// know now, where it was last.
   void fill(diagnostic_updater::DiagnosticStatusWrapper& status);
 
  private:
@@ -36,10 +39,13 @@ class FrameWatch {
     bool told = false;
   };
 
+  void take(const tf2_msgs::TFMessage& message);
+
   std::string world_frame_;
-  std::vector<Watched> frames_;
-  tf2_ros::Buffer buffer_;
-  tf2_ros::TransformListener listener_;
+  std::vector<Watched> frames_;  ///< fill()'s alone
+  std::mutex mutex_;
+  LatestFrames latest_;  ///< guarded by mutex_
+  std::array<ros::Subscriber, 2> subscribers_;
 };
 
 }  // namespace tissue_contact

@@ -153,7 +153,7 @@ Node::Node(const ros::NodeHandle& node, const ros::NodeHandle& private_node, con
     health_.fill(receiver_.missing(), status);
   });
   if (!placed_frames_.empty()) {
-    frames_ = std::make_unique<FrameWatch>(placed_frames_, simulator_.scene().world_frame);
+    frames_ = std::make_unique<FrameWatch>(node, placed_frames_, simulator_.scene().world_frame);
     updater_.add("tf frames", [this](diagnostic_updater::DiagnosticStatusWrapper& status) { frames_->fill(status); });
   }
   updater_.add("ROS master", [this](diagnostic_updater::DiagnosticStatusWrapper& status) { master_.fill(status); });

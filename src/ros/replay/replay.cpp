@@ -288,10 +288,7 @@ class Replay {
 
   void summarize() const {
     for (const std::string& line : joint_watch_.findings()) log_ << kPrefix << "warning: " << line << "\n";
-    for (const std::string& frame : framesOf(scene_)) {
-      const FrameMotion motion = farthestInBag(frame, scene_.world_frame, options_.bag_file);
-      if (motion.counts()) log_ << kPrefix << "warning: " << frameMotionText(frame, motion) << "\n";
-    }
+    summarizeFrames();
     log_ << kPrefix << player_.count(Verdict::kAccepted) << " joint states accepted";
     for (int v = 1; v < kVerdictCount; ++v) {
       const auto verdict = static_cast<Verdict>(v);
@@ -307,6 +304,18 @@ class Replay {
     summarizeChanges();
     findings_.summarize();
     if (!touched_) summarizeApproach();
+  }
+
+  /// Results are there by now: a bag whose tf ends in nonsense does not take them back.
+  void summarizeFrames() const {
+    for (const std::string& frame : framesOf(scene_)) {
+      try {
+        const FrameMotion motion = farthestInBag(frame, scene_.world_frame, options_.bag_file, recorded_);
+        if (motion.counts()) log_ << kPrefix << "warning: " << frameMotionText(frame, motion) << "\n";
+      } catch (const std::exception& error) {
+        log_ << kPrefix << "warning: whether tf frame '" << frame << "' moves is not known: " << error.what() << "\n";
+      }
+    }
   }
 
   /// Most often a pose in the scene is wrong, so say how far and between what.

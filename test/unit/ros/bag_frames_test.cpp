@@ -110,6 +110,7 @@ TEST_F(BagFramesTest, FarthestThatAFrameIsFromWhereItWasFirst) {
   EXPECT_EQ(motion.turn_rad, 0.0);
   EXPECT_TRUE(motion.counts());
   EXPECT_FALSE(farthestInBag("base", "world", file_).counts());
+  EXPECT_FALSE(farthestInBag("tool", "world", file_, ros::Time(1000, 5)).counts());
 }
 
 TEST_F(BagFramesTest, FarthestTurnCounts) {
@@ -133,7 +134,41 @@ TEST_F(BagFramesTest, FarthestOfImpossibleFrames) {
     bag.write("/tf", ros::Time(1031), transform("tool", "base", 9.0, 1031));
     bag.write("/tf", ros::Time(1032), transform("tool", "tool", 9.0, 1032));
   }
-  EXPECT_LE(farthestInBag("tool", "world", file_).way_m, 0.25);
+  EXPECT_EQ(farthestInBag("tool", "world", file_).way_m, 0.25);
+}
+
+/// tf2 knows such a tool in the world; whoever asks what is above the world would ask for ever.
+TEST_F(BagFramesTest, FramesAboveTheWorldThatGoRound) {
+  {
+    rosbag::Bag bag(file_, rosbag::bagmode::Write);
+    bag.write("/tf_static", ros::Time(1000), transform("world", "tool", 0.5, 1000));
+    bag.write("/tf_static", ros::Time(1001), transform("x", "world", 1.0, 1000));
+    bag.write("/tf_static", ros::Time(1002), transform("world", "x", 1.0, 1000));
+  }
+  EXPECT_EQ(frameInBag("tool", "world", file_).translation().z(), 0.5);
+  EXPECT_NO_THROW(farthestInBag("tool", "world", file_));
+}
+
+TEST_F(BagFramesTest, SlashesInFrontOfNamesMakeNoDifference) {
+  {
+    rosbag::Bag bag(file_, rosbag::bagmode::Write);
+    bag.write("/tf", ros::Time(1000), transform("/world", "/tool", 0.25, 1000));
+    bag.write("/tf", ros::Time(1001), transform("/world", "/tool", 0.5, 1001));
+  }
+  EXPECT_EQ(farthestInBag("tool", "world", file_).way_m, 0.25);
+}
+
+/// A linkage whose two transforms take each other back within one message has not moved.
+TEST_F(BagFramesTest, TransformsOfOneMessageBelongTogether) {
+  {
+    rosbag::Bag bag(file_, rosbag::bagmode::Write);
+    for (unsigned k = 0; k < 3; ++k) {
+      tf2_msgs::TFMessage both = transform("world", "base", 0.1 * k, 1000 + k);
+      both.transforms.push_back(transform("base", "tool", 1.0 - 0.1 * k, 1000 + k).transforms[0]);
+      bag.write("/tf", ros::Time(1000 + k), both);
+    }
+  }
+  EXPECT_FALSE(farthestInBag("tool", "world", file_).counts());
 }
 
 }  // namespace bag_frames_test

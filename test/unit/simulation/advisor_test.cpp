@@ -237,6 +237,8 @@ TEST(Advisor, DoubtsBlocksOfFewCellsOverTheirThickness) {
             0U);
   EXPECT_EQ(doubts("[0.04, 0.01, 0.002]", "[20, 5, 4]", "[1, 0, 0]").size(), 0U);  // enough
   EXPECT_EQ(doubts("[0.04, 0.01, 0.002]", "[20, 5, 1]", "[0, 0, 1]").size(), 0U);  // lies on its large face
+  EXPECT_EQ(doubts("[0.04, 0.005, 0.005]", "[20, 2, 2]", "[0, 0, 1]").size(),
+            0U);  // a bar that lies on one of its sides
   EXPECT_EQ(doubts("[0.04, 0.01, 0.011]", "[20, 5, 1]", "[1, 0, 0]").size(), 0U);  // no flap
 }
 

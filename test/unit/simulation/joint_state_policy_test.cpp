@@ -211,5 +211,38 @@ TEST(JointStatePolicy, CountsAddUpToWhatWasPushed) {
   }
 }
 
+/// Of two arms one sends a stamp an hour ahead and no more: what the other sends is behind the simulation from then on. It waited without end, and
+/// nobody was told.
+TEST_F(TwoProbes, ClockFarAheadOfAnArmThatFallsSilentLeavesNothingWaiting) {
+  player.setPolicy(StatePolicy::kNewestState);
+  for (int k = 1; k <= 10; ++k) {
+    player.push(0, sample(k * 10 * kMillisecond, 0.0));
+    player.push(1, sample(k * 10 * kMillisecond, 0.0));
+  }
+  drain(player);
+  player.push(0, sample(3600 * kSecond, 0.0));
+  player.stopWaiting();
+  drain(player);
+  std::string told;
+  for (int k = 11; k <= 500; ++k) {
+    player.push(1, sample(k * 10 * kMillisecond, -0.001));
+    for (const PlayedSample& played : drain(player)) {
+      EXPECT_EQ(played.verdict, Verdict::kLate);
+      told = played.detail;
+    }
+    ASSERT_LE(player.waiting(), 6) << k;  // 50 ms of them: max_gap_s
+  }
+  EXPECT_GT(player.count(Verdict::kLate), 400);
+  EXPECT_NE(told.find("the simulation is already at 3600.000000000 s, where stamps of another topic have taken it"),
+            std::string::npos)
+      << told;
+  const std::int64_t merged = player.merged();
+  player.push(0, sample(3600 * kSecond + 10 * kMillisecond, 0.0));  // goes on after all: takes along what waits
+  player.stopWaiting();
+  drain(player);
+  EXPECT_GT(player.merged(), merged);
+  EXPECT_EQ(player.waiting(), 0);
+}
+
 }  // namespace joint_state_policy_test
 }  // namespace tissue_contact
