@@ -132,6 +132,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
     }
   }
   relaxation_->finish(problem, solution);
+  if (report.stop != StopReason::kTolerance) guard_.shorten(problem, solution);
   return report;
 }
 

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "solver/contact_momentum.h"
+#include "solver/energy_guard.h"
 #include "solver/relaxation.h"
 #include "tissue_contact/solver/contact_solver.h"
 #include "tissue_contact/solver/solver_options.h"
@@ -56,6 +57,7 @@ class IterativePredictorCorrector : public ContactSolver {
   SolverOptions options_;
   SecondsClock clock_;
   std::unique_ptr<Relaxation> relaxation_;
+  EnergyGuard guard_;
   ContactCorrector corrector_;
   ContactMomentum momentum_;
   std::vector<Vector3> before_;  ///< impulses before the last pass, per contact, contact frame, N s

@@ -1,0 +1,27 @@
+/// @file
+/// Room `solver`, private: keeps a step that ends before its tolerance from bringing energy into the tissue.
+#pragma once
+
+#include <vector>
+
+#include "tissue_contact/solver/contact_solver.h"
+
+
+namespace tissue_contact {
+
+/// The step's answer is where J(v) = v'A v / 2 - (b + J'lambda)'v is least, and J(0) is, without loads, the energy before the step. Where v is
+/// least along itself, v'A v = (b + J'lambda)'v, the energy after it is no more than that (doc/method.md, "When a step ends"); a v on the way
+/// there may be longer, and steps that pass on such ones grow without bound.
+class EnergyGuard {
+ public:
+  /// Shortens the velocities of each body to where J is least along them, if that is shorter. Nodes that contacts may move stay as these
+  /// have them. Allocates only for more nodes than ever before.
+  void shorten(const ContactProblem& problem, ContactSolution& solution);
+
+ private:
+  std::vector<NodalVectors> impulses_;  ///< of contacts per body, N s
+  NodalVectors free_;                   ///< velocities of one body without the nodes that contacts may move, m/s
+  NodalVectors defect_;                 ///< N s
+};
+
+}  // namespace tissue_contact
