@@ -6,16 +6,14 @@
 
 #include "tissue_contact/solver/contact_solver.h"
 
-
 namespace tissue_contact {
 
-/// The step's answer is where J(v) = v'A v / 2 - (b + J'lambda)'v is least, and J(0) is, without loads, the energy before the step. Where v is
-/// least along itself, v'A v = (b + J'lambda)'v, the energy after it is no more than that (doc/method.md, "When a step ends"); a v on the way
-/// there may be longer, and steps that pass on such ones grow without bound.
+/// Where v'A v <= (b + J'lambda)'v the tissue's energy grows by no more than contacts and loads did work (doc/method.md, "When a step
+/// ends"). The step's answer meets that; a v on the way there may not, and steps that pass such ones on grow without bound.
 class EnergyGuard {
  public:
-  /// Shortens the velocities of each body to where J is least along them, if that is shorter. Nodes that contacts may move stay as these
-  /// have them. Allocates only for more nodes than ever before.
+  /// Shortens the velocities of each body to where v'A v / 2 - (b + J'lambda)'v is least along them, if that is shorter. Nodes that
+  /// contacts may move stay as these have them. Allocates only for more nodes than ever before.
   void shorten(const ContactProblem& problem, ContactSolution& solution);
 
  private:
