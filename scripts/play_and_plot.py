@@ -79,6 +79,7 @@ class Recorder:
         self.last_joint_state = None
         self.last_wrench = None
         self.last_contacts = None
+        self.last_status = None
         self.open = True  # until the first pass is over
         self._rest = {}
         self._meshes = {}
@@ -107,6 +108,7 @@ class Recorder:
 
     def _take_status(self, message):
         with self.lock:
+            self.last_status = message
             if self.open:
                 self.forces.take_status(message)
 
@@ -129,6 +131,12 @@ class Recorder:
         with self.lock:
             return self.last_joint_state is not None and self.last_joint_state == self.last_wrench
 
+    def never_stepped_to(self, sent):
+        """How many of `sent` joint states did not reach the node, or were dropped there."""
+        with self.lock:
+            status = self.last_status
+            return sent - status.joint_states_received + status.joint_states_dropped if status else 0
+
     def line(self):
         """One line on how things are now."""
         with self.lock:
@@ -149,9 +157,10 @@ class Recorder:
 
 
 def bag_topics(file):
+    """How many messages there are, by topic."""
     try:
         with rosbag.Bag(file) as bag:
-            return set(bag.get_type_and_topic_info().topics)
+            return {name: topic.message_count for name, topic in bag.get_type_and_topic_info().topics.items()}
     except (OSError, rosbag.ROSBagException) as error:
         fail("bag %s cannot be read: %s" % (file, error))
 
@@ -248,6 +257,7 @@ def main():
         fail("rosbag play ended with exit code %s" % child.returncode)
     answered = wait_for_the_rest(recorder, talk=not shown)
     recorder.open = False
+    lost = recorder.never_stepped_to(sum(in_bag[topic] for topic in topics))
     if rospy.is_shutdown():
         return
     if not recorder.forces.wrenches:
@@ -259,6 +269,9 @@ def main():
             print("wrote " + path, flush=True)
     except OSError as error:
         fail("cannot write %s: %s" % (error.filename, error.strerror))
+    if lost > 0:
+        fail("%d of the recording's joint states did not reach the node or were dropped by it, so the forces are not those of the recording: "
+             "play it slower (now rate %g), or use tissue_contact_replay" % (lost, arguments.rate))
     if os.environ.get("TISSUE_CONTACT_DONE_FILE"):
         with open(os.environ["TISSUE_CONTACT_DONE_FILE"], "w", encoding="utf-8"):
             pass

@@ -200,8 +200,12 @@ bool JointStatePlayer::mustWait(const Moment& moment) const {
   return std::any_of(topic_states_.begin(), topic_states_.end(), [&](const Topic& topic) {
     if (topic.last && !(*topic.last < moment)) return false;
     if (is_live && !topic.triggers) return false;
-    return ageOf(topic.last) < bound_ns;
+    return ageOf(topic.last) < bound_ns || (!is_live && topic.awaited);
   });
+}
+
+bool JointStatePlayer::isOvertaken(int topic) const {
+  return newest_ && ageOf(topic_states_.at(static_cast<std::size_t>(topic)).last) >= max_gap_ns_;
 }
 
 /// How far behind the newest stamp of all, in ns. Stamps of different loops do not compare: what is not in the newest

@@ -74,7 +74,8 @@ struct PlayedSample {
 ///
 /// Waiting. A moment waits until every other topic has delivered its stamp or a later one, so that what arrives first
 /// does not matter. A topic is waited for only while its newest stamp is less than max_gap_s behind the newest of all
-/// (if it was never heard: that behind the first of all): beyond that it is missing or stuck. Under kNewestState the
+/// (if it was never heard: that behind the first of all): beyond that it is missing or stuck, unless keepWaitingFor()
+/// says that it may only have been delayed. Under kNewestState the
 /// bound is a quarter of max_lag_s (kWaitShare) or stopWaiting(), and topics that only update are not waited for.
 ///
 /// Time. A stamp before its topic's last by at most max_gap_s that says nothing new is late: refused, nothing else changes. Farther back is a
@@ -94,8 +95,8 @@ struct PlayedSample {
 /// passed over: under kNewestState older moments, which only shape the motion by their last positions; what is taken with a topic's
 /// next sample; and those of an interrupted advance.
 ///
-/// Memory. Played or refused samples are forgotten; waiting ones span at most max_gap_s of message time per loop and
-/// are at most kMaxWaiting (of update-only topics: each), provided that playNext() is called until it returns nothing
+/// Memory. Played or refused samples are forgotten; waiting ones span at most max_gap_s of message time per loop (more only
+/// with keepWaitingFor()) and are at most kMaxWaiting (of update-only topics: each), provided that playNext() is called until it returns nothing
 /// after every push().
 ///
 /// Under kEveryState the result depends on the stamps and positions alone; with several topics, on condition that what
@@ -145,6 +146,10 @@ class JointStatePlayer {
   std::optional<std::int64_t> nextStamp() const;
   /// The stamp of the earliest sample that triggers and lies ahead, whether or not it has to wait for a topic.
   std::optional<std::int64_t> earliestStamp() const;
+  /// Whether the topic's newest stamp is max_gap_s or more behind the newest of all, so that no moment of kEveryState waits for it.
+  bool isOvertaken(int topic) const;
+  /// Whether moments of kEveryState wait for such a topic all the same, from now on: wall time has not shown yet that nothing comes.
+  void keepWaitingFor(int topic, bool wait) { topic_states_.at(static_cast<std::size_t>(topic)).awaited = wait; }
   /// Moments that are here now wait for no topic any longer, since wall time presses.
   void stopWaiting();
 
@@ -207,6 +212,7 @@ class JointStatePlayer {
     std::optional<Moment> taken;          ///< of the last sample whose joints were taken
     std::vector<Listener> listeners;
     bool triggers = false;  ///< any listener
+    bool awaited = false;   ///< see keepWaitingFor()
   };
   /// The newest loop any topic has reached.
   struct NewestLoop {

@@ -32,6 +32,7 @@ Stepper::Stepper(Simulator& simulator, JointStatePlayer& player, JointStateInbox
       chooser_(simulator.scene().step.joint_states, simulated_time),
       pacing_(simulator.scene().step.max_lag_s),
       receipts_(player.topics().size()),
+      awaited_(player, simulator.scene().step.max_gap_s),
       joint_watch_(simulator, player),
       requests_([&inbox] { inbox.wake(); }) {
   simulator_.setStepObserver([this] { noteStep(); });
@@ -81,9 +82,15 @@ AdvanceLimits Stepper::limits(int most_steps) const {
   return limits;
 }
 
-/// For more of them, but under the newest state for no longer than one that waits for another topic's may.
+/// For more of them, but for no longer than one that waits for another topic's may.
 void Stepper::awaitStates() {
-  const std::optional<std::int64_t> earliest = newest_state_ ? player_.earliestStamp() : std::nullopt;
+  if (!newest_state_) {
+    const std::optional<double> end_s = awaited_.nextEnd();
+    if (!end_s) return inbox_.wait();
+    if (!inbox_.wait(std::max(0.0, *end_s - steadySeconds()))) awaited_.noteTime(steadySeconds());
+    return;
+  }
+  const std::optional<std::int64_t> earliest = player_.earliestStamp();
   if (!earliest) return inbox_.wait();
   const std::optional<Receipt> receipt = receipts_.find(*earliest);
   const double left_s = pacing_.waitUntil(receipt ? receipt->received_s : newest_received_s_) - steadySeconds();
@@ -108,6 +115,7 @@ void Stepper::push(ReceivedState state) {
   joint_watch_.note(state.topic, state.sample);
   for (const std::string& line : joint_watch_.takeNews(state.received_s)) ROS_WARN_STREAM(line);
   player_.push(state.topic, std::move(state.sample));
+  awaited_.noteReceipt(state.topic, state.received_s);
 }
 
 /// Between two moments: goes on with what people have changed.
@@ -166,6 +174,7 @@ void Stepper::handOverWaiting() {
 
 void Stepper::beginAnew() {
   receipts_ = ReceiptTimes(player_.topics().size());
+  awaited_ = AwaitedTopics(player_, simulator_.scene().step.max_gap_s);
   played_stamp_ns_ = player_.time().value_or(0);
   chooser_.startAgain();
   health_.noteReset();

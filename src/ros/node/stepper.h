@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "ros/joint_watch.h"
+#include "ros/node/awaited_topics.h"
 #include "ros/node/health.h"
 #include "ros/node/joint_state_inbox.h"
 #include "ros/node/joint_state_policy.h"
@@ -79,6 +80,7 @@ class Stepper {
   PolicyChooser chooser_;
   LivePacing pacing_;
   ReceiptTimes receipts_;
+  AwaitedTopics awaited_;
   JointWatch joint_watch_;
   bool newest_state_ = false;
   double newest_received_s_ = 0.0;  ///< of the last state handed to the player
