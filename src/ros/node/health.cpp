@@ -65,6 +65,20 @@ void addFigures(const LiveFigures& figures, double worst_lag_s, diagnostic_updat
   status.add("snapshots dropped", figures.snapshots_dropped);
 }
 
+/// Of a driver, s: slower ones than this are rare, and a busy machine holds none up for as long.
+constexpr double kLongestSilence_s = 2.0;
+
+std::vector<std::string> resolved(std::vector<std::string> topics) {
+  for (std::string& topic : topics) topic = ros::names::resolve(topic);
+  return topics;
+}
+
+std::vector<bool> triggering(const JointStatePlayer& player) {
+  std::vector<bool> triggers;
+  for (std::size_t t = 0; t < player.topics().size(); ++t) triggers.push_back(player.triggers(static_cast<int>(t)));
+  return triggers;
+}
+
 }  // namespace
 
 Health::Health(const Simulator& simulator, const JointStatePlayer& player, const JointStateInbox& inbox)
@@ -72,7 +86,9 @@ Health::Health(const Simulator& simulator, const JointStatePlayer& player, const
       player_(player),
       inbox_(inbox),
       nodes_(nodesOf(simulator)),
-      max_lag_s_(simulator.scene().step.max_lag_s) {}
+      max_lag_s_(simulator.scene().step.max_lag_s),
+      silence_(resolved(player.topics()), triggering(player),
+               std::max(kLongestSilence_s, simulator.scene().step.max_gap_s)) {}
 
 bool Health::Throttle::pass() {
   constexpr std::chrono::seconds kPeriod(5);
@@ -328,23 +344,16 @@ double Health::worstLag(const LiveFigures& figures) {
 void Health::fill(std::int64_t missing, diagnostic_updater::DiagnosticStatusWrapper& status) {
   const LiveFigures now = figures();
   const double worst_lag_s = worstLag(now);
+  tellSilence();
   summarize(now, worst_lag_s, status);
-  tellSilence(now);
   addFigures(now, worst_lag_s, status);
   status.add("joint states: missing by header.seq", missing);
   told_ = now;
 }
 
-/// Once, where no joint state has come in so many calls, which are a second apart.
-void Health::tellSilence(const LiveFigures& now) {
-  constexpr int kPatience = 10;
-  if (now.received > 0 || now.paused || ++silent_ != kPatience) return;
-  std::vector<std::string> topics;
-  for (const std::string& topic : player_.topics()) topics.push_back(ros::names::resolve(topic));
-  ROS_WARN_STREAM("no joint state yet, within "
-                  << kPatience << " s, on " << listOf(topics)
-                  << ": nothing moves. Does `rostopic info` name a publisher? joint_state_topics of the "
-                     "scene name what is listened to");
+void Health::tellSilence() {
+  for (const std::string& line : silence_.look(inbox_.heard(player_.topics().size()), steadySeconds()))
+    ROS_WARN_STREAM(line);
 }
 
 void Health::summarize(const LiveFigures& now, double worst_lag_s,
@@ -369,6 +378,8 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
     status.summary(Level::WARN, "forces that no tissue bears: " + now.last_implausible);
   } else if (now.coarse > told_.coarse) {
     status.summary(Level::WARN, now.last_coarse);
+  } else if (!silence_.summary().empty()) {
+    status.summary(Level::WARN, silence_.summary());
   } else if (is_strained) {
     status.summary(Level::WARN, "steps lengthened, since the machine does not keep up with max_step_s");
   } else if (now.troubles() > told_.troubles()) {

@@ -17,6 +17,7 @@
 #include "ros/node/joint_state_inbox.h"
 #include "ros/node/live_figures.h"
 #include "ros/node/real_time_factor.h"
+#include "ros/node/topic_silence.h"
 #include "tissue_contact/Status.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 #include "tissue_contact/simulation/law_error.h"
@@ -70,7 +71,7 @@ class Health {
 
   /// Summary and counts. ERROR when a step gave no finite answer since the last reset, or when since the last call
   /// the lag was far over its bound or joint states came by two clocks; WARN when it was over it, forces were such as no tissue bears, refined cells
-  /// were longer than asked for, steps were lengthened to hold the lag, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their
+  /// were longer than asked for, steps were lengthened to hold the lag, a topic has fallen silent, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their
   /// iterations are counted but are no alarm: a fixed budget per step is how the solver keeps real time. The log says
   /// once what to change when the machine does not keep up.
   /// @param missing see Receiver::missing().
@@ -97,7 +98,7 @@ class Health {
   void noteCells(const CoarseCells& cells);
   static void tellBroken(const PlayedSample& played, bool finite);
   double worstLag(const LiveFigures& figures);
-  void tellSilence(const LiveFigures& now);
+  void tellSilence();
   void summarize(const LiveFigures& now, double worst_lag_s, diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const Simulator& simulator_;
@@ -132,7 +133,7 @@ class Health {
   // The diagnostics thread's alone.
   LiveFigures told_;
   bool advised_ = false;
-  int silent_ = 0;  ///< calls of fill() without a joint state
+  TopicSilence silence_;
 };
 
 }  // namespace tissue_contact

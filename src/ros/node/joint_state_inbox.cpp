@@ -19,6 +19,9 @@ void JointStateInbox::put(ReceivedState state) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++counts_.received;
   counts_.newest_stamp_ns = state.sample.stamp_ns;
+  const auto topic = static_cast<std::size_t>(state.topic);
+  if (topic >= heard_s_.size()) heard_s_.resize(topic + 1);
+  heard_s_[topic] = state.received_s;
   state.after_restart = std::exchange(restarted_, false);
   bytes_ += bytesOf(state);
   waiting_.push_back(std::move(state));
@@ -74,6 +77,13 @@ JointStateInbox::Counts JointStateInbox::counts() const {
   counts.waiting = waiting_.size();
   if (!waiting_.empty()) counts.oldest_received_s = waiting_.front().received_s;
   return counts;
+}
+
+std::vector<std::optional<double>> JointStateInbox::heard(std::size_t topics) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::optional<double>> heard_s = heard_s_;
+  heard_s.resize(topics);
+  return heard_s;
 }
 
 }  // namespace tissue_contact

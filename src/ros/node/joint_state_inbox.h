@@ -8,6 +8,7 @@
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "tissue_contact/simulation/joint_state_player.h"
 
@@ -56,6 +57,9 @@ class JointStateInbox {
 
   Counts counts() const;
 
+  /// When the last state of each of so many topics was received; nothing: never.
+  std::vector<std::optional<double>> heard(std::size_t topics) const;
+
  private:
   void dropOldest();
 
@@ -68,6 +72,7 @@ class JointStateInbox {
   bool woken_ = false;
   bool restarted_ = false;
   Counts counts_;
+  std::vector<std::optional<double>> heard_s_;  ///< per topic, as far as any was received
 };
 
 }  // namespace tissue_contact

@@ -29,6 +29,7 @@ TEST(JointStateInbox, GivesBackInOrderAndCounts) {
   EXPECT_EQ(inbox.counts().waiting, 3U);
   EXPECT_EQ(inbox.counts().oldest_received_s, 0.5);
   EXPECT_EQ(inbox.counts().newest_stamp_ns, 3);
+  EXPECT_EQ(inbox.heard(2), (std::vector<std::optional<double>>{1.5, std::nullopt}));
   for (int i = 1; i <= 3; ++i) EXPECT_EQ(inbox.take()->sample.stamp_ns, i);
   EXPECT_FALSE(inbox.take());
   EXPECT_EQ(inbox.counts().waiting, 0U);

@@ -1,0 +1,63 @@
+/// @file
+/// What is said of joint-state topics on which nothing comes, and how often.
+#include "ros/node/topic_silence.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tissue_contact {
+namespace topic_silence_test {
+
+using Heard = std::vector<std::optional<double>>;
+using Lines = std::vector<std::string>;
+
+constexpr double kLongest_s = 2.0;
+
+TopicSilence twoArms() { return TopicSilence({"/a", "/b"}, {true, true}, kLongest_s); }
+
+TEST(TopicSilence, AnArmThatEndsIsToldOfOncePerSilence) {
+  TopicSilence silence = twoArms();
+  EXPECT_EQ(silence.look({100.0, 100.0}, 100.5), Lines());
+  EXPECT_EQ(silence.look({102.0, 100.0}, 102.0), Lines());
+  EXPECT_EQ(silence.summary(), "");
+  const Lines told = silence.look({103.1, 100.0}, 103.1);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].rfind("no joint state for 3 s on /b, while others come: what it moves stays", 0), 0U) << told[0];
+  EXPECT_EQ(silence.summary(), "no joint state for 3 s on /b, while others come");
+  EXPECT_EQ(silence.look({104.1, 100.0}, 104.1), Lines());
+  EXPECT_EQ(silence.summary(), "no joint state for 4 s on /b, while others come");
+  EXPECT_EQ(silence.look({105.0, 105.0}, 105.1), Lines());  // it is back
+  EXPECT_EQ(silence.summary(), "");
+  EXPECT_EQ(silence.look({108.0, 105.0}, 108.1).size(), 1U);
+}
+
+TEST(TopicSilence, TheEndOfARecordingIsNoNewsForTheLog) {
+  TopicSilence silence = twoArms();
+  EXPECT_EQ(silence.look({100.0, 100.0}, 100.5), Lines());
+  EXPECT_EQ(silence.look({100.0, 100.0}, 110.0), Lines());
+  EXPECT_EQ(silence.summary(), "no joint state for 10 s on /a; no joint state for 10 s on /b");
+}
+
+TEST(TopicSilence, TopicsThatNeverComeAreToldOfAfterTenSeconds) {
+  TopicSilence none = twoArms();
+  EXPECT_EQ(none.look(Heard(2), 1.0), Lines());
+  EXPECT_EQ(none.look(Heard(2), 10.9), Lines());
+  const Lines all = none.look(Heard(2), 11.0);
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0].rfind("no joint state yet, within 10 s, on /a, /b: nothing moves", 0), 0U) << all[0];
+  EXPECT_EQ(none.look(Heard(2), 12.0), Lines());
+  EXPECT_EQ(none.summary(), "");
+
+  TopicSilence one({"/a", "/b", "/b/jaw"}, {true, true, false}, kLongest_s);  // a jaw that was not recorded is usual
+  EXPECT_EQ(one.look({1.0, {}, {}}, 1.0), Lines());
+  const Lines missing = one.look({11.0, {}, {}}, 11.0);
+  ASSERT_EQ(missing.size(), 1U);
+  EXPECT_EQ(missing[0].rfind("no joint state yet on /b, while others come", 0), 0U) << missing[0];
+  EXPECT_EQ(one.look({12.0, {}, {}}, 12.0), Lines());
+}
+
+}  // namespace topic_silence_test
+}  // namespace tissue_contact
