@@ -1,22 +1,27 @@
 #include "tissue_contact/ros/environment.h"
 
+#include <ros/callback_queue.h>
 #include <ros/console.h>
+#include <ros/node_handle.h>
+#include <ros/subscriber.h>
 #include <rospack/rospack.h>
-#include <tf2_ros/buffer.h>
-#include <tf2_ros/transform_listener.h>
+#include <tf2/buffer_core.h>
+#include <tf2_msgs/TFMessage.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdint>
 #include <iostream>
 #include <limits>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
 #include <vector>
 
 #include "ros/bag/bag_frames.h"
 #include "ros/conversions.h"
+#include "ros/frame_motion.h"
 #include "ros/parameter.h"
 #include "tissue_contact/core/cache_folder.h"
 #include "tissue_contact/core/range.h"
@@ -51,21 +56,31 @@ void requireUrdfParameter(const Scene& scene) {
                    "place of urdf");
 }
 
-/// Waits for a frame by the wall clock: with simulated time nothing may be playing yet.
+/// Waits for a frame by the wall clock: with simulated time nothing may be playing yet. Not with tf2's listener, which ends the process on
+/// stamps that are out of its range.
 Pose waitForFrame(const std::string& frame, const std::string& world_frame, double timeout_s) {
-  tf2_ros::Buffer buffer;
-  const tf2_ros::TransformListener listener(buffer);
-  const auto start = std::chrono::steady_clock::now();
-  const auto waited_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  std::string why;
-  while (!buffer.canTransform(world_frame, frame, ros::Time(0), &why)) {
-    if (!ros::ok() || waited_s() >= timeout_s) {
+  tf2::BufferCore buffer;
+  ros::CallbackQueue queue;  // no thread spins yet
+  ros::NodeHandle node;
+  node.setCallbackQueue(&queue);
+  const auto listen = [&](const std::string& topic, bool is_static) {
+    constexpr std::uint32_t kQueue = 100;
+    return node.subscribe<tf2_msgs::TFMessage>(
+        topic, kQueue, [&buffer, is_static](const tf2_msgs::TFMessageConstPtr& message) {
+          for (const geometry_msgs::TransformStamped& transform : message->transforms)
+            takeTransform(transform, is_static, buffer);
+        });
+  };
+  const std::array<ros::Subscriber, 2> subscribers = {listen("/tf_static", true), listen("/tf", false)};
+  const double start_s = steadySeconds();
+  for (std::string why; !buffer.canTransform(world_frame, frame, ros::Time(0), &why); why.clear()) {
+    if (!ros::ok() || steadySeconds() - start_s >= timeout_s) {
       std::ostringstream text;
       text << "tf frame '" << frame << "' has no transform to the world frame '" << world_frame << "' after "
            << timeout_s << " s (" << why << "); publish it, or give ~tf_timeout_s more time";
       throw std::invalid_argument(text.str());
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    queue.callAvailable(ros::WallDuration(0.01));
   }
   return toPose(buffer.lookupTransform(world_frame, frame, ros::Time(0)).transform);
 }

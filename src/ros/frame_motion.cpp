@@ -13,8 +13,11 @@ namespace tissue_contact {
 namespace {
 
 constexpr std::size_t kMostFrames = 10000;
-constexpr std::size_t kLongestName = 256;
 constexpr int kDeepest = 100;
+
+bool hasLongName(const geometry_msgs::TransformStamped& transform) {
+  return std::max(transform.header.frame_id.size(), transform.child_frame_id.size()) > kLongestFrameName;
+}
 
 /// As tf2 has names: without a slash in front.
 std::string bareName(const std::string& name) { return name.rfind('/', 0) == 0 ? name.substr(1) : name; }
@@ -23,6 +26,14 @@ constexpr double kCounts_m = 5e-4;  // a step's way that turns a force by a per 
 constexpr double kArm_m = 0.5;      // from the base of an arm to its tool
 
 }  // namespace
+
+void takeTransform(const geometry_msgs::TransformStamped& transform, bool is_static, tf2::BufferCore& buffer) {
+  if (hasLongName(transform)) return;
+  try {
+    buffer.setTransform(transform, "", is_static);
+  } catch (const std::runtime_error&) {  // of ros::Time
+  }
+}
 
 std::vector<std::string> framesOf(const Scene& scene) {
   std::vector<std::string> frames;
@@ -46,7 +57,7 @@ bool FrameMotion::counts() const { return reach() > kCounts_m; }
 bool LatestFrames::take(const geometry_msgs::TransformStamped& transform) {
   const std::string& parent = transform.header.frame_id;
   const std::string& child = transform.child_frame_id;
-  if (parent.empty() || child.empty() || std::max(parent.size(), child.size()) > kLongestName) return false;
+  if (parent.empty() || child.empty() || hasLongName(transform)) return false;
   Latest now{bareName(parent), Pose::Identity()};
   try {
     now.X = toPose(transform.transform);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <geometry_msgs/TransformStamped.h>
+#include <tf2/buffer_core.h>
 
 #include <cstddef>
 #include <map>
@@ -15,6 +16,12 @@
 #include "tissue_contact/simulation/scene.h"
 
 namespace tissue_contact {
+
+/// Bytes. tf2 keeps the names of all frames it has heard of.
+constexpr std::size_t kLongestFrameName = 256;
+
+/// Leaves out what tf2 refuses (NaN, a frame that is its own parent) or its arithmetic of stamps throws at, and longer names.
+void takeTransform(const geometry_msgs::TransformStamped& transform, bool is_static, tf2::BufferCore& buffer);
 
 /// Frames that `base_pose` of instruments and `pose` of tissues name, each once.
 std::vector<std::string> framesOf(const Scene& scene);

@@ -23,9 +23,16 @@ class PlacedByTf(harness.TestCase):
                                     "position_m: [0, 0, 0.026]": "tf_frame: stage"})
 
         static = rospy.Publisher("/tf_static", TFMessage, queue_size=1, latch=True)
+        moving = rospy.Publisher("/tf", TFMessage, queue_size=2)
+        far = harness.stage_at(1.0)  # by stamps that ros::Time cannot add to
+        far.transforms[0].child_frame_id = "far"
+        far.transforms[0].header.stamp = rospy.Time(4294967295, 999999999)
         samples = harness.press(60)
         with harness.node(scene):
             harness.wait_until(lambda: static.get_num_connections() > 0, "the node asking for tf")
+            harness.wait_until(lambda: moving.get_num_connections() > 0, "the node asking for tf that moves")
+            for _ in range(2):
+                moving.publish(far)
             static.publish(harness.stage_at(0.026))
             wrenches = harness.wrenches()
             harness.JointSource().send_all(samples)

@@ -22,9 +22,6 @@ namespace {
 /// A robot of 50 frames at 100 Hz sends so many in 3 minutes; tf2 keeps all of them.
 constexpr std::size_t kMaxTransforms = 1000000;
 
-/// tf2 keeps the name of every frame, and a bag may have as many of them as transforms.
-constexpr std::size_t kMaxFrameName = 256;
-
 geometry_msgs::TransformStamped readTransform(MessageReader& reader) {
   geometry_msgs::TransformStamped transform;
   transform.header = reader.header();
@@ -70,7 +67,7 @@ class BagTransforms {
     MessageReader reader(data);
     for (std::size_t left = reader.count(kLeastBytes); left > 0; --left) {
       const geometry_msgs::TransformStamped transform = readTransform(reader);
-      if (std::max(transform.header.frame_id.size(), transform.child_frame_id.size()) > kMaxFrameName) {
+      if (std::max(transform.header.frame_id.size(), transform.child_frame_id.size()) > kLongestFrameName) {
         ++too_long_;
       } else {
         take(transform);
@@ -82,55 +79,32 @@ class BagTransforms {
   std::size_t too_long_ = 0;
 };
 
-/// As tf2 knows them from the beginning of a bag on, until it knows where `frame` is in `world_frame`.
-class FirstFrames {
- public:
-  /// @throws as frameInBag().
-  FirstFrames(const std::string& frame, const std::string& world_frame, const std::string& bag_file)
-      : buffer_(ros::Duration(1e6)) {  // a bag is not forgotten while it is read
-    BagTransforms transforms(bag_file);
-    const auto has_room = [&](ros::Time /*recorded*/) { return count_ < kMaxTransforms; };
-    transforms.read("/tf_static", has_room, [&](const auto& transform) { add(transform, true); });
-    transforms.read(
-        "/tf",
-        [&](ros::Time recorded) {
-          return has_room(recorded) && !buffer_.canTransform(world_frame, frame, ros::Time(0));
-        },
-        [&](const auto& transform) { add(transform, false); });
-    try {
-      pose_ = toPose(buffer_.lookupTransform(world_frame, frame, ros::Time(0)).transform);
-    } catch (const tf2::TransformException& error) {
-      std::string detail = error.what();
-      if (transforms.tooLong() > 0) {
-        detail += "; " + std::to_string(transforms.tooLong()) + " transforms with names of frames longer than " +
-                  std::to_string(kMaxFrameName) + " bytes were left out";
-      }
-      throw std::invalid_argument("tf frame '" + frame + "' has no transform to the world frame '" + world_frame +
-                                  "' in " + bag_file + " (" + detail + ")");
-    }
-  }
-
-  const Pose& pose() const { return pose_; }
-
- private:
-  /// What tf2 itself refuses (NaN, a frame that is its own parent, a stamp out of range) is left out.
-  void add(const geometry_msgs::TransformStamped& transform, bool is_static) {
-    if (count_++ >= kMaxTransforms) return;
-    try {
-      buffer_.setTransform(transform, "bag", is_static);
-    } catch (const std::runtime_error&) {  // arithmetic of ros::Time
-    }
-  }
-
-  tf2::BufferCore buffer_;
-  Pose pose_;
-  std::size_t count_ = 0;
-};
-
 }  // namespace
 
 Pose frameInBag(const std::string& frame, const std::string& world_frame, const std::string& bag_file) {
-  return FirstFrames(frame, world_frame, bag_file).pose();
+  tf2::BufferCore buffer(ros::Duration(1e6));  // a bag is not forgotten while it is read
+  BagTransforms transforms(bag_file);
+  std::size_t count = 0;
+  const auto take = [&](const geometry_msgs::TransformStamped& transform, bool is_static) {
+    if (count++ < kMaxTransforms) takeTransform(transform, is_static, buffer);
+  };
+  const auto has_room = [&](ros::Time /*recorded*/) { return count < kMaxTransforms; };
+  transforms.read("/tf_static", has_room, [&](const auto& transform) { take(transform, true); });
+  transforms.read(
+      "/tf",
+      [&](ros::Time recorded) { return has_room(recorded) && !buffer.canTransform(world_frame, frame, ros::Time(0)); },
+      [&](const auto& transform) { take(transform, false); });
+  try {
+    return toPose(buffer.lookupTransform(world_frame, frame, ros::Time(0)).transform);
+  } catch (const tf2::TransformException& error) {
+    std::string detail = error.what();
+    if (transforms.tooLong() > 0) {
+      detail += "; " + std::to_string(transforms.tooLong()) + " transforms with names of frames longer than " +
+                std::to_string(kLongestFrameName) + " bytes were left out";
+    }
+    throw std::invalid_argument("tf frame '" + frame + "' has no transform to the world frame '" + world_frame +
+                                "' in " + bag_file + " (" + detail + ")");
+  }
 }
 
 FrameMotion farthestInBag(const std::string& frame, const std::string& world_frame, const std::string& bag_file,
