@@ -21,6 +21,7 @@ import rosbag
 import rosgraph
 import roslib.packages
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import JointState
 
@@ -31,6 +32,7 @@ from plot_forces import Forces, friction_of, plot
 
 QUIET_S = 10.0  # without a wrench, after the last joint state: the node will not answer it
 RVIZ_START_S = 30.0
+DIAGNOSTICS_S = 5.0  # they come every second
 LAUNCH_END_S = 10.0  # roslaunch ends its nodes within this, us among them
 
 
@@ -79,7 +81,7 @@ class Recorder:
         self.last_joint_state = None
         self.last_wrench = None
         self.last_contacts = None
-        self.last_status = None
+        self.counts = None  # of the newest diagnostics
         self.open = True  # until the first pass is over
         self._rest = {}
         self._meshes = {}
@@ -94,6 +96,7 @@ class Recorder:
             elif name.endswith("/mesh"):
                 rospy.Subscriber(topic, TissueMesh, self._take_mesh)
         rospy.Subscriber(node + "/status", Status, self._take_status)
+        rospy.Subscriber("/diagnostics", DiagnosticArray, self._take_diagnostics, node)
         rospy.Subscriber(node + "/contacts", ContactArray, self._take_contacts, tcp_nodelay=True)
 
     def _take_joint_state(self, message):
@@ -108,7 +111,6 @@ class Recorder:
 
     def _take_status(self, message):
         with self.lock:
-            self.last_status = message
             if self.open:
                 self.forces.take_status(message)
 
@@ -131,11 +133,18 @@ class Recorder:
         with self.lock:
             return self.last_joint_state is not None and self.last_joint_state == self.last_wrench
 
-    def never_stepped_to(self, sent):
-        """How many of `sent` joint states did not reach the node, or were dropped there."""
-        with self.lock:
-            status = self.last_status
-            return sent - status.joint_states_received + status.joint_states_dropped if status else 0
+    def _take_diagnostics(self, message, node):
+        for status in message.status:
+            if status.name == node.lstrip("/") + ": tissue contact":
+                with self.lock:
+                    self.counts = {value.key: value.value for value in status.values}
+
+    def lost(self, sent):
+        """How many of `sent` joint states did not reach the node, or were dropped there; waits for the next diagnostics."""
+        self.counts = None
+        if not wait_quietly(lambda: self.counts is not None, DIAGNOSTICS_S):
+            return 0
+        return sent - int(self.counts["joint states: received"]) + int(self.counts["joint states: dropped"])
 
     def line(self):
         """One line on how things are now."""
@@ -257,7 +266,7 @@ def main():
         fail("rosbag play ended with exit code %s" % child.returncode)
     answered = wait_for_the_rest(recorder, talk=not shown)
     recorder.open = False
-    lost = recorder.never_stepped_to(sum(in_bag[topic] for topic in topics))
+    lost = recorder.lost(sum(in_bag[topic] for topic in topics))
     if rospy.is_shutdown():
         return
     if not recorder.forces.wrenches:
