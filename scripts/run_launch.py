@@ -31,7 +31,7 @@ def run(arguments):
             signal.signal(number, lambda *_: launch.send_signal(signal.SIGINT))
         code = launch.wait()
         if code == 0 and not os.path.exists(done):
-            print("run_launch.py: %s ended without plots; the messages above say why" % arguments[0], file=sys.stderr)
+            print("run_launch.py: %s did not end well; the messages above say why" % arguments[0], file=sys.stderr)
             code = 1
         return 1 if code else 0
 

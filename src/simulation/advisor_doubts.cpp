@@ -9,6 +9,7 @@
 #include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
+
 std::optional<Advice> sizeDoubt(const TissueDescription& tissue, const NodalVectors& rest, const HalfExtents& shapes) {
   const auto* const mesh = std::get_if<MeshDescription>(&tissue.geometry);
   const auto* const shell = std::get_if<ShellDescription>(&tissue.geometry);

@@ -17,7 +17,7 @@ namespace {
 constexpr double kRadiiLookedAt = 4.0;
 /// Under a shape that so few nodes carry, strain is as smooth as the few elements around make it, however wrong: lengths tell more.
 constexpr int kFewNodes = 5;
-/// What a step leaves of the turn of normals in a slide, which frames follow (doc/method.md, "Sliding"): between the 0.13 to 0.30 of it that
+/// What a step leaves of the turn of normals in a slide, which frames follow (doc/method.md, "Contact frames and landing"): between the 0.13 to 0.30 of it that
 /// drags of a ball and the recorded robot meet (doc/notes/accuracy.md).
 constexpr double kOfTurn = 0.18;
 

@@ -1,5 +1,7 @@
 #include "simulation/moving_tissue.h"
 
+#include <algorithm>
+
 #include "simulation/advisor.h"
 
 namespace tissue_contact {
@@ -30,6 +32,7 @@ void MovingTissue::changeMesh(std::unique_ptr<Elasticity::State>& elastic_state,
   sleep_.reset();
   elastic_state_.swap(elastic_state);
   makeState();
+  energy_debt_.clear();
   watchSleep(edge_m);
 }
 
@@ -39,6 +42,7 @@ void MovingTissue::changeMaterials() {
   makeState();
   watchSleep(meanSurfaceEdge(&tissue_, 1));
   still_changed_ = false;
+  energy_debt_.clear();
 }
 
 void MovingTissue::reset() {
@@ -56,6 +60,7 @@ void MovingTissue::stop() {
   makeState();
   if (sleep_) sleep_->wakeAll();
   still_changed_ = false;
+  energy_debt_.clear();
 }
 
 void MovingTissue::carry(StateArchive& archive) {
@@ -76,6 +81,7 @@ void MovingTissue::carry(StateArchive& archive) {
   archive.carry(system_.stiffness_scale);
   archive.carry(system_.damping_scale);
   archive.carry(still_changed_);
+  energy_debt_.carry(archive, tissue_.nodeCount());
   if (sleep_) sleep_->carry(archive);
 }
 
@@ -86,6 +92,8 @@ void MovingTissue::makeState() {
   system_.D = elastic_state_->damping.rows() > 0 ? &elastic_state_->damping : nullptr;
   system_.fixed = sleep_ ? &sleep_->still() : &tissue_.fixed();
   system_.stiff_parts = &tissue_.stiffParts();
+  const std::vector<bool>& fixed = tissue_.fixed();
+  is_free_ = std::find(fixed.begin(), fixed.end(), true) == fixed.end() && tissue_.attachmentStiffness() == 0.0;
   system_.x = &x_;
 }
 
@@ -98,12 +106,13 @@ void MovingTissue::wake(const std::vector<int>& touched) {
 
 void MovingTissue::assemble(double dt) {
   system_.asleep = sleep_ && sleep_->allAsleep();
-  if (system_.asleep) return;
+  if (system_.asleep) return energy_debt_.clear();
   if (still_changed_) tissue_.elasticity().holdStill(sleep_->still(), x_, *elastic_state_);
   still_changed_ = false;
   elastic_state_->step_s = dt;
   tissue_.elasticity().update(x_, *elastic_state_, loads_);
   tissue_.addPressure(x_, loads_);
+  energy_debt_.begin(loads_, tissue_.nodeMasses(), scene_.gravity_m_per_s2, is_free_, v_);
   system_.stiffness_scale = dt * (dt + tissue_.damping().stiffness_s);
   system_.damping_scale = system_.D != nullptr ? dt : 0.0;
   system_.mass = (1.0 + dt * tissue_.damping().mass_per_s) * tissue_.nodeMasses();
@@ -130,8 +139,9 @@ double MovingTissue::allowedHeldForce(std::optional<double> pressing_n) const {
   return scene_.advisor.sleep_error * (pressing_n ? *pressing_n : sleep_->ownForce());
 }
 
-void MovingTissue::move(double dt) {
+void MovingTissue::move(double dt, double contact_work_j, bool was_cut) {
   if (system_.asleep) return;
+  energy_debt_.finish(dt, contact_work_j, was_cut);
   x_ += dt * v_;
   if (tissue_.elasticity().hasMemory()) elastic_state_->elapsed_s += dt;
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "simulation/energy_debt.h"
 #include "simulation/tissue_sleep.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/simulation/scene.h"
@@ -66,7 +67,9 @@ class MovingTissue {
   bool wakeHeld(std::optional<double> pressing_n, double dt, int repeats);
 
   bool isFinite() const { return system_.asleep || v_.allFinite(); }  ///< the answer of the step
-  void move(double dt);                                               ///< x += dt v
+  /// x += dt v.
+  /// @param contact_work_j, was_cut see EnergyDebt::finish().
+  void move(double dt, double contact_work_j, bool was_cut);
 
   bool canSleep() const { return sleep_.has_value(); }
   int sleepers() const { return sleep_ ? sleep_->sleepers() : 0; }
@@ -83,7 +86,9 @@ class MovingTissue {
   NodalVectors& v_;
   BodySystem& system_;
   std::unique_ptr<Elasticity::State> elastic_state_;
-  NodalVectors loads_;                ///< elastic forces and pressure, and weight if nodes can sleep, N
+  NodalVectors loads_;  ///< elastic forces and pressure, and weight if nodes can sleep, N
+  EnergyDebt energy_debt_;
+  bool is_free_ = false;              ///< nothing of the tissue is fixed or attached
   std::optional<TissueSleep> sleep_;  ///< none: no node ever sleeps
   bool still_changed_ = false;        ///< sleepers have changed since the elasticity was told
   std::vector<int> woken_;            ///< scratch

@@ -262,7 +262,9 @@ void Simulator::Implementation::moveTissues(double dt) {
   const auto is_finite = [](const Vector3& impulse) { return impulse.allFinite(); };
   if (std::all_of(moving.begin(), moving.end(), [](const MovingTissue& tissue) { return tissue.isFinite(); }) &&
       std::all_of(solution.impulses.begin(), solution.impulses.end(), is_finite)) {
-    for (MovingTissue& tissue : moving) tissue.move(dt);
+    const bool was_cut = report.stop != StopReason::kTolerance;
+    if (was_cut) findContactWork();
+    for (std::size_t t = 0; t < moving.size(); ++t) moving[t].move(dt, was_cut ? contact_work_j[t] : 0.0, was_cut);
     return;
   }
   report.discarded = true;
@@ -275,6 +277,19 @@ void Simulator::Implementation::moveTissues(double dt) {
   solver->reset();
   std::fill(solution.impulses.begin(), solution.impulses.end(), Vector3(0.0, 0.0, 0.0));
   std::fill(solution.states.begin(), solution.states.end(), ContactState::kOpen);
+}
+
+/// Of the step's contacts on each tissue.
+void Simulator::Implementation::findContactWork() {
+  contact_work_j.assign(moving.size(), 0.0);
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+    const ContactRow& row = problem.contacts[c];
+    const Vector3 impulse_W = row.R_WC * solution.impulses[c];
+    for (int a = 0; a < row.node_count; ++a) {
+      const RowNode& at = row.nodes[a];
+      contact_work_j[at.body] += at.weight * impulse_W.dot(solution.v[at.body].col(at.node));
+    }
+  }
 }
 
 void Simulator::Implementation::recordContacts() {

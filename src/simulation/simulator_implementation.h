@@ -48,6 +48,7 @@ struct Simulator::Implementation {
   void solve(double dt);
   bool wakeHeld(double dt, int repeats);
   void moveTissues(double dt);
+  void findContactWork();
   void recordContacts();
   void sumWrenches();
   CoarseCells coarsestCells() const;
@@ -75,7 +76,8 @@ struct Simulator::Implementation {
   std::unique_ptr<ContactSolver> solver;
   double deadline_s = std::numeric_limits<double>::infinity();  ///< of the solver, see setSolverDeadline()
   double prompt_s = std::numeric_limits<double>::infinity();
-  std::vector<int> touched_nodes;  ///< scratch
+  std::vector<int> touched_nodes;      ///< scratch
+  std::vector<double> contact_work_j;  ///< per tissue, by the contacts of a step that was cut short
   TouchedPlaces touched_places;
   std::vector<double>
       approach_m;  ///< per tissue: how near a resting shape must be for the mesh to be refined; < 0: it never is

@@ -170,7 +170,7 @@ ContactBefore StepContacts::beforeOf(const SolvedContact& inherited, const std::
 }
 
 /// A contact that begins within the step slides from then on only: what it moved tangentially before it touched goes
-/// into the velocity of its tool, for every solver alike (doc/method.md, "Landing").
+/// into the velocity of its tool, for every solver alike (doc/method.md, "Contact frames and landing").
 void StepContacts::land(const std::vector<NodalVectors>& v, double dt, std::vector<ContactRow>& rows) {
   touch_shares_.resize(contacts_.size());
   patches_.clear();

@@ -27,7 +27,6 @@
 #include <vector>
 
 #include "solver/contact_momentum.h"
-#include "solver/energy_guard.h"
 #include "solver/relaxation.h"
 #include "tissue_contact/solver/contact_solver.h"
 #include "tissue_contact/solver/solver_options.h"
@@ -57,14 +56,13 @@ class IterativePredictorCorrector : public ContactSolver {
   SolverOptions options_;
   SecondsClock clock_;
   std::unique_ptr<Relaxation> relaxation_;
-  EnergyGuard guard_;
   ContactCorrector corrector_;
   ContactMomentum momentum_;
   std::vector<Vector3> before_;  ///< impulses before the last pass, per contact, contact frame, N s
   double first_change_ = 0.0;    ///< of impulses by the first pass of the last iteration, N s; infinity: none yet
   double deadline_s_ = std::numeric_limits<double>::infinity();  ///< on clock_
   double prompt_s_ = std::numeric_limits<double>::infinity();    ///< on clock_
-  double load_scale_ = 0.0;                                      ///< loadScale(), N s
+  double load_scale_ = 0.0;                                      ///< what changes velocities, N s
 };
 
 }  // namespace tissue_contact

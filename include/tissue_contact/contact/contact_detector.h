@@ -82,7 +82,7 @@ class ContactDetector {
                Contact& contact) const;
 
   /// Turns the frame of a contact with a shape as the shape's surface turns under its point while that slides in a step, and lets the gap
-  /// follow to second order: frame and gap are then those of the step's end, as its forces are (doc/method.md, "Sliding").
+  /// follow to second order: frame and gap are then those of the step's end, as its forces are (doc/method.md, "Contact frames and landing").
   /// Only where the surface is smooth: all of a turn up to 0.1 rad and of a curvature up to 4 over its smallest half extent, nothing from
   /// twice that on (close to an edge the distance is rounded by no more than the gap); where the gap's gradient is the shape's own normal, and
   /// where the point is not deeper than a tenth of that half extent. Always takes the way along Contact::lean_W out of the gap, which the

@@ -11,7 +11,8 @@ namespace tissue_contact {
 
 /// A topic whose stamps are max_gap_s behind another's is missing or stuck where messages come at the speed they were recorded at. In a
 /// recording that is played twenty times as fast they are also behind while its connection stalls for as many milliseconds, and would all be
-/// late. So such a topic is waited for until it has not kept up for max_gap_s of wall time as well. Not thread-safe.
+/// late. So such a topic is waited for until it has not kept up for max_gap_s of wall time as well, not counting time in which this process
+/// did nothing: what came then lies unread. Not thread-safe.
 class AwaitedTopics {
  public:
   /// @param player must outlive this. @param most_s wall time, > 0.
@@ -21,18 +22,20 @@ class AwaitedTopics {
   /// @param received_s when it came, on a clock that never goes back.
   void noteReceipt(int topic, double received_s);
 
-  /// That time has come and everything received by then was handed to the player.
+  /// That time has come and everything received by then was handed to the player. At least every kLook_s while isWaiting().
   void noteTime(double now_s);
+  static constexpr double kLook_s = 0.1;
 
-  /// When the next of those topics is waited for no longer, on that clock; nothing if there is none.
-  std::optional<double> nextEnd() const;
+  /// Whether there is such a topic.
+  bool isWaiting() const;
 
  private:
   JointStatePlayer* player_;  ///< never null
   double most_s_;
-  std::vector<std::optional<double>> kept_up_s_;  ///< per topic: when it last came in time
-  std::optional<double> first_s_;                 ///< when the first state of all came
-  std::vector<bool> awaited_;                     ///< per topic
+  std::optional<double> now_s_;    ///< the last time noted
+  double running_s_ = 0.0;         ///< for how long this process has run since the first state came
+  std::vector<double> kept_up_s_;  ///< per topic: how long that was when it last came in time
+  std::vector<bool> awaited_;      ///< per topic
 };
 
 }  // namespace tissue_contact

@@ -61,7 +61,10 @@ void Stepper::run() {
       paused_ ? requests_.wait(kLook_s) : awaitStates();
       outputs_.showToNewcomer();
       requests_.answer();
-      if (paused_) continue;
+      if (paused_) {
+        if (inbox_.counts().waiting == 0) awaited_.noteTime(steadySeconds());
+        continue;
+      }
       takeReceived();
       health_.noteWork(std::nullopt);  // what the player holds counts as waiting, also when it is to play no more
       while (!stop_ && !paused_ && playNext()) requests_.answer();
@@ -85,9 +88,8 @@ AdvanceLimits Stepper::limits(int most_steps) const {
 /// For more of them, but for no longer than one that waits for another topic's may.
 void Stepper::awaitStates() {
   if (!newest_state_) {
-    const std::optional<double> end_s = awaited_.nextEnd();
-    if (!end_s) return inbox_.wait();
-    if (!inbox_.wait(std::max(0.0, *end_s - steadySeconds()))) awaited_.noteTime(steadySeconds());
+    if (!awaited_.isWaiting()) return inbox_.wait();
+    if (!inbox_.wait(AwaitedTopics::kLook_s)) awaited_.noteTime(steadySeconds());
     return;
   }
   const std::optional<std::int64_t> earliest = player_.earliestStamp();

@@ -13,7 +13,7 @@ namespace tissue_contact {
 class TopicSilence {
  public:
   /// @param topics as people know them. @param triggers whether each gives wrenches: others may stay silent from the start.
-  /// @param longest_s that a driver may be silent, > 0.
+  /// @param longest_s that a driver may be silent, > 0; one that is slower may be for three times its longest interval so far.
   TopicSilence(std::vector<std::string> topics, std::vector<bool> triggers, double longest_s);
 
   /// A look at when the last joint state of each topic came; for one look a second or so.
@@ -26,13 +26,24 @@ class TopicSilence {
   const std::string& summary() const { return summary_; }
 
  private:
-  void noteMissing(const std::vector<std::optional<double>>& heard_s, double now_s, std::vector<std::string>& lines);
+  struct Topic {
+    std::string name;
+    bool triggers = false;
+    std::optional<double> heard_s;  ///< at the look before
+    double longest_s = 0.0;         ///< that it may be silent; 0: not known, since it was heard once at most
+    bool told = false;              ///< of its present silence, or that it was never heard
+  };
 
-  std::vector<std::string> topics_;
-  std::vector<bool> triggers_;
+  void noteHeard(const std::vector<std::optional<double>>& heard_s);
+  void noteSilent(double now_s, bool others_come, std::vector<std::string>& lines);
+  void noteMissing(double now_s, bool others_come, std::vector<std::string>& lines);
+
+  std::vector<Topic> topics_;
   double longest_s_;
   std::optional<double> began_s_;  ///< first look
-  std::vector<bool> told_;         ///< per topic: of its present silence, or that it was never heard
+  std::optional<double> first_s_;  ///< first look at which some topic had been heard
+  std::optional<double> last_s_;   ///< look before
+  double apart_s_ = 0.0;           ///< that, and the one before it
   bool told_of_all_ = false;
   std::string summary_;
 };

@@ -21,30 +21,52 @@ TopicSilence twoArms() { return TopicSilence({"/a", "/b"}, {true, true}, kLonges
 TEST(TopicSilence, AnArmThatEndsIsToldOfOncePerSilence) {
   TopicSilence silence = twoArms();
   EXPECT_EQ(silence.look({100.0, 100.0}, 100.5), Lines());
-  EXPECT_EQ(silence.look({102.0, 100.0}, 102.0), Lines());
+  EXPECT_EQ(silence.look({101.0, 100.1}, 101.0), Lines());
+  EXPECT_EQ(silence.look({102.0, 100.1}, 102.0), Lines());
   EXPECT_EQ(silence.summary(), "");
-  const Lines told = silence.look({103.1, 100.0}, 103.1);
+  const Lines told = silence.look({103.2, 100.1}, 103.2);
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told[0].rfind("no joint state for 3 s on /b, while others come: what it moves stays", 0), 0U) << told[0];
   EXPECT_EQ(silence.summary(), "no joint state for 3 s on /b, while others come");
-  EXPECT_EQ(silence.look({104.1, 100.0}, 104.1), Lines());
+  EXPECT_EQ(silence.look({104.2, 100.1}, 104.2), Lines());
   EXPECT_EQ(silence.summary(), "no joint state for 4 s on /b, while others come");
   EXPECT_EQ(silence.look({105.0, 105.0}, 105.1), Lines());  // it is back
   EXPECT_EQ(silence.summary(), "");
+  EXPECT_EQ(silence.look({107.0, 105.0}, 107.0), Lines());
   EXPECT_EQ(silence.look({108.0, 105.0}, 108.1).size(), 1U);
 }
 
 TEST(TopicSilence, TheEndOfARecordingIsNoNewsForTheLog) {
   TopicSilence silence = twoArms();
   EXPECT_EQ(silence.look({100.0, 100.0}, 100.5), Lines());
-  EXPECT_EQ(silence.look({100.0, 100.0}, 110.0), Lines());
+  for (int s = 1; s <= 10; ++s) EXPECT_EQ(silence.look({100.1, 100.1}, 100.5 + s), Lines());
   EXPECT_EQ(silence.summary(), "no joint state for 10 s on /a; no joint state for 10 s on /b");
+}
+
+/// Every third of a hertz, beside a fast one.
+TEST(TopicSilence, ASlowDriverIsNotSilent) {
+  TopicSilence silence = twoArms();
+  for (int s = 0; s < 60; ++s) {
+    EXPECT_EQ(silence.look({1.0 * s, s < 5 ? std::optional<double>() : 3.0 * (s / 3)}, s + 0.1), Lines()) << s;
+    EXPECT_EQ(silence.summary(), "") << s;
+  }
+  Lines told;
+  for (int s = 60; s < 75 && told.empty(); ++s) told = silence.look({1.0 * s, 57.0}, s + 0.1);
+  EXPECT_EQ(told.size(), 1U);
+}
+
+TEST(TopicSilence, AProcessThatWasHeldUpHasNotReadWhatCame) {
+  TopicSilence silence = twoArms();
+  silence.look({1.0, 1.0}, 1.0);
+  silence.look({2.0, 2.0}, 2.0);
+  EXPECT_EQ(silence.look({7.0, 2.0}, 7.0), Lines());
+  EXPECT_EQ(silence.summary(), "");
 }
 
 TEST(TopicSilence, TopicsThatNeverComeAreToldOfAfterTenSeconds) {
   TopicSilence none = twoArms();
   EXPECT_EQ(none.look(Heard(2), 1.0), Lines());
-  EXPECT_EQ(none.look(Heard(2), 10.9), Lines());
+  for (int s = 2; s < 11; ++s) EXPECT_EQ(none.look(Heard(2), s), Lines());
   const Lines all = none.look(Heard(2), 11.0);
   ASSERT_EQ(all.size(), 1U);
   EXPECT_EQ(all[0].rfind("no joint state yet, within 10 s, on /a, /b: nothing moves", 0), 0U) << all[0];
@@ -52,11 +74,14 @@ TEST(TopicSilence, TopicsThatNeverComeAreToldOfAfterTenSeconds) {
   EXPECT_EQ(none.summary(), "");
 
   TopicSilence one({"/a", "/b", "/b/jaw"}, {true, true, false}, kLongest_s);  // a jaw that was not recorded is usual
-  EXPECT_EQ(one.look({1.0, {}, {}}, 1.0), Lines());
-  const Lines missing = one.look({11.0, {}, {}}, 11.0);
+  Lines missing;
+  for (int s = 0; s <= 20; ++s) {
+    const Lines now = one.look({s < 5 ? std::optional<double>() : 1.0 * s, {}, {}}, s);
+    EXPECT_EQ(now.size(), s == 15 ? 1U : 0U) << s;  // ten seconds after the first of all
+    missing.insert(missing.end(), now.begin(), now.end());
+  }
   ASSERT_EQ(missing.size(), 1U);
   EXPECT_EQ(missing[0].rfind("no joint state yet on /b, while others come", 0), 0U) << missing[0];
-  EXPECT_EQ(one.look({12.0, {}, {}}, 12.0), Lines());
 }
 
 }  // namespace topic_silence_test

@@ -1,4 +1,4 @@
-/// What slides over a tool: the length of the step does not turn its force (doc/method.md, "Sliding").
+/// What slides over a tool: the length of the step does not turn its force (doc/method.md, "Contact frames and landing").
 #include <gtest/gtest.h>
 
 #include <algorithm>

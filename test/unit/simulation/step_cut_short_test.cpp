@@ -1,9 +1,11 @@
 /// @file
-/// Steps that end long before the solver's tolerance, as under a deadline: they bring no energy into the tissue.
+/// Energy and momentum where steps end before the solver's tolerance, as under a deadline, and where they end at it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "support/text_scene.h"
 #include "tissue_contact/simulation/simulator.h"
@@ -35,7 +37,7 @@ Press press(const std::string& model, const std::string& solver) {
   return all;
 }
 
-/// Without the guard up to 1e8 N of .07 (one iteration), 1.06 N (three), .39 N (five). What is cut errs, at most by 1.1 % here.
+/// Before up to 1e8 N of .07 (one iteration), 1.06 N (three), .39 N (five).
 TEST(StepCutShort, BringsNoEnergyIntoTheTissue) {
   constexpr double kErrs = 0.03;
   for (const char* model : {"corotational", "neo_hookean"}) {
@@ -46,6 +48,58 @@ TEST(StepCutShort, BringsNoEnergyIntoTheTissue) {
       EXPECT_NEAR(cut.last_n, whole.last_n, kErrs * whole.last_n) << model << ", iterations: " << iterations;
     }
   }
+}
+
+/// How far down the free end of a flap (80 mm) is after each tenth of a second of its swing, m.
+std::vector<double> swing(double youngs_modulus_pa, double step_s, double seconds, const std::string& solver) {
+  Simulator simulator = makeSimulator(
+      "gravity_m_per_s2: [0, 0, -9.81]\ntissues:\n  - name: flap\n    block: {size_m: [0.08, 0.01, 0.01], cells: [16, "
+      "2, 2]}\n"
+      "    material: {model: corotational, youngs_modulus_pa: " +
+          std::to_string(youngs_modulus_pa) +
+          ", poissons_ratio: 0.45, density_kg_per_m3: 1000}\n    damping: {stiffness_s: 0.003}\n"
+          "    fixed: [{plane: {point_m: [-0.0399, 0, 0], normal: [1, 0, 0]}}]\n" +
+          onlyBall("[0, 0, 2]") + "step: {max_step_s: " + std::to_string(step_s) + "}\nsolver: {" + solver + "}\n",
+      {{"probe", probeUrdf(0.005)}});
+  Eigen::Index end = 0;
+  simulator.positions(0).row(0).maxCoeff(&end);
+  const double z = simulator.positions(0)(2, end);
+  std::vector<double> down;
+  for (int k = 0; k < 10 * seconds; ++k) {
+    simulator.advance(0.1, {Vector3(0.0, 0.0, 0.0)});
+    down.push_back(z - simulator.positions(0)(2, end));
+  }
+  return down;
+}
+
+/// Turns of half a radian in a step, which the quadratic energy of a step knows nothing of: 1e12 to 1e30 m before.
+TEST(StepCutShort, AFlapThatSwingsGainsNoEnergy) {
+  for (const double step_s : {0.01, 0.02}) {
+    for (const int iterations : {3, 5, 8, 12}) {
+      const std::vector<double> down = swing(1e4, step_s, 2.0, "iterations: " + std::to_string(iterations));
+      for (const double at : down) EXPECT_LT(std::abs(at), 0.09) << step_s << " s, iterations: " << iterations;
+    }
+  }
+}
+
+/// A tolerance over the momentum, in place of its change, let it swing from 50 mm below to 22 above.
+TEST(SolverTolerance, AFlapThatSwingsComesToRest) {
+  const std::vector<double> down = swing(3e5, 0.001, 4.0, "tolerance: 0.01");
+  const std::vector<double> whole = swing(3e5, 0.001, 4.0, "iterations: 300, tolerance: 1.0e-6");
+  for (std::size_t k = 30; k < down.size(); ++k) EXPECT_NEAR(down[k], whole[k], 0.001);
+}
+
+/// By momentum .72 of the speed.
+TEST(SolverTolerance, ABodyFallsByItsWeight) {
+  Simulator simulator = makeSimulator(
+      "gravity_m_per_s2: [0, 0, -9.81]\ntissues:\n  - name: block\n    block: {size_m: [0.08, 0.06, 0.03], cells: [10, "
+      "8, 4]}\n"
+      "    material: {youngs_modulus_pa: 5000, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n    damping: "
+      "{stiffness_s: 0.003}\n" +
+          onlyBall("[0, 0, 2]") + "step: {max_step_s: 0.001}\nsolver: {tolerance: 0.01}\n",
+      {{"probe", probeUrdf(0.005)}});
+  simulator.advance(0.5, {Vector3(0.0, 0.0, 0.0)});
+  EXPECT_NEAR(simulator.velocities(0).row(2).mean(), -9.81 * 0.5, 1e-3 * 9.81 * 0.5);
 }
 
 }  // namespace step_cut_short_test

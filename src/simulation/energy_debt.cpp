@@ -1,0 +1,76 @@
+#include "simulation/energy_debt.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tissue_contact {
+namespace {
+
+/// kg m/s.
+Vector3 momentum(const VectorX& mass, const NodalVectors& v) {
+  Vector3 sum = Vector3::Zero();
+  for (Eigen::Index i = 0; i < v.cols(); ++i) sum += mass[i] * v.col(i);
+  return sum;
+}
+
+double kineticEnergy(const VectorX& mass, const NodalVectors& v) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < v.cols(); ++i) sum += mass[i] * v.col(i).squaredNorm();
+  return 0.5 * sum;
+}
+
+}  // namespace
+
+void EnergyDebt::clear() {
+  forces_.resize(3, 0);
+  was_cut_ = false;
+  owed_j_ = 0.0;
+}
+
+void EnergyDebt::begin(const NodalVectors& forces, const VectorX& mass, const Vector3& gravity_m_per_s2, bool is_free,
+                       NodalVectors& v) {
+  double kinetic_j = kineticEnergy(mass, v);
+  if (!was_cut_ || forces_.cols() != forces.cols()) {
+    owed_j_ = 0.0;
+  } else {
+    double work_j = contact_work_j_ + dt_s_ * gravity_m_per_s2.dot(momentum(mass, v));
+    for (Eigen::Index i = 0; i < v.cols(); ++i) work_j += 0.5 * dt_s_ * (forces_.col(i) + forces.col(i)).dot(v.col(i));
+    owed_j_ = std::max(0.0, owed_j_ + kinetic_j - kinetic_j_ - work_j);
+    const Vector3 kept = is_free ? Vector3(momentum(mass, v) / mass.sum()) : Vector3(0.0, 0.0, 0.0);
+    const double there_j = kinetic_j - 0.5 * mass.sum() * kept.squaredNorm();
+    const double paid_j = std::min(owed_j_, there_j);
+    if (paid_j > 0.0) {
+      const double share = std::sqrt(1.0 - paid_j / there_j);
+      for (Eigen::Index i = 0; i < v.cols(); ++i) v.col(i) = kept + share * (v.col(i) - kept);
+      owed_j_ -= paid_j;
+      kinetic_j -= paid_j;
+    }
+  }
+  forces_ = forces;
+  kinetic_j_ = kinetic_j;
+}
+
+void EnergyDebt::finish(double dt_s, double contact_work_j, bool was_cut) {
+  dt_s_ = dt_s;
+  contact_work_j_ = contact_work_j;
+  was_cut_ = was_cut;
+}
+
+void EnergyDebt::carry(StateArchive& archive, Eigen::Index nodes) {
+  archive.carry(was_cut_);
+  if (!was_cut_) {
+    if (archive.isReading()) clear();
+    return;
+  }
+  if (archive.isReading()) forces_.setZero(3, nodes);
+  archive.carry(forces_);
+  archive.carry(kinetic_j_);
+  archive.carry(dt_s_);
+  archive.carry(contact_work_j_);
+  archive.carry(owed_j_);
+  archive.check(forces_.allFinite() && std::isfinite(kinetic_j_) && std::isfinite(dt_s_) &&
+                    std::isfinite(contact_work_j_) && owed_j_ >= 0.0,
+                "an energy or force that no tissue has");
+}
+
+}  // namespace tissue_contact
