@@ -141,8 +141,10 @@ class Recorder:
 
     def lost(self, sent):
         """How many of `sent` joint states did not reach the node, or were dropped there; waits for the next diagnostics."""
-        self.counts = None
+        with self.lock:
+            self.counts = None
         if not wait_quietly(lambda: self.counts is not None, DIAGNOSTICS_S):
+            print("no /diagnostics of the node, so whether all joint states reached it is not known", flush=True)
             return 0
         return sent - int(self.counts["joint states: received"]) + int(self.counts["joint states: dropped"])
 

@@ -22,7 +22,7 @@ double kineticEnergy(const VectorX& mass, const NodalVectors& v) {
 }  // namespace
 
 void EnergyDebt::clear() {
-  forces_.resize(3, 0);
+  forces_.clear();
   was_cut_ = false;
   owed_j_ = 0.0;
 }
@@ -30,11 +30,13 @@ void EnergyDebt::clear() {
 void EnergyDebt::begin(const NodalVectors& forces, const VectorX& mass, const Vector3& gravity_m_per_s2, bool is_free,
                        NodalVectors& v) {
   double kinetic_j = kineticEnergy(mass, v);
-  if (!was_cut_ || forces_.cols() != forces.cols()) {
+  const auto nodes = static_cast<std::size_t>(v.cols());
+  if (!was_cut_ || forces_.size() != nodes) {
     owed_j_ = 0.0;
   } else {
     double work_j = contact_work_j_ + dt_s_ * gravity_m_per_s2.dot(momentum(mass, v));
-    for (Eigen::Index i = 0; i < v.cols(); ++i) work_j += 0.5 * dt_s_ * (forces_.col(i) + forces.col(i)).dot(v.col(i));
+    for (Eigen::Index i = 0; i < v.cols(); ++i)
+      work_j += 0.5 * dt_s_ * (forces_[static_cast<std::size_t>(i)] + forces.col(i)).dot(v.col(i));
     owed_j_ = std::max(0.0, owed_j_ + kinetic_j - kinetic_j_ - work_j);
     const Vector3 kept = is_free ? Vector3(momentum(mass, v) / mass.sum()) : Vector3(0.0, 0.0, 0.0);
     const double there_j = kinetic_j - 0.5 * mass.sum() * kept.squaredNorm();
@@ -46,7 +48,8 @@ void EnergyDebt::begin(const NodalVectors& forces, const VectorX& mass, const Ve
       kinetic_j -= paid_j;
     }
   }
-  forces_ = forces;
+  forces_.resize(nodes);
+  for (std::size_t i = 0; i < nodes; ++i) forces_[i] = forces.col(static_cast<Eigen::Index>(i));
   kinetic_j_ = kinetic_j;
 }
 
@@ -62,14 +65,15 @@ void EnergyDebt::carry(StateArchive& archive, Eigen::Index nodes) {
     if (archive.isReading()) clear();
     return;
   }
-  if (archive.isReading()) forces_.setZero(3, nodes);
+  if (archive.isReading()) forces_.assign(static_cast<std::size_t>(nodes), Vector3::Zero());
   archive.carry(forces_);
   archive.carry(kinetic_j_);
   archive.carry(dt_s_);
   archive.carry(contact_work_j_);
   archive.carry(owed_j_);
-  archive.check(forces_.allFinite() && std::isfinite(kinetic_j_) && std::isfinite(dt_s_) &&
-                    std::isfinite(contact_work_j_) && owed_j_ >= 0.0,
+  archive.check(std::all_of(forces_.begin(), forces_.end(), [](const Vector3& force) { return force.allFinite(); }) &&
+                    std::isfinite(kinetic_j_) && std::isfinite(dt_s_) && dt_s_ > 0.0 &&
+                    std::isfinite(contact_work_j_) && std::isfinite(owed_j_) && owed_j_ >= 0.0,
                 "an energy or force that no tissue has");
 }
 

@@ -2,6 +2,8 @@
 /// Room `simulation`, private: energy that steps which ended before the solver's tolerance have brought into a tissue.
 #pragma once
 
+#include <vector>
+
 #include "tissue_contact/core/state_archive.h"
 #include "tissue_contact/core/types.h"
 
@@ -9,7 +11,7 @@ namespace tissue_contact {
 
 /// Implicit steps are stable once they are solved. What a few iterations reach may hold more energy than the step before and what did work
 /// since, and steps that pass it on grow without bound. So after a step that was cut short its balance is made up (doc/method.md, "When a
-/// step ends"), and what there is too much is taken from the velocities, as far as they go, in this step or later ones.
+/// step ends"), and what there is too much is taken from the velocities, as far as they go, in this step or later ones until one is solved.
 class EnergyDebt {
  public:
   /// Nothing is owed, and the next step has none before it.
@@ -18,7 +20,8 @@ class EnergyDebt {
   /// A step begins. Slows `v` down by what is owed. Allocates only for more nodes than ever before.
   /// @param forces elastic forces, attachments and pressure where the nodes are, N, 3 x nodes.
   /// @param mass kg, per node.
-  /// @param is_free nothing of the tissue is fixed: the velocity of its centre of mass is left alone, since no force of its own changes that.
+  /// @param is_free nothing of the tissue is fixed: the velocity of its centre of mass is left alone, since no force of its own changes that (nor its spin,
+  /// which is not kept).
   /// @param v velocities, m/s, 3 x nodes; those that finish() was followed by.
   void begin(const NodalVectors& forces, const VectorX& mass, const Vector3& gravity_m_per_s2, bool is_free,
              NodalVectors& v);
@@ -31,10 +34,10 @@ class EnergyDebt {
   void carry(StateArchive& archive, Eigen::Index nodes);
 
  private:
-  NodalVectors forces_;        ///< where the last step began, N; no columns: none
-  double kinetic_j_ = 0.0;     ///< as it began
-  double dt_s_ = 0.0;          ///< of it
-  double contact_work_j_ = 0;  ///< in it
+  std::vector<Vector3> forces_;  ///< per node, where the last step began, N; keeps its memory when it is cleared
+  double kinetic_j_ = 0.0;       ///< as it began
+  double dt_s_ = 0.0;            ///< of it
+  double contact_work_j_ = 0;    ///< in it
   bool was_cut_ = false;
   double owed_j_ = 0.0;
 };

@@ -28,6 +28,7 @@ void JointStatePlayer::forgetSamples() {
     topic.named.clear();
     topic.held.clear();
     topic.last.reset();
+    topic.awaited = false;
   }
   newest_.reset();
   released_.reset();

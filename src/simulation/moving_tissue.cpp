@@ -1,6 +1,7 @@
 #include "simulation/moving_tissue.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "simulation/advisor.h"
 
@@ -125,6 +126,10 @@ void MovingTissue::assemble(double dt) {
   for (int i = 0; i < tissue_.nodeCount(); ++i) {
     if ((*system_.fixed)[i]) system_.b.col(i).setZero();
   }
+  double change = 0.0;
+  for (int i = 0; i < tissue_.nodeCount(); ++i)
+    change += (system_.b.col(i) - system_.mass[i] * v_.col(i)).squaredNorm();
+  system_.change_n_s = std::sqrt(change);
 }
 
 bool MovingTissue::wakeHeld(std::optional<double> pressing_n, double dt, int repeats) {

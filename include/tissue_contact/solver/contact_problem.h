@@ -33,6 +33,8 @@ struct BodySystem {
   double damping_scale = 0.0;       ///< s: dt where there is a D
   VectorX mass;                     ///< kg, per node
   NodalVectors b;                   ///< N s; finite, of fixed nodes too
+  /// |b - M v0|, N s: what changes velocities in the step, which a solver's tolerance is a part of. Negative: |b|.
+  double change_n_s = -1.0;
 };
 
 /// A node a contact acts on.

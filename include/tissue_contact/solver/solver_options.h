@@ -24,7 +24,7 @@ struct SolverOptions {
   RelaxationKind relaxation = RelaxationKind::kGaussSeidel;
   int iterations = 30;      ///< upper bound on iterations (relaxation + contact passes) per step
   int contact_passes = 20;  ///< upper bound on passes over the contacts per iteration
-  /// Stop when an iteration changes momentum, and contacts' part of it, by less (relative to the load and the impulses), and all nodes together lack less
+  /// Stop when an iteration changes momentum, and contacts' part of it, by less (relative to what changes velocities in the step and to the impulses), and all nodes together lack less
   /// than twice this of the load and the sum of the impulses. Leaves .03 to .7 % of error in six scenes (doc/notes/method.md).
   double tolerance = 1e-3;
   double time_budget_s = 0.0;  ///< stop after this wall time per step; 0: none. Gives up bit-identical replay

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "ros/conversions.h"
-#include "tissue_contact/core/text.h"
 #include "tissue_contact/ros/environment.h"
 
 namespace tissue_contact {

@@ -31,13 +31,14 @@ std::vector<std::string> TopicSilence::look(const std::vector<std::optional<doub
   std::vector<std::string> lines;
   summary_.clear();
   if (!began_s_) began_s_ = now_s;
+  const double apart_s = now_s - last_s_.value_or(now_s);
+  const bool was_held_up = apart_s > longest_s_ && apart_s > 2.0 * apart_s_;  // what has come may lie unread
+  last_s_ = now_s;
+  apart_s_ = apart_s;
+  for (Topic& topic : topics_) topic.is_silent |= was_held_up;
   noteHeard(heard_s);
   const auto is_heard = [](const Topic& topic) { return topic.heard_s.has_value(); };
   if (!first_s_ && std::any_of(topics_.begin(), topics_.end(), is_heard)) first_s_ = now_s;
-  const double apart_s = now_s - last_s_.value_or(now_s);
-  const bool was_held_up = apart_s > longest_s_ && apart_s > 2.0 * apart_s_;  // what has come lies unread
-  last_s_ = now_s;
-  apart_s_ = apart_s;
   if (was_held_up) return lines;
   const auto comes = [&](const Topic& topic) { return topic.heard_s && now_s - *topic.heard_s <= kOfLate_s; };
   const bool others_come = std::any_of(topics_.begin(), topics_.end(), comes);
@@ -50,12 +51,11 @@ void TopicSilence::noteHeard(const std::vector<std::optional<double>>& heard_s) 
   for (std::size_t t = 0; t < topics_.size(); ++t) {
     Topic& topic = topics_[t];
     if (heard_s[t] == topic.heard_s) continue;
-    if (!topic.heard_s) {
-      topic.told = false;
-    } else if (!topic.told) {
+    if (topic.heard_s && !topic.is_silent) {
       constexpr double kIntervals = 3.0;
       topic.longest_s = std::max({topic.longest_s, longest_s_, kIntervals * (*heard_s[t] - *topic.heard_s)});
     }
+    topic.is_silent = false;
     topic.heard_s = heard_s[t];
   }
 }
@@ -64,14 +64,15 @@ void TopicSilence::noteSilent(double now_s, bool others_come, std::vector<std::s
   for (Topic& topic : topics_) {
     if (!(topic.longest_s > 0.0)) continue;
     const double silent_s = now_s - *topic.heard_s;
+    topic.is_silent |= silent_s > topic.longest_s;
     if (silent_s <= topic.longest_s) {
-      topic.told = false;
+      topic.told_of_silence = false;
       continue;
     }
     const std::string line = "no joint state for " + secondsText(silent_s) + " on " + topic.name +
                              (others_come ? ", while others come" : "");
     summary_ += (summary_.empty() ? "" : "; ") + line;
-    if (!others_come || std::exchange(topic.told, true)) continue;
+    if (!others_come || std::exchange(topic.told_of_absence, true)) continue;
     lines.push_back(
         line + ": what it moves stays where it was, and its forces go on. Has its driver ended? See `rostopic hz`");
   }
@@ -89,7 +90,7 @@ void TopicSilence::noteMissing(double now_s, bool others_come, std::vector<std::
   }
   if (!others_come || now_s - *first_s_ < kPatience_s) return;
   for (Topic& topic : topics_) {
-    if (topic.heard_s || !topic.triggers || std::exchange(topic.told, true)) continue;
+    if (topic.heard_s || !topic.triggers || std::exchange(topic.told_of_absence, true)) continue;
     lines.push_back("no joint state yet on " + topic.name +
                     ", while others come: what it moves stays at its initial position, without a wrench. Does "
                     "`rostopic info` name a publisher?");

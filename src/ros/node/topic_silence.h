@@ -13,7 +13,7 @@ namespace tissue_contact {
 class TopicSilence {
  public:
   /// @param topics as people know them. @param triggers whether each gives wrenches: others may stay silent from the start.
-  /// @param longest_s that a driver may be silent, > 0; one that is slower may be for three times its longest interval so far.
+  /// @param longest_s that a driver may be silent, > 0; one that is slower may be for three times its longest usual interval so far.
   TopicSilence(std::vector<std::string> topics, std::vector<bool> triggers, double longest_s);
 
   /// A look at when the last joint state of each topic came; for one look a second or so.
@@ -31,7 +31,9 @@ class TopicSilence {
     bool triggers = false;
     std::optional<double> heard_s;  ///< at the look before
     double longest_s = 0.0;         ///< that it may be silent; 0: not known, since it was heard once at most
-    bool told = false;              ///< of its present silence, or that it was never heard
+    bool is_silent = false;  ///< for longer than that, or this process was held up: what ends it is no usual interval
+    bool told_of_silence = false;  ///< the present one
+    bool told_of_absence = false;  ///< that it was never heard
   };
 
   void noteHeard(const std::vector<std::optional<double>>& heard_s);

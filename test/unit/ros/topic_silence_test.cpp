@@ -55,6 +55,22 @@ TEST(TopicSilence, ASlowDriverIsNotSilent) {
   EXPECT_EQ(told.size(), 1U);
 }
 
+/// Neither a recording that is played again after a pause nor a process that was stopped makes a driver a slow one.
+TEST(TopicSilence, APauseIsNoUsualInterval) {
+  for (const bool held_up : {false, true}) {
+    TopicSilence silence = twoArms();
+    for (int s = 0; s < 5; ++s) silence.look({1.0 * s, 1.0 * s}, s);
+    for (int s = 5; s < 65 && !held_up; ++s) silence.look({4.0, 4.0}, s);
+    for (int s = 65; s < 70; ++s) EXPECT_EQ(silence.look({1.0 * s, 1.0 * s}, s), Lines());
+    EXPECT_EQ(silence.summary(), "");
+    Lines told;
+    for (int s = 70; s < 74; ++s) {
+      for (const std::string& line : silence.look({1.0 * s, 69.0}, s)) told.push_back(line);
+    }
+    EXPECT_EQ(told.size(), 1U) << held_up;
+  }
+}
+
 TEST(TopicSilence, AProcessThatWasHeldUpHasNotReadWhatCame) {
   TopicSilence silence = twoArms();
   silence.look({1.0, 1.0}, 1.0);
