@@ -72,7 +72,7 @@ void TopicSilence::noteSilent(double now_s, bool others_come, std::vector<std::s
     const std::string line = "no joint state for " + secondsText(silent_s) + " on " + topic.name +
                              (others_come ? ", while others come" : "");
     summary_ += (summary_.empty() ? "" : "; ") + line;
-    if (!others_come || std::exchange(topic.told_of_absence, true)) continue;
+    if (!others_come || std::exchange(topic.told_of_silence, true)) continue;
     lines.push_back(
         line + ": what it moves stays where it was, and its forces go on. Has its driver ended? See `rostopic hz`");
   }
