@@ -19,7 +19,17 @@ double kineticEnergy(const VectorX& mass, const NodalVectors& v) {
   return 0.5 * sum;
 }
 
+/// That of the centre of mass of a free body.
+Vector3 keptVelocity(const VectorX& mass, bool is_free, const NodalVectors& v) {
+  return is_free ? Vector3(momentum(mass, v) / mass.sum()) : Vector3(0.0, 0.0, 0.0);
+}
+
 }  // namespace
+
+void slowDown(const VectorX& mass, bool is_free, double share, NodalVectors& v) {
+  const Vector3 kept = keptVelocity(mass, is_free, v);
+  for (Eigen::Index i = 0; i < v.cols(); ++i) v.col(i) = kept + share * (v.col(i) - kept);
+}
 
 void EnergyDebt::clear() {
   forces_.clear();
@@ -38,12 +48,10 @@ void EnergyDebt::begin(const NodalVectors& forces, const VectorX& mass, const Ve
     for (Eigen::Index i = 0; i < v.cols(); ++i)
       work_j += 0.5 * dt_s_ * (forces_[static_cast<std::size_t>(i)] + forces.col(i)).dot(v.col(i));
     owed_j_ = std::max(0.0, owed_j_ + kinetic_j - kinetic_j_ - work_j);
-    const Vector3 kept = is_free ? Vector3(momentum(mass, v) / mass.sum()) : Vector3(0.0, 0.0, 0.0);
-    const double there_j = kinetic_j - 0.5 * mass.sum() * kept.squaredNorm();
+    const double there_j = kinetic_j - 0.5 * mass.sum() * keptVelocity(mass, is_free, v).squaredNorm();
     const double paid_j = std::min(owed_j_, there_j);
     if (paid_j > 0.0) {
-      const double share = std::sqrt(1.0 - paid_j / there_j);
-      for (Eigen::Index i = 0; i < v.cols(); ++i) v.col(i) = kept + share * (v.col(i) - kept);
+      slowDown(mass, is_free, std::sqrt(1.0 - paid_j / there_j), v);
       owed_j_ -= paid_j;
       kinetic_j -= paid_j;
     }

@@ -9,6 +9,10 @@
 
 namespace tissue_contact {
 
+/// Leaves a share of the velocities `v` (3 x nodes); of a tissue of which nothing is fixed of those about the centre of mass's, which no force of
+/// its own changes (its spin is not kept).
+void slowDown(const VectorX& mass, bool is_free, double share, NodalVectors& v);
+
 /// Implicit steps are stable once they are solved. What a few iterations reach may hold more energy than the step before and what did work
 /// since, and steps that pass it on grow without bound. So after a step that was cut short its balance is made up (doc/method.md, "When a
 /// step ends"), and what there is too much is taken from the velocities, as far as they go, in this step or later ones until one is solved.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "simulation/advisor.h"
+#include "simulation/element_inversion.h"
 
 namespace tissue_contact {
 
@@ -142,6 +143,12 @@ bool MovingTissue::wakeHeld(std::optional<double> pressing_n, double dt, int rep
 /// What the sleepers may be held by in all, N.
 double MovingTissue::allowedHeldForce(std::optional<double> pressing_n) const {
   return scene_.advisor.sleep_error * (pressing_n ? *pressing_n : sleep_->ownForce());
+}
+
+void MovingTissue::keepElements(double dt) {
+  if (system_.asleep) return;
+  const double share = shareBeforeInversion(tissue_, x_, v_, dt, is_fast_);
+  if (share < 1.0) slowDown(tissue_.nodeMasses(), is_free_, share, v_);
 }
 
 void MovingTissue::move(double dt, double contact_work_j, bool was_cut) {

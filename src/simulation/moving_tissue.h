@@ -67,6 +67,8 @@ class MovingTissue {
   bool wakeHeld(std::optional<double> pressing_n, double dt, int repeats);
 
   bool isFinite() const { return system_.asleep || v_.allFinite(); }  ///< the answer of the step
+  /// After a step that ended before the tolerance: slows v down to where it turns no element inside out in `dt`. @pre isFinite()
+  void keepElements(double dt);
   /// x += dt v.
   /// @param contact_work_j, was_cut see EnergyDebt::finish().
   void move(double dt, double contact_work_j, bool was_cut);
@@ -92,6 +94,7 @@ class MovingTissue {
   std::optional<TissueSleep> sleep_;  ///< none: no node ever sleeps
   bool still_changed_ = false;        ///< sleepers have changed since the elasticity was told
   std::vector<int> woken_;            ///< scratch
+  std::vector<char> is_fast_;         ///< scratch
 };
 
 }  // namespace tissue_contact

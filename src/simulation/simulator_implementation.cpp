@@ -263,7 +263,10 @@ void Simulator::Implementation::moveTissues(double dt) {
   if (std::all_of(moving.begin(), moving.end(), [](const MovingTissue& tissue) { return tissue.isFinite(); }) &&
       std::all_of(solution.impulses.begin(), solution.impulses.end(), is_finite)) {
     const bool was_cut = report.stop != StopReason::kTolerance;
-    if (was_cut) findContactWork();
+    if (was_cut) {
+      for (MovingTissue& tissue : moving) tissue.keepElements(dt);
+      findContactWork();
+    }
     for (std::size_t t = 0; t < moving.size(); ++t) moving[t].move(dt, was_cut ? contact_work_j[t] : 0.0, was_cut);
     return;
   }

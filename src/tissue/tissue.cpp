@@ -1,9 +1,11 @@
 #include "tissue_contact/tissue/tissue.h"
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
+#include "mesh/face_table.h"
 #include "tissue/attached_elasticity.h"
 #include "tissue/membrane.h"
 #include "tissue/placed_mesh.h"
@@ -226,6 +228,18 @@ VectorX lumpedMasses(const Tissue& tissue, const ElementMaterials& materials) {
   return masses;
 }
 
+double smallestHeightOf(const NodalVectors& x, const std::vector<Tetrahedron>& tetrahedra) {
+  double smallest = tetrahedra.empty() ? 0.0 : std::numeric_limits<double>::infinity();
+  for (const Tetrahedron& nodes : tetrahedra) {
+    double largest_area = 0.0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      largest_area = std::max(largest_area, triangleArea(x, outwardFace(nodes, i)));
+    }
+    smallest = std::min(smallest, 3.0 * signedVolume(x, nodes) / largest_area);
+  }
+  return smallest;
+}
+
 }  // namespace
 
 struct Tissue::ElasticParts {
@@ -254,6 +268,7 @@ Tissue::Tissue(const TissueDescription& description, PlacedMesh&& placed)
   element_regions_ = std::move(placed.element_regions);
   surface_fibres_ = std::move(placed.surface_fibres);
   pressed_ = std::move(placed.pressed);
+  smallest_height_ = smallestHeightOf(rest_, tetrahedra_);
   changeMaterials(description);
 }
 

@@ -151,6 +151,9 @@ class JointSource:
         for stamp, positions in samples:
             self.send(stamp, positions)
 
+    def close(self):
+        self._publisher.unregister()
+
 
 def press(count=100, start_s=START_S, depth_m=0.005):
     """(stamp, positions) at 100 Hz: down 1 mm + depth, a little sideways, and up again."""

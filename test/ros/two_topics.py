@@ -116,6 +116,27 @@ class TwoTopics(harness.TestCase):
             self.assertEqual([(harness.stamp_text(w.header.stamp), harness.wrench_bits(w)) for w in wrenches[:100]],
                              expected, name)
 
+    def test_what_waits_for_a_topic_that_ended_first_is_played_once_nobody_publishes(self):
+        ahead = 15  # 0.15 s of stamps; max_gap_s is 0.2 s
+        bag = self.path("ends.bag")
+        harness.write_messages(bag, [(harness.TOPIC, harness.joint_state(*sample), sample[0]) for sample in self.samples] + [
+            ("/other/joint_states", harness.joint_state(*sample), sample[0]) for sample in self.samples[:-ahead]])
+        csv = self.path("out.csv")
+        self.replayed(self.scene, bag, csv)
+        expected = [(stamp, bits) for stamp, instrument, bits in harness.read_csv(csv) if instrument == "probe"]
+        with harness.node(self.scene):
+            wrenches = harness.wrenches()
+            first, second = harness.JointSource(harness.TOPIC), harness.JointSource("/other/joint_states")
+            first.send_all(self.samples)
+            second.send_all(self.samples[:-ahead])
+            wrenches.wait_for_stamp(self.samples[-ahead - 1][0])
+            rospy.rostime.wallsleep(1.0)
+            self.assertEqual(len(wrenches.messages), len(self.samples) - ahead)  # both may go on
+            first.close()
+            second.close()
+            got = wrenches.wait_for_stamp(self.samples[-1][0])
+        self.assertEqual([(harness.stamp_text(w.header.stamp), harness.wrench_bits(w)) for w in got], expected)
+
     def test_frames_of_links_with_one_name_have_the_instruments(self):
         with harness.node(self.changed_scene({"tf: false": "tf: true"}, source=self.scene, name="tf.yaml")):
             tf = harness.Listener("/tf", TFMessage)

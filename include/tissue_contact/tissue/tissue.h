@@ -51,6 +51,9 @@ class Tissue {
   const std::vector<Tetrahedron>& tetrahedra() const { return tetrahedra_; }  ///< none for a membrane
   const std::vector<Triangle>& surface() const { return surface_; }           ///< a membrane's triangles, once each
 
+  /// Of all tetrahedra at rest, m; 0: there are none.
+  double smallestHeight() const { return smallest_height_; }
+
   /// Thickness of a membrane, m: it can be touched from both sides, at half of it from its triangles. 0: a volume.
   double thickness() const { return thickness_; }
 
@@ -94,7 +97,7 @@ class Tissue {
   std::vector<bool> fixed_;
   VectorX masses_;
   DampingDescription damping_;
-  double thickness_ = 0.0;
+  double thickness_ = 0.0, smallest_height_ = 0.0;
   std::vector<int> surface_regions_, element_regions_;
   std::vector<std::vector<int>> stiff_parts_;
   std::vector<Vector2> surface_fibres_;

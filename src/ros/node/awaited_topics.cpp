@@ -14,6 +14,7 @@ AwaitedTopics::AwaitedTopics(JointStatePlayer& player, double most_s)
 void AwaitedTopics::noteReceipt(int topic, double received_s) {
   if (!now_s_) now_s_ = received_s;
   noteTime(received_s);
+  received_s_ = running_s_;
   if (!player_->isOvertaken(topic)) kept_up_s_[static_cast<std::size_t>(topic)] = running_s_;
 }
 

@@ -29,11 +29,15 @@ class AwaitedTopics {
   /// Whether there is such a topic.
   bool isWaiting() const;
 
+  /// Whether nothing has come on any topic for as long, not counting time in which this process did nothing.
+  bool isSilent() const { return now_s_ && !(running_s_ < received_s_ + most_s_); }
+
  private:
   JointStatePlayer* player_;  ///< never null
   double most_s_;
   std::optional<double> now_s_;    ///< the last time noted
   double running_s_ = 0.0;         ///< for how long this process has run since the first state came
+  double received_s_ = 0.0;        ///< how long that was when the last state came
   std::vector<double> kept_up_s_;  ///< per topic: how long that was when it last came in time
   std::vector<bool> awaited_;      ///< per topic
 };

@@ -362,6 +362,8 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   const LagVerdict lag = judgeLag(worst_lag_s, bound_s);
   const auto two_clocks = static_cast<std::size_t>(Verdict::kTwoClocks);
   const bool is_strained = now.newest_state && now.lengthened > told_.lengthened;
+  const bool is_implausible = now.implausible > told_.implausible;
+  const std::string unbearable = "forces that no tissue bears: " + now.last_implausible;
   if (now.failed) {
     status.summary(Level::ERROR, "has stopped: see the log");
   } else if (now.broken) {
@@ -373,8 +375,10 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   } else if (lag != LagVerdict::kWithinBound) {
     status.summaryf(lag == LagVerdict::kFarOverBound ? Level::ERROR : Level::WARN,
                     "wrenches late by up to %.3g s, more than %.3g s", worst_lag_s, bound_s);
-  } else if (now.implausible > told_.implausible) {
-    status.summary(Level::WARN, "forces that no tissue bears: " + now.last_implausible);
+    if (is_implausible) status.mergeSummary(Level::WARN, unbearable);
+    if (!silence_.summary().empty()) status.mergeSummary(Level::WARN, silence_.summary());
+  } else if (is_implausible) {
+    status.summary(Level::WARN, unbearable);
   } else if (now.coarse > told_.coarse) {
     status.summary(Level::WARN, now.last_coarse);
   } else if (!silence_.summary().empty()) {
@@ -386,7 +390,8 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   } else {
     status.summary(Level::OK, now.accepted > 0 ? "running" : "no joint state yet");
   }
-  if (advised_ || now.paused || (lag == LagVerdict::kWithinBound && !is_strained)) return;
+  const bool waits_for_topic = !silence_.summary().empty();  // late for that, not for want of time
+  if (advised_ || now.paused || waits_for_topic || (lag == LagVerdict::kWithinBound && !is_strained)) return;
   advised_ = true;
   ROS_WARN_STREAM("does not keep up: " << keepUpAdvice(now, simulator_.scene().step.max_step_s, max_lag_s_, nodes_));
 }

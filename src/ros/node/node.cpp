@@ -147,6 +147,7 @@ Node::Node(const ros::NodeHandle& node, const ros::NodeHandle& private_node, con
       ROS_INFO_STREAM("advisor: " << advice.text);
     }
   }
+  stepper_.setMoreMayCome([this] { return receiver_.anyPublishes(); });
   health_.setPublishers([this](int topic) { return receiver_.publishers(topic); });
   updater_.setHardwareID("none");
   updater_.add("tissue contact", [this](diagnostic_updater::DiagnosticStatusWrapper& status) {

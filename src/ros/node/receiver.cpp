@@ -3,6 +3,7 @@
 #include <ros/time.h>
 #include <ros/transport_hints.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -20,17 +21,30 @@ constexpr int kRoscppQueue = 1;
 void Receiver::start(const std::vector<std::string>& topics) {
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   if (ros::Time::isSimTime()) {
-    subscribers_.push_back(node_.subscribe("/clock", kRoscppQueue, &Receiver::watchClock, this, hints));
+    clock_subscriber_ = node_.subscribe("/clock", kRoscppQueue, &Receiver::watchClock, this, hints);
   }
   for (std::size_t i = 0; i < topics.size(); ++i) {
     const boost::function<void(const ros::MessageEvent<const sensor_msgs::JointState>&)> callback =
         [this, i](const ros::MessageEvent<const sensor_msgs::JointState>& event) { take(static_cast<int>(i), event); };
-    subscribers_.push_back(
-        node_.subscribe<sensor_msgs::JointState>(topics[i], kRoscppQueue, callback, ros::VoidConstPtr(), hints));
+    const ros::Subscriber subscriber =
+        node_.subscribe<sensor_msgs::JointState>(topics[i], kRoscppQueue, callback, ros::VoidConstPtr(), hints);
+    const std::lock_guard<std::mutex> lock(subscribers_mutex_);
+    subscribers_.push_back(subscriber);
   }
 }
 
-void Receiver::stop() { subscribers_.clear(); }
+void Receiver::stop() {
+  clock_subscriber_.shutdown();
+  std::vector<ros::Subscriber> ended;  // outside the lock: this waits for callbacks
+  const std::lock_guard<std::mutex> lock(subscribers_mutex_);
+  ended.swap(subscribers_);
+}
+
+bool Receiver::anyPublishes() const {
+  const std::lock_guard<std::mutex> lock(subscribers_mutex_);
+  return std::any_of(subscribers_.begin(), subscribers_.end(),
+                     [](const ros::Subscriber& subscriber) { return subscriber.getNumPublishers() > 0; });
+}
 
 std::int64_t Receiver::missing() const {
   const std::lock_guard<std::mutex> lock(gaps_mutex_);

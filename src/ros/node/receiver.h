@@ -40,6 +40,8 @@ class Receiver {
   std::int64_t missing() const;
   /// Names of those heard on the topic. Any thread.
   std::string publishers(int topic) const;
+  /// Whether any topic has a publisher now. Any thread.
+  bool anyPublishes() const;
 
  private:
   /// Calls back where roscpp would queue: in its reading thread, one at a time.
@@ -61,7 +63,9 @@ class Receiver {
   JointStateInbox& inbox_;
   AtOnce at_once_;
   ros::NodeHandle node_;
-  std::vector<ros::Subscriber> subscribers_;
+  ros::Subscriber clock_subscriber_;
+  mutable std::mutex subscribers_mutex_;
+  std::vector<ros::Subscriber> subscribers_;  ///< per topic
   mutable std::mutex gaps_mutex_;
   SequenceGaps gaps_;
   // Callbacks alone.

@@ -88,8 +88,10 @@ AdvanceLimits Stepper::limits(int most_steps) const {
 /// For more of them, but for no longer than one that waits for another topic's may.
 void Stepper::awaitStates() {
   if (!newest_state_) {
-    if (!awaited_.isWaiting()) return inbox_.wait();
-    if (!inbox_.wait(AwaitedTopics::kLook_s)) awaited_.noteTime(steadySeconds());
+    if (!awaited_.isWaiting() && player_.waiting() == 0) return inbox_.wait();
+    if (inbox_.wait(AwaitedTopics::kLook_s)) return;
+    awaited_.noteTime(steadySeconds());
+    if (awaited_.isSilent() && !more_may_come_()) player_.stopWaiting();
     return;
   }
   const std::optional<std::int64_t> earliest = player_.earliestStamp();

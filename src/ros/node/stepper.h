@@ -4,9 +4,11 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "ros/joint_watch.h"
 #include "ros/node/awaited_topics.h"
@@ -33,6 +35,9 @@ class Stepper {
   ~Stepper();
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
+
+  /// Whether joint states may still come; without it they always may. Called on the thread. Before start().
+  void setMoreMayCome(std::function<bool()> more_may_come) { more_may_come_ = std::move(more_may_come); }
 
   void start();
 
@@ -75,6 +80,8 @@ class Stepper {
   Outputs& outputs_;
   Health& health_;
   LiveTuning& tuning_;
+
+  std::function<bool()> more_may_come_ = [] { return true; };
 
   // The thread's alone.
   PolicyChooser chooser_;

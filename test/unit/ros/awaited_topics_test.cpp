@@ -60,6 +60,20 @@ TEST_F(Awaited, OneThatWasNeverHeardCountsFromTheFirstStateOfAll) {
   EXPECT_EQ(drain(player).size(), 11U);
 }
 
+TEST_F(Awaited, SilenceIsOfAllTopics) {
+  EXPECT_FALSE(awaited.isSilent());
+  receive(0, kSecond, 5.0);
+  awaited.noteTime(5.049);
+  EXPECT_FALSE(awaited.isSilent());
+  receive(1, kSecond, 5.0495);
+  awaited.noteTime(5.0501);
+  EXPECT_FALSE(awaited.isSilent());
+  awaited.noteTime(5.1);
+  EXPECT_TRUE(awaited.isSilent());
+  receive(0, kSecond + kMillisecond, 5.1);
+  EXPECT_FALSE(awaited.isSilent());
+}
+
 /// A process that was stopped, or did not get to run, has the states of some connections before those of others.
 TEST_F(Awaited, TimeInWhichTheProcessDidNothingDoesNotCount) {
   AwaitedTopics longer(player, 0.5);
