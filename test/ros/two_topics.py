@@ -117,24 +117,27 @@ class TwoTopics(harness.TestCase):
                              expected, name)
 
     def test_what_waits_for_a_topic_that_ended_first_is_played_once_nobody_publishes(self):
-        ahead = 15  # 0.15 s of stamps; max_gap_s is 0.2 s
+        topics = "/ends_last", "/ends_first"  # of no other test, which would publish on them still
+        scene = self.changed_scene({"[%s]" % harness.TOPIC: "[%s]" % topics[0], "[/other/joint_states]": "[%s]" % topics[1]},
+                                   source=self.scene, name="ends.yaml")
+        samples = self.samples, self.samples[:-15]  # 0.15 s of stamps less; max_gap_s is 0.2 s
         bag = self.path("ends.bag")
-        harness.write_messages(bag, [(harness.TOPIC, harness.joint_state(*sample), sample[0]) for sample in self.samples] + [
-            ("/other/joint_states", harness.joint_state(*sample), sample[0]) for sample in self.samples[:-ahead]])
+        harness.write_messages(bag, [(topic, harness.joint_state(*sample), sample[0])
+                                     for topic, all in zip(topics, samples) for sample in all])
         csv = self.path("out.csv")
-        self.replayed(self.scene, bag, csv)
+        self.replayed(scene, bag, csv)
         expected = [(stamp, bits) for stamp, instrument, bits in harness.read_csv(csv) if instrument == "probe"]
-        with harness.node(self.scene):
+        with harness.node(scene):
             wrenches = harness.wrenches()
-            first, second = harness.JointSource(harness.TOPIC), harness.JointSource("/other/joint_states")
-            first.send_all(self.samples)
-            second.send_all(self.samples[:-ahead])
-            wrenches.wait_for_stamp(self.samples[-ahead - 1][0])
+            sources = [harness.JointSource(topic) for topic in topics]
+            for source, all in zip(sources, samples):
+                source.send_all(all)
+            wrenches.wait_for_stamp(samples[1][-1][0])
             rospy.rostime.wallsleep(1.0)
-            self.assertEqual(len(wrenches.messages), len(self.samples) - ahead)  # both may go on
-            first.close()
-            second.close()
-            got = wrenches.wait_for_stamp(self.samples[-1][0])
+            self.assertEqual(len(wrenches.messages), len(samples[1]))  # both may go on
+            for source in sources:
+                source.close()
+            got = wrenches.wait_for_stamp(samples[0][-1][0])
         self.assertEqual([(harness.stamp_text(w.header.stamp), harness.wrench_bits(w)) for w in got], expected)
 
     def test_frames_of_links_with_one_name_have_the_instruments(self):
