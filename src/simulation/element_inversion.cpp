@@ -8,6 +8,8 @@ namespace {
 constexpr double kHasSay = 0.1;  // of the volume at rest
 constexpr double kLeast = 0.05;  // likewise
 constexpr double kNext = 0.7;    // share to try next
+/// Tissue that is slower than that beside a tool that is not lets the tool through.
+constexpr double kLeastShare = 0.5;
 /// An element that keeps this share of its volume is not looked at further.
 constexpr double kSurely = kLeast / kHasSay;
 /// Nodes that go less far, over the smallest height at rest, cannot take that share from an element that has a say: its heights are a tenth
@@ -38,7 +40,10 @@ double shareBeforeInversion(const Tissue& tissue, const NodalVectors& x, const N
     if (volumeAfter(x, v, share * dt_s, element) >= kSurely * before) continue;
     const double at_rest = signedVolume(tissue.restPositions(), element);
     if (before < kHasSay * at_rest) continue;
-    while (volumeAfter(x, v, share * dt_s, element) < kLeast * at_rest) share *= kNext;
+    while (volumeAfter(x, v, share * dt_s, element) < kLeast * at_rest) {
+      if (share * kNext <= kLeastShare) return kLeastShare;
+      share *= kNext;
+    }
   }
   return share;
 }

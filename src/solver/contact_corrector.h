@@ -50,8 +50,9 @@ class ContactCorrector {
 
  private:
   /// Changes between sticking and sliding a contact may make in one step before it is held to the kinetic limit: with
-  /// mu_static > mu_kinetic both can be consistent, and the iteration would cycle between them.
-  static constexpr int kMaxFlips = 4;
+  /// mu_static > mu_kinetic both can be consistent, and the iteration would cycle between them. Not a few: while the
+  /// tissue is far from solved contacts change for other reasons, and a grip that is held to the kinetic limit for them slips.
+  static constexpr int kMaxFlips = 24;
 
   ContactRival rival_;
   std::vector<unsigned char> flips_;       ///< per contact, this step

@@ -81,7 +81,7 @@ double swingInTissue(bool overloaded) {
 }
 
 /// Elements that such steps had turned inside out stayed so for ever: .44 N for .14.
-TEST(StepCutShort, TurnsNoElementInsideOut) {
+TEST(StepCutShort, LeavesNoTissueTangled) {
   const double right_n = swingInTissue(false);
   EXPECT_NEAR(swingInTissue(true), right_n, 0.05 * right_n);
 }
