@@ -140,14 +140,13 @@ class Recorder:
                     self.counts = {value.key: value.value for value in status.values}
 
     def lost(self, sent):
-        """How many of `sent` joint states did not reach the node, were dropped there or wait; waits for the next diagnostics."""
+        """How many of `sent` joint states did not reach the node, or were dropped there; waits for the next diagnostics."""
         with self.lock:
             self.counts = None
         if not wait_quietly(lambda: self.counts is not None, DIAGNOSTICS_S):
             print("no /diagnostics of the node, so whether all joint states reached it is not known", flush=True)
             return 0
-        count = {key: int(self.counts["joint states: " + key]) for key in ("received", "dropped", "waiting")}
-        return sent - count["received"] + count["dropped"] + count["waiting"]
+        return sent - int(self.counts["joint states: received"]) + int(self.counts["joint states: dropped"])
 
     def line(self):
         """One line on how things are now."""
@@ -282,7 +281,7 @@ def main():
     except OSError as error:
         fail("cannot write %s: %s" % (error.filename, error.strerror))
     if lost > 0:
-        fail("%d of the recording's joint states did not reach the node, were dropped by it or still wait, so the forces are not those of the recording: "
+        fail("%d of the recording's joint states did not reach the node or were dropped by it, so the forces are not those of the recording: "
              "play it slower (now rate %g), or use tissue_contact_replay" % (lost, arguments.rate))
     if os.environ.get("TISSUE_CONTACT_DONE_FILE"):
         with open(os.environ["TISSUE_CONTACT_DONE_FILE"], "w", encoding="utf-8"):

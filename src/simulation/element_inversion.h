@@ -9,12 +9,13 @@
 
 namespace tissue_contact {
 
-/// Share, in [0.5, 1], of the way dt v from x that takes no element from more than a tenth of its volume at rest to less than a twentieth,
-/// within a factor of .7; half of the way where that is not enough. Elements that hold less already have no say, or one that is crushed at an edge would stop the tissue. 1 where there
-/// are no tetrahedra. The bound on a step's length of mesh optimisation (Smith & Schaefer 2015, "Bijective parameterization with free
-/// boundaries", section 3.3), by trial in place of roots: the way of a step is mostly far below it.
-/// @param x m, @param v m/s, 3 x nodes; finite. Allocates only for more nodes than ever before.
-/// @param is_fast scratch.
+/// The first of 1, .7 and .5 after which no element that holds more than a tenth of its volume at rest would hold less than
+/// a twentieth, had its nodes gone that share of dt v; .5 where none is. Elements that hold less already are not looked at,
+/// or one that is crushed at an edge would stop the tissue. 1 where there are no tetrahedra.
+///
+/// The bound on a step's length of mesh optimisation (Smith & Schaefer 2015, "Bijective parameterization with free
+/// boundaries", section 3.3), by trial in place of roots.
+/// @param x m, @param v m/s, 3 x nodes; finite. @param is_fast scratch; grows only for more nodes than ever before.
 double shareBeforeInversion(const Tissue& tissue, const NodalVectors& x, const NodalVectors& v, double dt_s,
                             std::vector<char>& is_fast);
 

@@ -97,6 +97,7 @@ void MovingTissue::makeState() {
   const std::vector<bool>& fixed = tissue_.fixed();
   is_free_ = std::find(fixed.begin(), fixed.end(), true) == fixed.end() && tissue_.attachmentStiffness() == 0.0;
   system_.x = &x_;
+  is_fast_.reserve(static_cast<std::size_t>(tissue_.nodeCount()));
 }
 
 void MovingTissue::wake(const std::vector<int>& touched) {

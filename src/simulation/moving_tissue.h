@@ -67,7 +67,8 @@ class MovingTissue {
   bool wakeHeld(std::optional<double> pressing_n, double dt, int repeats);
 
   bool isFinite() const { return system_.asleep || v_.allFinite(); }  ///< the answer of the step
-  /// After a step that ended before the tolerance: slows v down, by half at most, to where it turns no element inside out in `dt`. @pre isFinite()
+  /// After a step that ended before the tolerance: slows v down, by half at most, to where it turns no element inside out.
+  /// @pre isFinite()
   void keepElements(double dt);
   /// x += dt v.
   /// @param contact_work_j, was_cut see EnergyDebt::finish().

@@ -63,6 +63,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
   solution.v.resize(tissues.size());
   for (const Tissue& tissue : tissues) solution.slow_changes.push_back(NodalVectors::Zero(3, tissue.nodeCount()));
   problem.bodies.resize(tissues.size());
+  contact_work_j.reserve(tissues.size());
   for (std::size_t t = 0; t < tissues.size(); ++t) {
     moving.emplace_back(scene, tissues[t], x[t], solution.v[t], problem.bodies[t]);
   }

@@ -130,11 +130,15 @@ class TwoTopics(harness.TestCase):
         with harness.node(scene):
             wrenches = harness.wrenches()
             sources = [harness.JointSource(topic) for topic in topics]
-            for source, all in zip(sources, samples):
-                source.send_all(all)
+            for begin in range(0, len(samples[0]), 10):  # 0.1 s
+                for source, all in zip(sources, samples):
+                    source.send_all(all[begin:begin + 10])
             wrenches.wait_for_stamp(samples[1][-1][0])
-            rospy.rostime.wallsleep(1.0)
-            self.assertEqual(len(wrenches.messages), len(samples[1]))  # both may go on
+            harness.diagnostics().wait(  # longer than max_gap_s: both may go on
+                lambda all: sum(value.key == "joint states: waiting" and value.value == "15"
+                                for message in all for status in message.status for value in status.values) >= 2,
+                "15 joint states that wait, twice")
+            self.assertEqual(len(wrenches.messages), len(samples[1]))
             for source in sources:
                 source.close()
             got = wrenches.wait_for_stamp(samples[0][-1][0])

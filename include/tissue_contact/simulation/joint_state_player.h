@@ -150,7 +150,7 @@ class JointStatePlayer {
   bool isOvertaken(int topic) const;
   /// Whether moments of kEveryState wait for such a topic all the same, from now on: wall time has not shown yet that nothing comes.
   void keepWaitingFor(int topic, bool wait) { topic_states_.at(static_cast<std::size_t>(topic)).awaited = wait; }
-  /// Moments that are here now wait for no topic any longer, since wall time presses.
+  /// Moments that are here now wait for no topic any longer, since wall time presses or nothing more can come.
   void stopWaiting();
 
   /// Everything to where it was before the first sample: the simulator is reset, what waits counts as merged.

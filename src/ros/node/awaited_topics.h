@@ -29,7 +29,7 @@ class AwaitedTopics {
   /// Whether there is such a topic.
   bool isWaiting() const;
 
-  /// Whether nothing has come on any topic for as long, not counting time in which this process did nothing.
+  /// Whether nothing has come on any topic for `most_s`, not counting time in which this process did nothing.
   bool isSilent() const { return now_s_ && !(running_s_ < received_s_ + most_s_); }
 
  private:

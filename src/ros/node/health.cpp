@@ -309,7 +309,8 @@ LiveFigures Health::figures() const {
   LiveFigures figures = figures_;
   figures.received = inbox.received;
   figures.dropped = inbox.dropped;
-  figures.waiting = static_cast<std::int64_t>(inbox.waiting) + held_by_player_;
+  figures.held = held_by_player_;
+  figures.waiting = static_cast<std::int64_t>(inbox.waiting) + figures.held;
   figures.real_time_factor = real_time_factor_.value(now_s);
   // A wrench that is due and has not gone out is late already.
   if (working_on_s_) figures.lag_s = std::max(figures.lag_s, now_s - *working_on_s_);
@@ -376,13 +377,10 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
     status.summaryf(lag == LagVerdict::kFarOverBound ? Level::ERROR : Level::WARN,
                     "wrenches late by up to %.3g s, more than %.3g s", worst_lag_s, bound_s);
     if (is_implausible) status.mergeSummary(Level::WARN, unbearable);
-    if (!silence_.summary().empty()) status.mergeSummary(Level::WARN, silence_.summary());
   } else if (is_implausible) {
     status.summary(Level::WARN, unbearable);
   } else if (now.coarse > told_.coarse) {
     status.summary(Level::WARN, now.last_coarse);
-  } else if (!silence_.summary().empty()) {
-    status.summary(Level::WARN, silence_.summary());
   } else if (is_strained) {
     status.summary(Level::WARN, "steps lengthened, since the machine does not keep up with max_step_s");
   } else if (now.troubles() > told_.troubles()) {
@@ -390,7 +388,8 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   } else {
     status.summary(Level::OK, now.accepted > 0 ? "running" : "no joint state yet");
   }
-  const bool waits_for_topic = !silence_.summary().empty();  // late for that, not for want of time
+  if (!now.failed && !now.paused && !silence_.summary().empty()) status.mergeSummary(Level::WARN, silence_.summary());
+  const bool waits_for_topic = !now.newest_state && now.held > 0 && now.held == now.waiting;  // not for want of time
   if (advised_ || now.paused || waits_for_topic || (lag == LagVerdict::kWithinBound && !is_strained)) return;
   advised_ = true;
   ROS_WARN_STREAM("does not keep up: " << keepUpAdvice(now, simulator_.scene().step.max_step_s, max_lag_s_, nodes_));

@@ -17,6 +17,7 @@ struct LiveFigures {
   std::int64_t received = 0;
   std::int64_t dropped = 0;   ///< the queue of those received was full
   std::int64_t waiting = 0;   ///< received and not yet played; also for another topic
+  std::int64_t held = 0;      ///< of those, for another topic or a clock
   std::int64_t accepted = 0;  ///< stepped to
   std::int64_t merged = 0;    ///< into the motion to a newer one
   std::array<std::int64_t, kVerdictCount> by_verdict{};

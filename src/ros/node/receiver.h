@@ -40,7 +40,7 @@ class Receiver {
   std::int64_t missing() const;
   /// Names of those heard on the topic. Any thread.
   std::string publishers(int topic) const;
-  /// Whether any topic has a publisher now. Any thread.
+  /// Whether any topic has a publisher now, or one that was killed and that the master does not know of yet. Any thread.
   bool anyPublishes() const;
 
  private:

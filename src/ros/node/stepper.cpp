@@ -85,10 +85,11 @@ AdvanceLimits Stepper::limits(int most_steps) const {
   return limits;
 }
 
-/// For more of them, but for no longer than one that waits for another topic's may.
+/// For more of them, but for no longer than one that waits for another topic's may; where every state counts until
+/// nothing came for max_gap_s and nobody is there who could send it.
 void Stepper::awaitStates() {
   if (!newest_state_) {
-    if (!awaited_.isWaiting() && player_.waiting() == 0) return inbox_.wait();
+    if (!awaited_.isWaiting() && !player_.earliestStamp()) return inbox_.wait();
     if (inbox_.wait(AwaitedTopics::kLook_s)) return;
     awaited_.noteTime(steadySeconds());
     if (awaited_.isSilent() && !more_may_come_()) player_.stopWaiting();
@@ -207,11 +208,17 @@ Answer Stepper::resume() {
 Answer Stepper::stepOnce() {
   if (!paused_) return {false, "not paused, so it steps by itself; call ~pause first"};
   const std::int64_t before = published_;
+  bool given_up = false;  // topics that nobody publishes on
   for (;;) {
     while (!stop_ && published_ == before && playNext()) {
     }
     if (published_ != before) return {true, "stepped to " + now()};
     if (stop_) return {false, "the node is ending"};
+    if (inbox_.counts().waiting == 0 && player_.earliestStamp() && !more_may_come_() &&
+        !std::exchange(given_up, true)) {
+      player_.stopWaiting();
+      continue;
+    }
     if (inbox_.counts().waiting == 0) {
       return {false, player_.waiting() > 0 ? "what waits is to be stepped to once the other topics have come as far"
                                            : "no joint state waits to be stepped to"};

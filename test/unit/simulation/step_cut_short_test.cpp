@@ -51,8 +51,8 @@ TEST(StepCutShort, BringsNoEnergyIntoTheTissue) {
   }
 }
 
-/// A ball of 5 mm swings 15 mm to and fro in tissue whose mesh follows it, up to 4 mm deep. For five seconds each fifth of a second has one step
-/// of one iteration, if `overloaded`; then all have what they need, and the ball is thrice as fast.
+/// A ball of 5 mm swings 15 mm to and fro in tissue whose mesh follows it, up to 4 mm deep. For five seconds each fifth of a
+/// second has one step of one iteration, if `overloaded`; then all have what they need, and the ball is thrice as fast.
 /// @return the force where it is 4 mm deep then, N.
 double swingInTissue(bool overloaded) {
   Simulator simulator = makeSimulator(blockScene("[0.08, 0.06, 0.03]", "[16, 12, 6]", "poissons_ratio: 0.45") +
