@@ -390,6 +390,7 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   }
   if (!now.failed && !now.paused && !silence_.summary().empty()) status.mergeSummary(Level::WARN, silence_.summary());
   const bool waits_for_topic = !now.newest_state && now.held > 0 && now.held == now.waiting;  // not for want of time
+  if (!(now.step_cost_s > 0.0)) return;                                                       // in the first step
   if (advised_ || now.paused || waits_for_topic || (lag == LagVerdict::kWithinBound && !is_strained)) return;
   advised_ = true;
   ROS_WARN_STREAM("does not keep up: " << keepUpAdvice(now, simulator_.scene().step.max_step_s, max_lag_s_, nodes_));
