@@ -128,10 +128,15 @@ void MovingTissue::assemble(double dt) {
   for (int i = 0; i < tissue_.nodeCount(); ++i) {
     if ((*system_.fixed)[i]) system_.b.col(i).setZero();
   }
-  double change = 0.0;
-  for (int i = 0; i < tissue_.nodeCount(); ++i)
-    change += (system_.b.col(i) - system_.mass[i] * v_.col(i)).squaredNorm();
-  system_.change_n_s = std::sqrt(change);
+  double squared = 0.0;
+  Vector3 net = Vector3::Zero();
+  for (int i = 0; i < tissue_.nodeCount(); ++i) {
+    const Vector3 change = system_.b.col(i) - system_.mass[i] * v_.col(i);
+    squared += change.squaredNorm();
+    net += change;
+  }
+  system_.change_n_s = std::sqrt(squared);
+  system_.net_change_n_s = is_free_ ? net.norm() : -1.0;
 }
 
 bool MovingTissue::wakeHeld(std::optional<double> pressing_n, double dt, int repeats) {

@@ -29,8 +29,8 @@ double normOf(const std::vector<NodalVectors>& defects) {
 class CholeskyRelaxation : public Relaxation {
  public:
   void prepare(const ContactProblem& problem, ContactSolution& solution) override;
-  MomentumDefect relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
-                       ContactSolution& solution) override;
+  const MomentumDefect& relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
+                              ContactSolution& solution) override;
   void beginPasses(const ContactSolution& solution) override;
   void contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
   void finish(const ContactProblem& problem, ContactSolution& solution) override;
@@ -43,7 +43,7 @@ class CholeskyRelaxation : public Relaxation {
     Matrix3 W;  ///< contact frame, 1/kg; W(0, 0) = 0: nothing of it can move
   };
 
-  MomentumDefect defectLeft(const ContactProblem& problem, double norm_n_s) const;
+  const MomentumDefect& leaving(const ContactProblem& problem, double norm_n_s);
   double computeDefect(const ContactProblem& problem, const ContactSolution& solution);
   double relaxOnce(const ContactProblem& problem, ContactSolution& solution, double before);
   double relaxSafely(const ContactProblem& problem, ContactSolution& solution);
@@ -59,6 +59,7 @@ class CholeskyRelaxation : public Relaxation {
   std::vector<NodalVectors> saved_;  ///< velocities before a relaxation
   double loads_ = 0.0;               ///< |b|, N s
   double left_ = 0.0;                ///< defect that the last relaxation of this step left, N s
+  MomentumDefect met_;               ///< by the last relaxation
   bool fresh_ = false;               ///< all factors are of this step: to renew them would change nothing
 };
 
@@ -156,25 +157,26 @@ double CholeskyRelaxation::relaxOnce(const ContactProblem& problem, ContactSolut
   return after;
 }
 
-MomentumDefect CholeskyRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& /*corrector*/,
-                                         ContactSolution& solution) {
-  if (iteration == 0) return defectLeft(problem, normOf(defect_));  // prepare() has relaxed already
+const MomentumDefect& CholeskyRelaxation::relax(const ContactProblem& problem, int iteration,
+                                                ContactCorrector& /*corrector*/, ContactSolution& solution) {
+  if (iteration == 0) return leaving(problem, normOf(defect_));  // prepare() has relaxed already
   const bool was_fresh = fresh_;
   const double left = relaxSafely(problem, solution);
   if (fresh_ != was_fresh) {  // the compliances went with the old factor
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) prepareContact(problem, c, solution);
   }
-  return defectLeft(problem, left);
+  return leaving(problem, left);
 }
 
 /// @param norm_n_s of defect_.
-MomentumDefect CholeskyRelaxation::defectLeft(const ContactProblem& problem, double norm_n_s) const {
-  MomentumDefect left{norm_n_s, 0.0};
+const MomentumDefect& CholeskyRelaxation::leaving(const ContactProblem& problem, double norm_n_s) {
+  met_.norm_n_s = norm_n_s;
+  met_.net_n_s.assign(bodies_.size(), 0.0);
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const bool touched = !impulses_[k].isZero(0.0);
-    if (!problem.bodies[k].asleep && touched) left.net_n_s += defect_[k].rowwise().sum().norm();
+    if (!problem.bodies[k].asleep && touched) met_.net_n_s[k] = defect_[k].rowwise().sum().norm();
   }
-  return left;
+  return met_;
 }
 
 Vector3 CholeskyRelaxation::trackedVelocity(const ContactRow& row, const Local& local) const {

@@ -39,8 +39,8 @@ AndersonMixing::View viewOf(std::vector<double>& all) { return {all.data(), stat
 class GaussSeidelRelaxation : public Relaxation {
  public:
   void prepare(const ContactProblem& problem, ContactSolution& solution) override;
-  MomentumDefect relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
-                       ContactSolution& solution) override;
+  const MomentumDefect& relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
+                              ContactSolution& solution) override;
   void contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
   void finish(const ContactProblem& problem, ContactSolution& solution) override;
 
@@ -80,6 +80,7 @@ class GaussSeidelRelaxation : public Relaxation {
   std::vector<int> held_;                       ///< scratch: the lanes of a body's nodes with such a contact, ascending
   std::vector<int> partner_;                    ///< per body: one of its group that comes earlier; itself: the first
   std::vector<Mixture> mixtures_;               ///< per body; only the first of a group has bodies
+  MomentumDefect met_;                          ///< by the last sweep
 };
 
 void GaussSeidelRelaxation::prepare(const ContactProblem& problem, ContactSolution& solution) {
@@ -231,8 +232,8 @@ bool GaussSeidelRelaxation::contactsActOn(int body) const {
   return first != touched_.end() && first->body == body;
 }
 
-MomentumDefect GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
-                                            ContactSolution& solution) {
+const MomentumDefect& GaussSeidelRelaxation::relax(const ContactProblem& problem, int iteration,
+                                                   ContactCorrector& corrector, ContactSolution& solution) {
   const bool forward = iteration % 2 == 0;
   if (iteration == kPlainIterations) beginMixing(problem, solution.v);
   if (forward && iteration > kPlainIterations) mix(solution.v);
@@ -243,7 +244,7 @@ MomentumDefect GaussSeidelRelaxation::relax(const ContactProblem& problem, int i
     deflate(problem, solution.v);
   }
   forward_ = forward;
-  MomentumDefect met;
+  met_.net_n_s.assign(problem.bodies.size(), 0.0);
   double squared = 0.0;
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     if (problem.bodies[k].asleep) continue;
@@ -251,13 +252,13 @@ MomentumDefect GaussSeidelRelaxation::relax(const ContactProblem& problem, int i
     const auto hold = [&](int i) { return project(problem, node_contact_[k][i], corrector, solution); };
     const DefectsMet of_body = bodies_[k].sweep(forward, held_, solution.v[k], hold);
     squared += of_body.squared;
-    if (contactsActOn(static_cast<int>(k))) met.net_n_s += of_body.sum.norm();
+    if (contactsActOn(static_cast<int>(k))) met_.net_n_s[k] = of_body.sum.norm();
   }
   if (forward) {
     for (Touched& at : touched_) at.v = solution.v[at.body].col(at.node);
   }
-  met.norm_n_s = std::sqrt(squared);
-  return met;
+  met_.norm_n_s = std::sqrt(squared);
+  return met_;
 }
 
 /// Bodies that contacts of this step join share one map of velocities; those that nothing joins have maps of their own,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -24,6 +25,10 @@ constexpr double kFalls = 0.9;
 /// Of the tolerance: what all nodes of a body may lack together, over the sum of impulses. Defects of many nodes that point the same way
 /// hold the whole body back while their squares say little: a liver under a probe erred by eleven to sixteen times its tolerance (doc/notes/method.md).
 constexpr double kNetShare = 2.0;
+
+/// Of the impulses on a body that nothing holds: what moves it in all counts as no less, or one that is pressed from opposed sides and
+/// weighs nothing would have to be solved to the last digit.
+constexpr double kLooseShare = 0.05;
 
 /// Of all contacts together, N s.
 double impulseNorm(const std::vector<Vector3>& impulses) {
@@ -95,9 +100,36 @@ bool IterativePredictorCorrector::settled(const ContactProblem& problem, const C
 
 /// Whether what momentum lacks is within the tolerance: node by node, and all together, also while a contact is only near,
 /// since the next touch is with what a body did before it.
-bool IterativePredictorCorrector::balanced(const MomentumDefect& met, const ContactSolution& solution) const {
+bool IterativePredictorCorrector::balanced(const ContactProblem& problem, const MomentumDefect& met,
+                                           const ContactSolution& solution) {
+  const double net = std::accumulate(met.net_n_s.begin(), met.net_n_s.end(), 0.0);
   return met.norm_n_s <= options_.tolerance * (load_scale_ + impulseNorm(solution.impulses)) &&
-         met.net_n_s <= kNetShare * options_.tolerance * (load_scale_ + impulseSum(solution.impulses));
+         net <= kNetShare * options_.tolerance * (load_scale_ + impulseSum(solution.impulses)) &&
+         looseBodiesBalanced(problem, met.net_n_s, solution);
+}
+
+/// Likewise of each body that nothing holds, against what moves it in all: the jaws' squeeze, which cancels, may be a hundred times that.
+bool IterativePredictorCorrector::looseBodiesBalanced(const ContactProblem& problem, const std::vector<double>& net_n_s,
+                                                      const ContactSolution& solution) {
+  const auto is_loose = [](const BodySystem& body) { return body.net_change_n_s >= 0.0 && !body.asleep; };
+  if (std::none_of(problem.bodies.begin(), problem.bodies.end(), is_loose)) return true;
+  brought_.assign(problem.bodies.size(), {Vector3::Zero(), 0.0});
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+    const ContactRow& row = problem.contacts[c];
+    const Vector3 impulse_W = row.R_WC * solution.impulses[c];
+    for (int a = 0; a < row.node_count; ++a) {
+      const Vector3 share = row.nodes[a].weight * impulse_W;
+      brought_[row.nodes[a].body].net_n_s += share;
+      brought_[row.nodes[a].body].sum_n_s += share.norm();
+    }
+  }
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
+    if (!is_loose(problem.bodies[k])) continue;
+    const double moves = problem.bodies[k].net_change_n_s + brought_[k].net_n_s.norm();
+    const double scale = std::max(moves, kLooseShare * brought_[k].sum_n_s);
+    if (net_n_s[k] > kNetShare * options_.tolerance * scale) return false;
+  }
+  return true;
 }
 
 /// At most contact_passes passes over the contacts, fewer once they settle.
@@ -129,12 +161,12 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
   SolverReport report;
   first_change_ = std::numeric_limits<double>::infinity();
   for (bool stop = false; !stop;) {
-    const MomentumDefect met = relaxation_->relax(problem, report.iterations, corrector_, solution);
+    const MomentumDefect& met = relaxation_->relax(problem, report.iterations, corrector_, solution);
     const bool had_settled = correctContacts(problem, solution);
     ++report.iterations;
     const double until = report.iterations >= kLeastBeforePrompt ? std::min(hard_s, prompt_s_) : hard_s;
     stop = true;
-    if (had_settled && balanced(met, solution)) {
+    if (had_settled && balanced(problem, met, solution)) {
       report.stop = StopReason::kTolerance;
     } else if (report.iterations >= options_.iterations) {
       report.stop = StopReason::kIterations;

@@ -51,7 +51,9 @@ class IterativePredictorCorrector : public ContactSolver {
   double pass(const ContactProblem& problem, ContactSolution& solution);
   bool settled(const ContactProblem& problem, const ContactSolution& solution, double change, double before,
                double share);
-  bool balanced(const MomentumDefect& met, const ContactSolution& solution) const;
+  bool balanced(const ContactProblem& problem, const MomentumDefect& met, const ContactSolution& solution);
+  bool looseBodiesBalanced(const ContactProblem& problem, const std::vector<double>& net_n_s,
+                           const ContactSolution& solution);
 
   SolverOptions options_;
   SecondsClock clock_;
@@ -59,7 +61,13 @@ class IterativePredictorCorrector : public ContactSolver {
   ContactCorrector corrector_;
   ContactMomentum momentum_;
   std::vector<Vector3> before_;  ///< impulses before the last pass, per contact, contact frame, N s
-  double first_change_ = 0.0;    ///< of impulses by the first pass of the last iteration, N s; infinity: none yet
+  /// What contacts bring a body.
+  struct Brought {
+    Vector3 net_n_s;
+    double sum_n_s;  ///< of the magnitudes
+  };
+  std::vector<Brought> brought_;  ///< scratch: per body
+  double first_change_ = 0.0;     ///< of impulses by the first pass of the last iteration, N s; infinity: none yet
   double deadline_s_ = std::numeric_limits<double>::infinity();  ///< on clock_
   double prompt_s_ = std::numeric_limits<double>::infinity();    ///< on clock_
   double load_scale_ = 0.0;                                      ///< what changes velocities, N s

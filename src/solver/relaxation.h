@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "solver/contact_corrector.h"
 #include "tissue_contact/solver/contact_problem.h"
@@ -12,8 +13,8 @@ namespace tissue_contact {
 
 /// What is missing from A v = b + J'lambda, nodes that contacts hold aside.
 struct MomentumDefect {
-  double norm_n_s = 0.0;  ///< root of the squares over all nodes, N s
-  double net_n_s = 0.0;   ///< what all nodes of a body lack together, N s: added over the bodies that contacts act on
+  double norm_n_s = 0.0;        ///< root of the squares over all nodes, N s
+  std::vector<double> net_n_s;  ///< per body: what all its nodes lack together, N s; 0 where no contact acts on it
 };
 
 class Relaxation {
@@ -24,9 +25,9 @@ class Relaxation {
   virtual void prepare(const ContactProblem& problem, ContactSolution& solution) = 0;
 
   /// Relaxes v with the impulses held (MICA's projections aside).
-  /// @return what was met on the way.
-  virtual MomentumDefect relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
-                               ContactSolution& solution) = 0;
+  /// @return what was met on the way; valid until the next one.
+  virtual const MomentumDefect& relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
+                                      ContactSolution& solution) = 0;
 
   /// Called before the passes of an iteration, with v relaxed.
   virtual void beginPasses(const ContactSolution& /*solution*/) {}

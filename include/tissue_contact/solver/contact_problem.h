@@ -35,6 +35,9 @@ struct BodySystem {
   NodalVectors b;                   ///< N s; finite, of fixed nodes too
   /// |b - M v0|, N s: what changes velocities in the step, which a solver's tolerance is a part of. Negative: |b|.
   double change_n_s = -1.0;
+  /// Of a body that neither fixed nodes nor springs hold: |sum of b - M v0 over its nodes|, N s. What such a body lacks in all moves it, so a
+  /// solver's tolerance is a part of this and of what its contacts bring it in all as well. Negative: something holds the body.
+  double net_change_n_s = -1.0;
 };
 
 /// A node a contact acts on.

@@ -163,6 +163,44 @@ TEST_P(Relaxations, TwoBodiesFeelOppositeImpulses) {
   EXPECT_LE((scene.solution.v[0] + scene.solution.v[1]).norm(), 1e-10 * scene.solution.v[0].norm());
 }
 
+/// Jaws squeeze a body that nothing else holds with forty times its weight: what momentum lacks in all is a part of the weight, not
+/// of the squeeze.
+TEST(IterativePredictorCorrector, ALooseBodyIsBalancedAgainstWhatMovesIt) {
+  constexpr double kDt = 0.01;
+  constexpr double kTolerance = 0.03;
+  const Vector3 gravity(0.0, -0.8, -1.2);
+  const auto lacks = [&](bool is_loose) {
+    PressedBlock scene(0.5, kDt);
+    scene.fixed.assign(scene.fixed.size(), false);
+    const MaterialDescription material{ElasticModel::kLinear, 5e3, 0.45, 1000.0};
+    scene.state = TetElasticity(scene.mesh.positions, scene.mesh.tetrahedra, scene.fixed, material).makeState();
+    BodySystem& body = scene.problem.bodies[0];
+    body.K = &scene.state->stiffness;
+    body.b = kDt * gravity * body.mass.transpose();
+    const double weight_n_s = body.b.rowwise().sum().norm();
+    if (is_loose) body.net_change_n_s = weight_n_s;
+    const std::size_t above = scene.problem.contacts.size();
+    for (std::size_t c = 0; c < above; ++c) {  // each again from below, where the mesh is the same
+      ContactRow row = scene.problem.contacts[c];
+      row.R_WC.col(0) *= -1.0;
+      row.R_WC.col(2) *= -1.0;
+      row.u_tool = Vector3(0.15, 0.0, 0.0);
+      for (int a = 0; a < row.node_count; ++a) row.nodes[a].node -= 2 * 25;  // two layers of 5 x 5 nodes down
+      scene.problem.contacts.push_back(row);
+    }
+    scene.solution.impulses.assign(2 * above, Vector3::Zero());
+    scene.solution.states.assign(2 * above, ContactState::kOpen);
+    IterativePredictorCorrector(options(1000, 20, kTolerance)).solve(scene.problem, scene.solution);
+    double squeeze_n_s = 0.0;
+    for (const Vector3& impulse : scene.solution.impulses) squeeze_n_s += impulse.norm();
+    EXPECT_GT(squeeze_n_s, 40.0 * weight_n_s);
+    return residualsOf(scene).net_defect_n_s / weight_n_s;
+  };
+  EXPECT_LT(lacks(true),
+            5.0 * kTolerance);  // of the weight and of what contacts bring, as much again, two tolerances each
+  EXPECT_GT(lacks(false), 10.0 * kTolerance);
+}
+
 INSTANTIATE_TEST_SUITE_P(Each, Relaxations, ::testing::Values(RelaxationKind::kGaussSeidel, RelaxationKind::kCholesky),
                          [](const auto& parameter) {
                            return std::string(parameter.param == RelaxationKind::kCholesky ? "Cholesky"
