@@ -218,7 +218,9 @@ void bindSimulator(py::module_& module) {
       .def("save_state", bound(&Self::saveState), "All that the next advance depends on, as bytes.")
       .def("load_state", bound(&Self::loadState), py::arg("state"),
            "Goes on from saved bytes of the same scene, to the same bits. ValueError when they do not fit.")
-      .def("joint_positions", bound(&Self::jointPositions), py::arg("instrument"), "(n,) rad or m, now.")
+      .def("joint_positions", bound(&Self::jointPositions), py::arg("instrument"), "(n,) rad or m, as given.")
+      .def("joint_deflections", bound(&Self::jointDeflections), py::arg("instrument"),
+           "(n,) rad or m: how much farther than that each compliant joint is, having given way to the tissue.")
       .def("wrench", bound(&Self::wrench), py::arg("instrument"), py::arg("frame") = "tip",
            "(6,): force (N) and torque (N m) of the tissues on the instrument at the origin of its tip link, mean over "
            "the last\n"

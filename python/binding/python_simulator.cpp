@@ -170,6 +170,14 @@ py::array PythonSimulator::jointPositions(const std::string& instrument) const {
   return toArray(simulator_.jointPositions(instrumentOf(instrument)));
 }
 
+py::array PythonSimulator::jointDeflections(const std::string& instrument) const {
+  const Use use(*this);
+  const int index = instrumentOf(instrument);
+  const VectorX& deflections = simulator_.jointDeflections(index);
+  if (deflections.size() > 0) return toArray(deflections);
+  return toArray(VectorX::Zero(simulator_.jointPositions(index).size()));
+}
+
 const Pose& PythonSimulator::tip(int instrument) const {
   return simulator_.linkPoses(instrument)[simulator_.instruments()[instrument].tipLink()];
 }

@@ -60,6 +60,7 @@ class PythonSimulator : public std::enable_shared_from_this<PythonSimulator> {
   void loadState(const py::bytes& state);
 
   py::array jointPositions(const std::string& instrument) const;
+  py::array jointDeflections(const std::string& instrument) const;
   py::array wrench(const std::string& instrument, const std::string& frame) const;
   py::array tipPose(const std::string& instrument) const;
   py::array positions(const std::string& tissue);

@@ -116,6 +116,27 @@ class Builder {
     return positions;
   }
 
+  std::vector<CompliantJoint> makeCompliantJoints() const {
+    std::vector<CompliantJoint> joints;
+    for (const JointCompliance& compliance : description_.compliant_joints) {
+      const std::string entry = elementOf("compliant_joints", joints.size());
+      const int joint = findJoint(entry + ".joint", "compliance is given for joint", compliance.joint);
+      if (slides(joint) != compliance.slides) {
+        refuse(entry, "joint '" + compliance.joint +
+                          (slides(joint) ? "' slides; give its stiffness_n_per_m and force_limit_n"
+                                         : "' turns; give its stiffness_n_m_per_rad and torque_limit_n_m"));
+      }
+      if (!(compliance.stiffness > 0.0) || !std::isfinite(compliance.stiffness) || !(compliance.effort_limit > 0.0)) {
+        refuse(entry, "stiffness and limit of joint '" + compliance.joint + "' must be above 0");
+      }
+      for (const CompliantJoint& other : joints) {
+        if (other.joint == joint) refuse(entry + ".joint", "joint '" + compliance.joint + "' is named twice");
+      }
+      joints.push_back({joint, compliance.stiffness, compliance.effort_limit, compliance.slides});
+    }
+    return joints;
+  }
+
   /// Own names first, then the map, which may give an own name another meaning.
   std::map<std::string, int> makeJointMap() const {
     std::map<std::string, int> joint_of;
@@ -131,6 +152,13 @@ class Builder {
   }
 
  private:
+  bool slides(int joint) const {
+    for (const RobotModel::Link& link : model_.links()) {
+      if (link.joint == joint && link.mimic.empty()) return link.motion == RobotModel::Link::Motion::kPrismatic;
+    }
+    return false;
+  }
+
   /// Bounds what one instrument holds while its meshes are read; the scene's bounds come after it.
   void count(const CollisionShape& shape) {
     if (shape.mesh) triangles_ += shape.mesh->triangles.size();
@@ -167,6 +195,7 @@ Instrument::Instrument(const InstrumentDescription& description, RobotModel mode
   tip_link_ = builder.findLink("tip_link", "tip link", description.tip_link);
   contact_links_ = builder.makeContactLinks();
   initial_positions_ = builder.makeInitialPositions();
+  compliant_joints_ = builder.makeCompliantJoints();
   joint_of_recorded_name_ = builder.makeJointMap();
 }
 

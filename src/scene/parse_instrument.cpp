@@ -151,6 +151,31 @@ std::vector<ContactLinkDescription> parseContactLinks(const YamlCursor& cursor, 
   return links;
 }
 
+constexpr Range kTurningStiffnessRange{1e-6, 1e9, "N m/rad", "a jaw of a surgical robot has some .1 to 1"};
+constexpr Range kSlidingStiffnessRange{1e-3, 1e12, "N/m", "a gripper's finger has some 1e3 to 1e5"};
+constexpr Range kTorqueLimitRange{1e-9, 1e6, "N m", "the force at the jaw times its distance from the joint's axis"};
+constexpr Range kForceLimitRange{1e-9, 1e9, "N", "the force at the finger"};
+
+JointCompliance parseCompliance(const YamlCursor& cursor) {
+  const YamlMap map = cursor.map();
+  JointCompliance compliance;
+  compliance.joint = map.get("joint").text();
+  const std::string stiffness = map.exactlyOne({"stiffness_n_m_per_rad", "stiffness_n_per_m"});
+  compliance.slides = stiffness == "stiffness_n_per_m";
+  compliance.stiffness = map.get(stiffness).number(compliance.slides ? kSlidingStiffnessRange : kTurningStiffnessRange);
+  const YamlCursor* const torque = map.find("torque_limit_n_m");
+  const YamlCursor* const force = map.find("force_limit_n");
+  if (const YamlCursor* other = compliance.slides ? torque : force) {
+    other->fail(
+        "goes with the other stiffness: a joint that turns has stiffness_n_m_per_rad and torque_limit_n_m, one that "
+        "slides "
+        "stiffness_n_per_m and force_limit_n");
+  }
+  if (torque != nullptr) compliance.effort_limit = torque->number(kTorqueLimitRange);
+  if (force != nullptr) compliance.effort_limit = force->number(kForceLimitRange);
+  return compliance;
+}
+
 }  // namespace
 
 InstrumentDescription parseInstrument(const YamlCursor& cursor, const PathContext& paths) {
@@ -164,6 +189,11 @@ InstrumentDescription parseInstrument(const YamlCursor& cursor, const PathContex
   if (const YamlCursor* value = map.find("initial_joint_positions")) {
     for (const auto& [joint, position] : value->entries()) {
       instrument.initial_joint_positions.emplace(joint, position.number(kJointPositionRange));
+    }
+  }
+  if (const YamlCursor* value = map.find("compliant_joints")) {
+    for (const YamlCursor& joint : value->list(1, kMostShapes)) {
+      instrument.compliant_joints.push_back(parseCompliance(joint));
     }
   }
   instrument.tip_link = map.get("tip_link").text();

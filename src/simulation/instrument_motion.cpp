@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tissue_contact/contact/contact_detector.h"
 
@@ -73,6 +74,9 @@ InstrumentMotion::InstrumentMotion(const std::vector<Instrument>& instruments)
       }
       states_[i].links.push_back(link);
     }
+    if (instruments[i].compliantJoints().empty()) continue;
+    states_[i].deflections.setZero(instruments[i].initialPositions().size());
+    states_[i].loads.resize(instruments[i].model().joints().size());
   }
   reset();
   X_WL_before_ = X_WL_;  // so that begin() allocates nothing
@@ -85,8 +89,34 @@ void InstrumentMotion::reset() {
 void InstrumentMotion::place(int instrument, const VectorX& positions) {
   State& state = states_[instrument];
   state.start = state.target = state.positions = positions;
+  if (state.deflections.size() > 0) {
+    state.positions_before = positions;
+    state.deflections.setZero();
+    std::fill(state.loads.begin(), state.loads.end(), JointLoad());
+  }
   instruments_[instrument].linkPoses(positions, X_WL_[instrument]);
   X_WL_end_[instrument] = X_WL_[instrument];
+}
+
+void InstrumentMotion::carry(int instrument, StateArchive& archive) {
+  State& state = states_[instrument];
+  VectorX positions = state.positions;
+  archive.carry(positions);
+  archive.check(positions.allFinite(), "a joint position that is not finite");
+  if (archive.isReading()) place(instrument, positions);
+  if (state.deflections.size() == 0) return;
+  archive.carry(state.deflections);
+  archive.check(state.deflections.allFinite(), "a deflection of a joint that is not finite");
+  for (JointLoad& load : state.loads) {
+    archive.carry(load.effort);
+    archive.carry(load.effort_before);
+    archive.carry(load.resists);
+    archive.check(std::isfinite(load.effort + load.effort_before) && std::isfinite(load.resists) && load.resists >= 0.0,
+                  "an effort of a joint that is not finite");
+  }
+  if (!archive.isReading()) return;
+  poseDeflected(instrument);
+  X_WL_[instrument] = X_WL_end_[instrument];
 }
 
 int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets, int most_steps) {
@@ -142,6 +172,9 @@ double InstrumentMotion::longestTravelOver(double steps, double most) {
     finishStep();
   }
   X_WL_ = X_WL_before_;
+  for (State& state : states_) {
+    if (state.deflections.size() > 0) state.positions_before = state.start;
+  }
   return longest;
 }
 
@@ -152,12 +185,22 @@ void InstrumentMotion::moveTo(double fraction) {
     // The last step must end exactly at the target, whatever round-off the interpolation has.
     state.positions = state.target;
     if (fraction < 1.0) state.positions = state.start + fraction * (state.target - state.start);
-    instruments_[i].linkPoses(state.positions, X_WL_end_[i]);
+    state.deflections.size() == 0 ? instruments_[i].linkPoses(state.positions, X_WL_end_[i])
+                                  : poseDeflected(static_cast<int>(i));
   }
 }
 
+void InstrumentMotion::poseDeflected(int instrument) {
+  State& state = states_[instrument];
+  state.deflected = state.positions + state.deflections;
+  instruments_[instrument].linkPoses(state.deflected, X_WL_end_[instrument]);
+}
+
 void InstrumentMotion::finishStep() {
-  for (std::size_t i = 0; i < states_.size(); ++i) X_WL_[i] = X_WL_end_[i];
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    X_WL_[i] = X_WL_end_[i];
+    if (states_[i].deflections.size() > 0) states_[i].positions_before = states_[i].positions;
+  }
 }
 
 Vector3 InstrumentMotion::pointVelocity(int instrument, int contact_link, const Vector3& p_W, double dt_s) const {
@@ -174,6 +217,30 @@ double InstrumentMotion::longestTravel(bool per_half_extent) const {
         const double moved = travel(shape.center, shape.bounding_radius, X_WL_[i][link.link], X_WL_end_[i][link.link]);
         longest = std::max(longest, per_half_extent ? moved / shape.smallest_half_extent : moved);
       }
+    }
+  }
+  return longest;
+}
+
+double InstrumentMotion::longestWay(int instrument, int joint, double share) const {
+  const RobotModel& model = instruments_[instrument].model();
+  double longest = std::numeric_limits<double>::infinity();
+  for (const MovingLink& moving : states_[instrument].links) {
+    for (const MovingShape& shape : moving.shapes) {
+      double reach = shape.center.norm() + shape.bounding_radius;
+      double way = 0.0;  // for each rad or m
+      for (int link = moving.link; link >= 0; link = model.links()[link].parent) {
+        const RobotModel::Link& one = model.links()[link];
+        const bool slides = one.motion == RobotModel::Link::Motion::kPrismatic;
+        if (one.joint == joint) way += std::abs(one.multiplier) * (slides ? 1.0 : reach);
+        if (slides) {
+          const IndependentJoint& driver = model.joints()[one.joint];
+          const double farthest = std::max(std::abs(driver.lower), std::abs(driver.upper));
+          reach += std::abs(one.offset) + (std::isfinite(farthest) ? std::abs(one.multiplier) * farthest : 0.0);
+        }
+        reach += one.X_PJ.translation().norm();
+      }
+      if (way > 0.0) longest = std::min(longest, share * shape.smallest_half_extent / way);
     }
   }
   return longest;

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "tissue_contact/core/state_archive.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/instrument/instrument.h"
 
@@ -15,8 +16,11 @@ class InstrumentMotion {
   /// @param instruments must outlive this object.
   explicit InstrumentMotion(const std::vector<Instrument>& instruments);
 
+  /// Positions, deflections and poses as they were saved.
+  void carry(int instrument, StateArchive& archive);
+
   void reset();                                          ///< all instruments at their initial joint positions
-  void place(int instrument, const VectorX& positions);  ///< there at once, at rest
+  void place(int instrument, const VectorX& positions);  ///< there at once, at rest, not deflected
 
   /// Prepares the interval to `targets` and returns the number of equal steps to cut it into: none longer than
   /// max_step_s, none in which a shape moves more than half its smallest half extent, so that it cannot pass through a
@@ -31,7 +35,25 @@ class InstrumentMotion {
   void moveTo(double fraction);
   void finishStep();  ///< the end of the step becomes the start of the next
 
-  const VectorX& positions(int instrument) const { return states_[instrument].positions; }
+  /// What contacts did to a compliant joint in the step that was finished last.
+  struct JointLoad {
+    double effort = 0.0;         ///< N m or N, along the joint
+    double effort_before = 0.0;  ///< of the step before
+    double resists = 0.0;        ///< what they add to it, backwards, for each rad or m in a step; 0: nothing touches
+  };
+  void setLoad(int instrument, int joint, const JointLoad& load) { states_[instrument].loads[joint] = load; }
+  const JointLoad& load(int instrument, int joint) const { return states_[instrument].loads[joint]; }
+  /// After moveTo(): the joint is by so much farther than the joint states say, rad or m; then poseDeflected().
+  void deflect(int instrument, int joint, double deflection) { states_[instrument].deflections[joint] = deflection; }
+  void poseDeflected(int instrument);
+  /// How far the joint states have moved a joint in this step, rad or m. Of instruments with compliant joints.
+  double wayOf(int instrument, int joint) const {
+    return states_[instrument].positions[joint] - states_[instrument].positions_before[joint];
+  }
+
+  const VectorX& positions(int instrument) const { return states_[instrument].positions; }  ///< by the joint states
+  /// Of each joint; empty without compliant ones.
+  const VectorX& deflections(int instrument) const { return states_[instrument].deflections; }
   const std::vector<std::vector<Pose>>& startPoses() const { return X_WL_; }  ///< [instrument][link of its model]
   const std::vector<std::vector<Pose>>& endPoses() const { return X_WL_end_; }
 
@@ -40,6 +62,9 @@ class InstrumentMotion {
 
   /// Bound on how far any point of any shape moves in the step, m.
   double longestTravel() const { return longestTravel(false); }
+  /// How far a joint may go without any shape it moves going farther than this share of its smallest half extent, rad or m; joints
+  /// between them as far out as their limits let them. Infinite where it moves none.
+  double longestWay(int instrument, int joint, double share) const;
   double smallestHalfExtent(int instrument, int contact_link, int shape) const;
 
   static constexpr double kMostSteps = 1e9;  ///< an int holds them; no interval that anyone means has more
@@ -61,6 +86,11 @@ class InstrumentMotion {
   struct State {
     std::vector<MovingLink> links;
     VectorX start, target, positions;
+    // Empty without compliant joints:
+    VectorX positions_before;  ///< at the start of the step
+    VectorX deflections;
+    std::vector<JointLoad> loads;
+    VectorX deflected;  ///< scratch: positions and deflections
   };
   double longestTravel(bool per_half_extent) const;
   /// The longest of one step per half extent, of the whole interval cut into so many; of those looked at so far once it

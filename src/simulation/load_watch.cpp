@@ -33,6 +33,11 @@ std::vector<double> nodeAreas(const Tissue& tissue) {
   return areas;
 }
 
+/// Whether an instrument touches with several links, none of which gives way.
+bool mayBeJaws(const Instrument& instrument) {
+  return instrument.contactLinks().size() > 1 && instrument.compliantJoints().empty();
+}
+
 }  // namespace
 
 LoadWatch::LoadWatch(const Scene& scene, const std::vector<Tissue>& tissues) {
@@ -200,6 +205,9 @@ std::string implausibleLoadText(const Simulator& simulator) {
       << "smaller cells under the tool, and edges turn elements inside out with any: forces that stay the same with "
          "smaller "
          "cells are right";
+  if (load.instrument >= 0 && mayBeJaws(simulator.instruments()[load.instrument])) {
+    text << "; if jaws close on it, compliant_joints limits what they squeeze with";
+  }
   return text.str();
 }
 

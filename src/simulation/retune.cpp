@@ -84,11 +84,19 @@ const char* difference(const TissueDescription& a, const TissueDescription& b) {
   return nullptr;
 }
 
+bool haveSameCompliance(const InstrumentDescription& a, const InstrumentDescription& b) {
+  return std::equal(a.compliant_joints.begin(), a.compliant_joints.end(), b.compliant_joints.begin(),
+                    b.compliant_joints.end(), [](const JointCompliance& one, const JointCompliance& other) {
+                      return one.joint == other.joint && one.stiffness == other.stiffness &&
+                             one.effort_limit == other.effort_limit;
+                    });
+}
+
 const char* difference(const InstrumentDescription& a, const InstrumentDescription& b) {
   const bool are_same = a.name == b.name && a.urdf_file == b.urdf_file && a.tip_link == b.tip_link &&
                         a.robot_description_parameter == b.robot_description_parameter &&
                         areSame(a.base_pose, b.base_pose) && a.joint_names == b.joint_names &&
-                        a.contact_links.size() == b.contact_links.size();
+                        haveSameCompliance(a, b) && a.contact_links.size() == b.contact_links.size();
   return are_same ? nullptr : "instruments";
 }
 

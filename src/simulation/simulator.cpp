@@ -122,6 +122,7 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
   const double dt = duration_s / steps;
   for (report.substeps = 0; report.substeps < steps && !report.interrupted;) {
     all.motion.moveTo(static_cast<double>(++report.substeps) / steps);
+    all.compliant_joints.give(dt, all.motion);
     all.step(dt);
     report.interrupted = report.substeps < steps && limits.interrupted && limits.interrupted();
   }
@@ -139,6 +140,9 @@ void Simulator::setSolverDeadline(double clock_s, double prompt_s) {
 
 Wrench Simulator::wrench(int instrument) const { return implementation_->wrenches.at(instrument); }
 const VectorX& Simulator::jointPositions(int instrument) const { return implementation_->motion.positions(instrument); }
+const VectorX& Simulator::jointDeflections(int instrument) const {
+  return implementation_->motion.deflections(instrument);
+}
 const std::vector<Pose>& Simulator::linkPoses(int instrument) const {
   return implementation_->motion.startPoses().at(instrument);
 }

@@ -39,6 +39,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       friction(scene, instruments, tissues),
       edges(tissues),
       motion(instruments),
+      compliant_joints(instruments, motion),
       x(tissues.size()),
       margins(edges, tissues.size(), buildTissuePairs(scene)),
       detector(instruments, shareSurfaces(surfacesOf(tissues), restPositionsOf(tissues)), environment.meshes),
@@ -111,6 +112,7 @@ void Simulator::Implementation::step(double dt) {
   motion.finishStep();
   ++step_count;
   recordContacts();
+  compliant_joints.load(problem, solution, contacts.solved(), motion);
   last_dt = dt;
   if (observer) observer();
 }

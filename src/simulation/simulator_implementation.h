@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "simulation/compliant_joints.h"
 #include "simulation/detection_margins.h"
 #include "simulation/fold_watch.h"
 #include "simulation/friction_table.h"
@@ -63,6 +64,7 @@ struct Simulator::Implementation {
   SurfaceEdges edges;
 
   InstrumentMotion motion;
+  CompliantJoints compliant_joints;
   std::vector<NodalVectors> x;  ///< per tissue, m
   ContactProblem problem;
   ContactSolution solution;         ///< v is the tissues' velocity

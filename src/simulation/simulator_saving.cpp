@@ -62,10 +62,7 @@ void Simulator::Implementation::carry(StateArchive& archive) {
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     archive.section("instrument '" + instruments[i].name() + "'");
     archive.require(instrumentHash(instruments[i]), "it has another model, or stands elsewhere");
-    VectorX positions = motion.positions(static_cast<int>(i));
-    archive.carry(positions);
-    archive.check(positions.allFinite(), "a joint position that is not finite");
-    if (archive.isReading()) motion.place(static_cast<int>(i), positions);
+    motion.carry(static_cast<int>(i), archive);
     archive.carry(wrenches[i].force);
     archive.carry(wrenches[i].torque);
     archive.check(wrenches[i].force.allFinite() && wrenches[i].torque.allFinite(), "a force that is not finite");

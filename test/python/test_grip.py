@@ -36,6 +36,28 @@ friction:
 """
 
 
+FLAP = """
+gravity_m_per_s2: [0, 0, 0]
+tissues:
+  - name: flap
+    block: {{size_m: [0.004, 0.01, 0.03], cells: [4, 8, 12]}}
+    refinement: never
+    material: {{model: neo_hookean, youngs_modulus_pa: 20000, poissons_ratio: 0.3, density_kg_per_m3: 1000}}
+    damping: {{stiffness_s: 0.003, mass_per_s: 20}}
+    fixed: [{{plane: {{point_m: [0, 0, 0], normal: [0, 0, 1]}}}}]
+instruments:
+  - name: psm
+    urdf: {model}
+    base_pose: {{position_m: [-0.25, 0, -0.311]}}
+    joint_state_topics: [/psm/js]
+    tip_link: PSM2_tool_wrist_caudier_ee_link
+    contact_links: [PSM2_tool_wrist_caudier_link_2_left, PSM2_tool_wrist_caudier_link_2_right]
+{compliance}
+friction:
+  - {{instrument: psm, tissue: flap, static: 0.6, kinetic: 0.4}}
+"""
+
+
 def joints(half_angle_rad, up_m=0.0):
     return {"psm": [0.0, 0.0, INSERTED_M - up_m, 0.0, 0.0, 0.0, 2.0 * half_angle_rad]}
 
@@ -59,3 +81,28 @@ def test_jaws_hold_what_kinetic_friction_would_not(tmp_path):
     simulator.advance(0.5)
     assert np.mean(simulator.positions("stone")[:, 2]) == pytest.approx(0.5 * SIZE_M[2] + 0.02, abs=0.001)  # slides .56 mm
     assert simulator.wrench("psm", frame="world")[2] == pytest.approx(-9.81 * MASS_KG, rel=0.03)
+
+
+@pytest.mark.skipif(not MODEL.is_file(), reason="no shared data with the model of a PSM")
+@pytest.mark.parametrize("closes_in_s", [1.0, 0.1])
+def test_compliant_jaws_hold_tissue_that_the_recorded_position_would_squeeze_out(closes_in_s):
+    """A recording made without tissue closes the jaws to 0 and below; a limit of .008 N m on their joint is .46 N a jaw at 17.5 mm."""
+
+    def pull(compliance):
+        simulator = tc.Simulator(tc.parse_scene(FLAP.format(model=MODEL, compliance=compliance)))
+        simulator.place("psm", joints(0.25)["psm"])
+        steps = round(closes_in_s / 0.01)
+        for k in range(steps):
+            simulator.advance(0.01, joints(0.25 - 0.45 * (k + 1) / steps))
+        contacts = simulator.contacts()
+        squeeze_n = 0.5 * np.abs((contacts["force"] * contacts["normal"]).sum(axis=1)).sum()
+        for k in range(100):
+            simulator.advance(0.01, joints(-0.2, 0.00003 * (k + 1)))
+        return squeeze_n, simulator.wrench("psm", frame="world")[2], simulator.joint_deflections("psm")
+
+    squeeze_n, force_n, deflections = pull("    compliant_joints: [{joint: jaw, stiffness_n_m_per_rad: 0.5, torque_limit_n_m: 0.008}]")
+    assert squeeze_n == pytest.approx(0.43, rel=0.1)
+    assert force_n == pytest.approx(-0.073, rel=0.1)
+    assert deflections[-1] == pytest.approx(0.505, rel=0.02) and not deflections[:-1].any()
+    _, lost_n, none = pull("")
+    assert abs(lost_n) < 0.005 and not none.any()

@@ -20,14 +20,22 @@ struct ContactLink {
   std::vector<CollisionShape> shapes;
 };
 
+/// See JointCompliance.
+struct CompliantJoint {
+  int joint = -1;             ///< index into RobotModel::joints()
+  double stiffness = 0.0;     ///< N m/rad or N/m
+  double effort_limit = 0.0;  ///< N m or N; may be infinite
+  bool slides = false;        ///< N/m and N, m
+};
+
 /// Const after construction.
 class Instrument {
  public:
   /// @param X_WB pose of the URDF root link in the world (tf already looked up).
   /// @throws std::invalid_argument naming the instrument and the link or joint: unknown tip or contact link, contact
   /// link
-  ///   without any shape, joint map to an unknown or mimic joint, initial position of an unknown joint, a moving URDF
-  ///   without joint-state topics or a rigid one with them.
+  ///   without any shape, joint map to an unknown or mimic joint, initial position of an unknown joint, compliance of
+  ///   an unknown or of the other kind of joint, or of one twice, a moving URDF without joint-state topics or a rigid one with them.
   Instrument(const InstrumentDescription& description, RobotModel model, const Pose& X_WB);
 
   const std::string& name() const { return name_; }
@@ -36,6 +44,8 @@ class Instrument {
   int tipLink() const { return tip_link_; }
   const std::vector<ContactLink>& contactLinks() const { return contact_links_; }
   const VectorX& initialPositions() const { return initial_positions_; }
+
+  const std::vector<CompliantJoint>& compliantJoints() const { return compliant_joints_; }
 
   /// Independent joint meant by a recorded name (through the map, or the URDF's own name); -1 when it means none.
   int jointOfRecordedName(const std::string& recorded) const;
@@ -50,6 +60,7 @@ class Instrument {
   int tip_link_ = -1;
   std::vector<ContactLink> contact_links_;
   VectorX initial_positions_;
+  std::vector<CompliantJoint> compliant_joints_;
   std::map<std::string, int> joint_of_recorded_name_;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <string>
 #include <variant>
@@ -53,6 +54,15 @@ struct JointStateTopic {
   bool triggers = true;
 };
 
+/// A joint that gives way to what tissue does to it: where it is differs from its joint state by `effort / stiffness`, and by whatever it takes where
+/// the effort would exceed the limit.
+struct JointCompliance {
+  std::string joint;                                              ///< of the URDF, independent
+  bool slides = false;                                            ///< N/m and N in place of N m/rad and N m
+  double stiffness = 0.0;                                         ///< N m/rad or N/m, > 0
+  double effort_limit = std::numeric_limits<double>::infinity();  ///< N m or N, > 0
+};
+
 struct InstrumentDescription {
   std::string name;
   std::string urdf_file;                    ///< absolute path; empty: the URDF comes from `robot_description_parameter`
@@ -61,7 +71,8 @@ struct InstrumentDescription {
   std::vector<JointStateTopic> joint_state_topics;        ///< empty for a fixed obstacle; else at least one triggers
   std::map<std::string, std::string> joint_names;         ///< recorded joint name -> URDF joint name
   std::map<std::string, double> initial_joint_positions;  ///< URDF joint name -> rad or m; others start at 0
-  std::string tip_link;                                   ///< wrench origin and frame
+  std::vector<JointCompliance> compliant_joints;
+  std::string tip_link;  ///< wrench origin and frame
   std::vector<ContactLinkDescription> contact_links;
 };
 

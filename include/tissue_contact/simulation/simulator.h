@@ -169,6 +169,8 @@ class Simulator {
   Wrench wrench(int instrument) const;
 
   const VectorX& jointPositions(int instrument) const;
+  /// Of each joint, how much farther than that it is, rad or m, having given way to the tissue; empty for instruments without compliant joints.
+  const VectorX& jointDeflections(int instrument) const;
   const std::vector<Pose>& linkPoses(int instrument) const;  ///< X_WL of every link
   /// See ContactDetector::actingSurface.
   const TriangleMesh* actingSurface(int instrument, int contact_link, int shape) const;

@@ -12,7 +12,11 @@
 namespace tissue_contact {
 
 ReplayFindings::ReplayFindings(const Simulator& simulator, std::ostream& log, std::string prefix)
-    : simulator_(simulator), log_(log), prefix_(std::move(prefix)), force_errors_(simulator.instruments().size()) {}
+    : simulator_(simulator), log_(log), prefix_(std::move(prefix)), force_errors_(simulator.instruments().size()) {
+  for (std::size_t i = 0; i < force_errors_.size(); ++i) {
+    gave_way_.push_back(VectorX::Zero(simulator.jointDeflections(static_cast<int>(i)).size()));
+  }
+}
 
 void ReplayFindings::note(const PlayedSample& played, long steps) {
   if (played.verdict != Verdict::kAccepted && first_refusal_.empty()) {
@@ -29,6 +33,9 @@ void ReplayFindings::note(const PlayedSample& played, long steps) {
     sticking_not_converged_ += static_cast<long>(report.stop == StopReason::kIterations);
   }
   pinched_ += static_cast<long>(report.pinched_contacts > 0);
+  for (std::size_t i = 0; i < gave_way_.size(); ++i) {
+    gave_way_[i] = gave_way_[i].cwiseMax(simulator_.jointDeflections(static_cast<int>(i)).cwiseAbs());
+  }
   noteLaw(played);
   noteCells(played);
   if (report.implausible_load.found && ++implausible_ == 1) warn(played, implausibleLoadText(simulator_));
@@ -75,10 +82,22 @@ std::string ReplayFindings::countsText() const {
 }
 
 void ReplayFindings::summarize() const {
+  summarizeJoints();
   summarizeForceErrors();
   summarizeLaw();
   summarizeCells();
   summarizeGrips();
+}
+
+void ReplayFindings::summarizeJoints() const {
+  for (std::size_t i = 0; i < gave_way_.size(); ++i) {
+    const Instrument& instrument = simulator_.instruments()[i];
+    for (const CompliantJoint& compliant : instrument.compliantJoints()) {
+      const IndependentJoint& joint = instrument.model().joints()[static_cast<std::size_t>(compliant.joint)];
+      log_ << prefix_ << "joint '" << joint.name << "' of '" << instrument.name() << "' gave way by up to "
+           << gave_way_[i][compliant.joint] << (compliant.slides ? " m\n" : " rad\n");
+    }
+  }
 }
 
 void ReplayFindings::summarizeForceErrors() const {

@@ -34,7 +34,7 @@ class ReplayFindings {
   std::vector<std::pair<std::string, long>> counts() const;
   /// The same in a sentence: "3 jumps, 0 intervals not converged, ...".
   std::string countsText() const;
-  /// Lines on likely errors of forces, on a law beyond its range, on coarse cells and on grips that are not solved to the end, where there is
+  /// Lines on how far compliant joints gave way, on likely errors of forces, on a law beyond its range, on coarse cells and on grips that are not solved to the end, where there is
   /// something to tell.
   void summarize() const;
 
@@ -46,6 +46,7 @@ class ReplayFindings {
   void summarizeLaw() const;
   void summarizeCells() const;
   void summarizeGrips() const;
+  void summarizeJoints() const;
 
   const Simulator& simulator_;
   std::ostream& log_;
@@ -59,6 +60,8 @@ class ReplayFindings {
   long implausible_ = 0;
   long pinched_ = 0;
   std::vector<ForceErrorSummary> force_errors_;  ///< per instrument
+  std::vector<VectorX>
+      gave_way_;  ///< per instrument: the farthest of each joint, rad or m; see Simulator::jointDeflections
   LawAlarm law_alarm_;
   long law_alarms_ = 0;  ///< how often the law left its range
   LawError law_error_;   ///< largest

@@ -110,6 +110,35 @@ TEST(Instrument, RefusesBadInitialPositions) {
   }
 }
 
+TEST(Instrument, KnowsItsCompliantJoints) {
+  InstrumentDescription description = armDescription();
+  description.compliant_joints = {{"turn", false, 0.5, 0.1}, {"slide", true, 1000.0}};
+  const Instrument instrument = make(description);
+  ASSERT_EQ(instrument.compliantJoints().size(), 2U);
+  EXPECT_EQ(instrument.compliantJoints()[0].joint, instrument.model().findJoint("turn"));
+  EXPECT_EQ(instrument.compliantJoints()[0].stiffness, 0.5);
+  EXPECT_EQ(instrument.compliantJoints()[0].effort_limit, 0.1);
+  EXPECT_EQ(instrument.compliantJoints()[1].effort_limit, std::numeric_limits<double>::infinity());
+}
+
+TEST(Instrument, RefusesComplianceThatNoJointHas) {
+  InstrumentDescription description = armDescription();
+  description.compliant_joints = {{"yaw", false, 0.5}};
+  expectContains(refusalOf(description), {"compliance", "'yaw'", "slide, turn"});
+  description.compliant_joints = {{"follow", false, 0.5}};
+  expectContains(refusalOf(description), {"compliance", "'follow'", "mimic"});
+  description.compliant_joints = {{"turn", true, 0.5}};
+  expectContains(refusalOf(description), {"'turn' turns", "stiffness_n_m_per_rad"});
+  description.compliant_joints = {{"slide", false, 0.5}};
+  expectContains(refusalOf(description), {"'slide' slides", "stiffness_n_per_m"});
+  description.compliant_joints = {{"turn", false, 0.5}, {"turn", false, 0.6}};
+  expectContains(refusalOf(description), {"'turn' is named twice"});
+  for (const double bad : {0.0, -1.0, kNan, std::numeric_limits<double>::infinity()}) {
+    description.compliant_joints = {{"turn", false, bad}};
+    expectContains(refusalOf(description), {"joint 'turn'", "above 0"});
+  }
+}
+
 TEST(Instrument, RefusesABasePoseThatIsNotFinite) {
   expectContains(refusal([] { Instrument(armDescription(), arm(), translation(0, kNan, 0)); }),
                  {"instrument 'arm'", "base pose", "not finite"});

@@ -86,6 +86,19 @@ const BadScene kTypes[] = {
     {"max_gap_s: 0.5", "joint_states: newest", "63: step.joint_states",
      "did you mean \"newest_state\"? allowed here: auto, every_state, newest_state"},
     {"      yaw: 0.25", "      yaw: .inf", "44: instruments[0].initial_joint_positions.yaw", "rad or m"},
+    {"      yaw: 0.25", "      yaw: 0.25\n    compliant_joints: [{joint: yaw}]",
+     "45: instruments[0].compliant_joints[0]", "stiffness_n_m_per_rad"},
+    {"      yaw: 0.25", "      yaw: 0.25\n    compliant_joints: [{joint: yaw, stiffness: 1}]",
+     "45: instruments[0].compliant_joints[0].stiffness", "did you mean"},
+    {"      yaw: 0.25", "      yaw: 0.25\n    compliant_joints: [{joint: yaw, stiffness_n_m_per_rad: 0}]",
+     "45: instruments[0].compliant_joints[0].stiffness_n_m_per_rad", "N m/rad"},
+    {"      yaw: 0.25",
+     "      yaw: 0.25\n    compliant_joints: [{joint: yaw, stiffness_n_m_per_rad: 1, torque_limit_n_m: 0}]",
+     "45: instruments[0].compliant_joints[0].torque_limit_n_m", "the force at the jaw times its distance"},
+    {"      yaw: 0.25",
+     "      yaw: 0.25\n    compliant_joints: [{joint: yaw, stiffness_n_m_per_rad: 1, force_limit_n: 1}]",
+     "45: instruments[0].compliant_joints[0].force_limit_n",
+     "a joint that turns has stiffness_n_m_per_rad and torque_limit_n_m"},
 };
 INSTANTIATE_TEST_SUITE_P(Types, BadSceneTest, testing::ValuesIn(kTypes));
 

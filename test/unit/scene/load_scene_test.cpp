@@ -95,6 +95,22 @@ TEST_F(SceneTest, FillsAnInstrument) {
   EXPECT_EQ(parse(kFullScene).instruments.at(1).robot_description_parameter, "/arm2/robot_description");
 }
 
+TEST_F(SceneTest, ReadsCompliantJoints) {
+  const InstrumentDescription arm =
+      parse(replaced(kFullScene, "      yaw: 0.25",
+                     "      yaw: 0.25\n    compliant_joints: [{joint: jaw, stiffness_n_m_per_rad: 0.5, "
+                     "torque_limit_n_m: 0.02}, {joint: finger, stiffness_n_per_m: 800}]"))
+          .instruments.at(0);
+  ASSERT_EQ(arm.compliant_joints.size(), 2U);
+  EXPECT_EQ(arm.compliant_joints[0].joint, "jaw");
+  EXPECT_FALSE(arm.compliant_joints[0].slides);
+  EXPECT_EQ(arm.compliant_joints[0].stiffness, 0.5);
+  EXPECT_EQ(arm.compliant_joints[0].effort_limit, 0.02);
+  EXPECT_TRUE(arm.compliant_joints[1].slides);
+  EXPECT_EQ(arm.compliant_joints[1].stiffness, 800.0);
+  EXPECT_EQ(arm.compliant_joints[1].effort_limit, std::numeric_limits<double>::infinity());
+}
+
 TEST_F(SceneTest, KnowsWhichTopicsTrigger) {
   struct Case {
     const char* topics;

@@ -1,0 +1,174 @@
+/// Joints that give way to the tissue (CompliantJoints): where they rest, what they do at their limit, beside stiff tissue and when it lets
+/// go, and what a saved state keeps of them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "support/text_scene.h"
+
+namespace tissue_contact {
+namespace compliant_joints_test {
+
+constexpr double kStep = 0.001;
+
+/// A ball of 5 mm, 0.1 mm above the middle of a block, on joints x, y, z.
+Simulator ballOn(const std::string& compliance, const std::string& youngs_modulus_pa = "5000") {
+  std::string tissue = blockScene("[0.06, 0.06, 0.02]", "[6, 6, 3]");
+  tissue.replace(tissue.find("5000"), 4, youngs_modulus_pa);
+  std::string ball = onlyBall("[0.001, 0.002, 0.0251]");
+  ball.insert(ball.rfind("}\n"), ", compliant_joints: " + compliance);
+  return makeSimulator(tissue + ball + "friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}]\n",
+                       {{"probe", probeUrdf(0.005)}});
+}
+
+/// The ball goes down to `z_m` at 20 mm/s and rests.
+void press(Simulator& simulator, double z_m, double rest_s = 0.3) {
+  const double from = simulator.jointPositions(0)[2];
+  const int steps = std::max(1, static_cast<int>(std::lround(std::abs(z_m - from) / 0.02 / kStep)));
+  for (int k = 1; k <= steps; ++k) simulator.advance(kStep, {Vector3(0.0, 0.0, from + (z_m - from) * k / steps)});
+  for (int k = 0; k < std::lround(rest_s / kStep); ++k) simulator.advance(kStep, {Vector3(0.0, 0.0, z_m)});
+}
+
+/// In world axes, since the ball does not turn.
+double upwardForce(const Simulator& simulator) { return simulator.wrench(0).force.z(); }
+
+TEST(CompliantJoints, RestWhereTheSpringBearsTheForce) {
+  constexpr double kStiffness = 20.0;  // N/m, as much as the tissue's
+  Simulator simulator = ballOn("[{joint: z, stiffness_n_per_m: 20}]");
+  press(simulator, -0.004);
+  const double way = simulator.jointDeflections(0)[2];
+  EXPECT_NEAR(kStiffness * way, upwardForce(simulator), 1e-3 * upwardForce(simulator));
+  EXPECT_GT(way, 1e-3);
+  EXPECT_EQ(simulator.jointPositions(0)[2], -0.004);
+  EXPECT_NEAR(simulator.linkPoses(0)[3].translation().z(), 0.0251 - 0.004 + way, 1e-12);
+
+  // A rigid joint that goes where this one rests meets the same force, but for what friction keeps of the way there.
+  Simulator rigid = ballOn("[{joint: x, stiffness_n_per_m: 1.0e12}]");
+  press(rigid, -0.004 + way);
+  EXPECT_NEAR(upwardForce(rigid), upwardForce(simulator), 0.01 * upwardForce(rigid));
+}
+
+TEST(CompliantJoints, PressNoHarderThanTheirLimit) {
+  Simulator simulator = ballOn("[{joint: z, stiffness_n_per_m: 1.0e4, force_limit_n: 0.02}]");
+  press(simulator, -0.008);
+  EXPECT_NEAR(upwardForce(simulator), 0.02, 2e-5);
+  EXPECT_GT(simulator.jointDeflections(0)[2], 0.004);
+}
+
+/// What follows a step late must not swing, however stiff the tissue is beside the joint.
+TEST(CompliantJoints, ComeToRestOnStiffTissue) {
+  for (const std::string stiffness : {"1", "1.0e3", "1.0e6"}) {
+    Simulator simulator = ballOn("[{joint: z, stiffness_n_per_m: " + stiffness + ", force_limit_n: 0.5}]", "1.0e7");
+    press(simulator, -0.001, 1.0);
+    const double force = upwardForce(simulator);
+    EXPECT_GT(force, 1e-4) << stiffness;
+    EXPECT_LT(force, 0.51) << stiffness;
+    double least = force, most = force;
+    for (int k = 0; k < 100; ++k) {
+      simulator.advance(kStep, {Vector3(0.0, 0.0, -0.001)});
+      least = std::min(least, upwardForce(simulator));
+      most = std::max(most, upwardForce(simulator));
+    }
+    EXPECT_LT(most - least, 2e-3 * force) << stiffness;
+  }
+}
+
+TEST(CompliantJoints, ReturnWhenNothingIsInTheirWay) {
+  Simulator simulator = ballOn("[{joint: z, stiffness_n_per_m: 1.0e3, force_limit_n: 0.02}]");
+  press(simulator, -0.008);
+  ASSERT_GT(simulator.jointDeflections(0)[2], 0.004);
+  press(simulator, 0.001);
+  EXPECT_EQ(simulator.jointDeflections(0)[2], 0.0);
+  EXPECT_EQ(upwardForce(simulator), 0.0);
+}
+
+/// Jaws that turn about y, 12 mm above a flap that they take between them; its lower end is fixed. They close to where they pass through each
+/// other, as recorded without a flap, and rest.
+class Jaws : public ::testing::TestWithParam<bool> {
+ protected:
+  static constexpr double kAxisHeight = 0.042;
+
+  /// @param is_one the second jaw mimics the first.
+  static Simulator make(bool is_one) {
+    const std::string jaw =
+        "<collision><origin xyz='0 0 -0.015'/><geometry><box size='0.001 0.006 0.01'/></geometry></collision></link>";
+    const auto joint = [](const std::string& name, const std::string& child, const std::string& axis,
+                          const std::string& more) {
+      return "<joint name='" + name + "' type='revolute'><parent link='base'/><child link='" + child +
+             "'/><axis xyz='" + axis + "'/>" + more + "<limit lower='0' upper='1' effort='1' velocity='1'/></joint>";
+    };
+    const std::string urdf = "<robot name='gripper'><link name='base'/><link name='left'>" + jaw +
+                             "<link name='right'>" + jaw + joint("open", "left", "0 -1 0", "") +
+                             joint("other", "right", "0 1 0", is_one ? "<mimic joint='open'/>" : "") + "</robot>";
+    const std::string compliance = is_one ? "[{joint: open, stiffness_n_m_per_rad: 0.5, torque_limit_n_m: 0.004}]"
+                                          : "[{joint: open, stiffness_n_m_per_rad: 0.5, torque_limit_n_m: 0.002}, "
+                                            "{joint: other, stiffness_n_m_per_rad: 0.5, torque_limit_n_m: 0.002}]";
+    return makeSimulator(
+        "gravity_m_per_s2: [0, 0, 0]\n"
+        "tissues:\n  - name: flap\n    block: {size_m: [0.004, 0.01, 0.03], cells: [4, 5, 12]}\n"
+        "    material: {youngs_modulus_pa: 20000, density_kg_per_m3: 1000, poissons_ratio: 0.3}\n"
+        "    damping: {stiffness_s: 0.003, mass_per_s: 20}\n"
+        "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n"
+        "instruments:\n  - {name: gripper, robot_description: gripper, tip_link: base, contact_links: [left, right],\n"
+        "     joint_state_topics: [/js], base_pose: {position_m: [0, 0, 0.042]}, compliant_joints: " +
+            compliance + "}\nfriction: [{instrument: gripper, tissue: flap, static: 0.6, kinetic: 0.4}]\n",
+        {{"gripper", urdf}});
+  }
+
+  /// Of the tissue on a jaw about its axis, N m, opening it.
+  static double torqueOn(const Simulator& simulator, int link) {
+    double torque = 0.0;
+    for (const SolvedContact& solved : simulator.contacts()) {
+      if (solved.contact.key.link != link) continue;
+      const Vector3 from_axis = solved.contact.p_WC - Vector3(0.0, 0.0, kAxisHeight);
+      torque += (link == 0 ? -1.0 : 1.0) * from_axis.cross(-solved.force_on_tissue_n).y();
+    }
+    return torque;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(OneJointOrTwo, Jaws, ::testing::Bool(),
+                         [](const auto& is_one) { return is_one.param ? "one" : "two"; });
+
+TEST_P(Jaws, HoldAFlapWithTheTorqueThatTheyHave) {
+  Simulator simulator = make(GetParam());
+  const VectorX ones = simulator.instruments()[0].initialPositions().array() + 1.0;
+  simulator.placeInstrument(0, 0.3 * ones);
+  double left = 0.0, right = 0.0;  // means of the last two steps, between which contacts at edges come and go
+  for (int k = 1; k <= 2500; ++k) {
+    simulator.advance(kStep, {std::max(0.3 - 0.5 * k * kStep, -0.2) * ones});
+    if (k <= 2498) continue;
+    left += 0.5 * torqueOn(simulator, 0);
+    right += 0.5 * torqueOn(simulator, 1);
+  }
+  EXPECT_NEAR(left + right, 0.004, 2e-5);
+  EXPECT_NEAR(left, 0.002, GetParam() ? 2e-4 : 2e-5);  // of one joint only the sum is given
+  EXPECT_GT(simulator.jointDeflections(0)[0], 0.2);
+}
+
+TEST(CompliantJoints, AreSaved) {
+  const std::string compliance = "[{joint: z, stiffness_n_per_m: 50, force_limit_n: 0.05}]";
+  Simulator simulator = ballOn(compliance);
+  press(simulator, -0.004, 0.0);
+  const std::string state = simulator.saveState();
+  Simulator other = ballOn(compliance);
+  other.restoreState(state);
+  EXPECT_EQ(other.jointDeflections(0)[2], simulator.jointDeflections(0)[2]);
+  EXPECT_NE(other.jointDeflections(0)[2], 0.0);
+  press(simulator, -0.006, 0.05);
+  press(other, -0.006, 0.05);
+  EXPECT_EQ(other.wrench(0).force, simulator.wrench(0).force);
+  EXPECT_EQ(other.positions(0), simulator.positions(0));
+  simulator.reset();
+  EXPECT_EQ(simulator.jointDeflections(0)[2], 0.0);
+}
+
+TEST(CompliantJoints, AreNoneUnlessAsked) {
+  Simulator simulator = makeSimulator(blockScene() + onlyBall("[0.001, 0.002, 0.0251]"), {{"probe", probeUrdf(0.005)}});
+  EXPECT_EQ(simulator.jointDeflections(0).size(), 0);
+}
+
+}  // namespace compliant_joints_test
+}  // namespace tissue_contact
