@@ -90,8 +90,8 @@ double CompliantJoints::effortOn(Joint& joint, const ContactProblem& problem, co
 /// What the touched nodes, moved with the joint and all others held, add to its effort for each rad or m in a step.
 double CompliantJoints::resistance(Joint& joint, const ContactProblem& problem) {
   const auto key = [](const Moved& one) { return std::make_pair(one.body, one.node); };
-  std::stable_sort(joint.moved.begin(), joint.moved.end(),
-                   [&](const Moved& one, const Moved& other) { return key(one) < key(other); });
+  std::sort(joint.moved.begin(), joint.moved.end(),
+            [&](const Moved& one, const Moved& other) { return key(one) < key(other); });
   std::size_t nodes = 0;
   for (std::size_t m = 0; m < joint.moved.size(); ++m) {
     const Moved one = joint.moved[m];
