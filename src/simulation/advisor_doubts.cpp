@@ -80,6 +80,20 @@ std::optional<Advice> unitDoubt(const TissueDescription& tissue) {
   return std::nullopt;
 }
 
+std::optional<Advice> stepDoubt(const Scene& scene, const TissueDescription& tissue) {
+  constexpr double kShort = 0.0025;  // s: 2 ms, as scenes of recordings at 100 Hz have, cost some per cent
+  const double step_s = scene.step.max_step_s;
+  const double own_s = tissue.damping.stiffness_s;
+  if (step_s <= std::max(kShort, own_s)) return std::nullopt;
+  return Advice{
+      "tissue " + quoted(tissue.name) + ": steps of " + twoDigits(1e3 * step_s) +
+          " ms damp what it does by itself as so much of damping.stiffness_s would, beside its own " +
+          twoDigits(1e3 * own_s) +
+          " ms: where it swings or is shaken forces may be off by a third and more, which force errors do not "
+          "tell; slow presses are right. step.max_step_s of 0.001 is the default",
+      false};
+}
+
 namespace {
 
 /// Nodes of parts (of which no two share an element) in which none is fixed.

@@ -50,6 +50,7 @@ std::vector<Advice> Simulator::advice() const {
     const TissueDescription& tissue = scene().tissues[t];
     if (const auto doubt = sizeDoubt(tissue, all.tissues[t].restPositions(), shapes)) meshes[t].push_back(*doubt);
     if (const auto doubt = unitDoubt(tissue)) meshes[t].push_back(*doubt);
+    if (const auto doubt = stepDoubt(scene(), tissue)) meshes[t].push_back(*doubt);
     if (const auto doubt = supportDoubt(scene(), t, all.tissues)) meshes[t].push_back(*doubt);
     if (!isContinuum(tissue.material.model)) continue;
     if (const auto doubt = bendingDoubt(scene(), t, all.tissues)) meshes[t].push_back(*doubt);

@@ -81,6 +81,15 @@ def test_draw_drag(tmp_path):
     assert (tmp_path / "drag.png").stat().st_size > 30000
 
 
+def test_closing_jaws(tmp_path):
+    recorded, limited = run("closing_jaws.py", "--output", "jaws.png", "0.001", cwd=tmp_path).splitlines()
+    squeeze, most, lift = [float(word) for word in limited.replace(",", "").split() if word.replace(".", "", 1).isdigit()][-3:]
+    assert 0.11 < squeeze < most < 1.1 * squeeze  # never more on the way
+    assert 0.028 < lift < 0.035
+    assert float(recorded.split()[-2]) < 0.005  # lost
+    assert (tmp_path / "jaws.png").stat().st_size > 10000
+
+
 def test_gym_loop(tmp_path):
     first, second = run("gym_loop.py", cwd=tmp_path).splitlines()
     assert first.split(": ")[1] == second.split(": ")[1]  # the same bits

@@ -181,6 +181,23 @@ TEST(Advisor, DoubtsUnitsAndWhatHoldsATissue) {
 }
 
 /// Two blocks of 20 mm, 10 mm apart, of one file: its plane holds the foot of one, or of both.
+TEST(Advisor, TellsWhatLongStepsDampBesideTheTissuesOwnDamping) {
+  const auto tells = [](const std::string& step_s, const std::string& stiffness_s) {
+    std::string tissue = blockScene();
+    tissue.replace(tissue.find("0.003"), 5, stiffness_s);
+    const Simulator simulator = makeSimulator(
+        tissue + onlyBall("[0, 0, 0.03]") + "step: {max_step_s: " + step_s + "}\n", {{"probe", probeUrdf(0.005)}});
+    const std::vector<Advice> advice = simulator.advice();
+    return std::any_of(advice.begin(), advice.end(), [&](const Advice& line) {
+      return line.text.find("steps of 20 ms damp") != std::string::npos &&
+             line.text.find("beside its own 3 ms") != std::string::npos && !line.is_warning;
+    });
+  };
+  EXPECT_TRUE(tells("0.02", "0.003"));
+  EXPECT_FALSE(tells("0.02", "0.03"));
+  EXPECT_FALSE(tells("0.002", "0.003"));
+}
+
 TEST(Advisor, DoubtsPartsThatNothingHolds) {
   TetMesh mesh = makeBlockMesh({Vector3(0.02, 0.02, 0.02), {2, 2, 2}, {}}, BlockSplit::kSix);
   const auto nodes = static_cast<int>(mesh.positions.cols());
