@@ -151,10 +151,12 @@ std::vector<ContactLinkDescription> parseContactLinks(const YamlCursor& cursor, 
   return links;
 }
 
-constexpr Range kTurningStiffnessRange{1e-6, 1e9, "N m/rad", "a jaw of a surgical robot has some .1 to 1"};
-constexpr Range kSlidingStiffnessRange{1e-3, 1e12, "N/m", "a gripper's finger has some 1e3 to 1e5"};
-constexpr Range kTorqueLimitRange{1e-9, 1e6, "N m", "the force at the jaw times its distance from the joint's axis"};
-constexpr Range kForceLimitRange{1e-9, 1e9, "N", "the force at the finger"};
+constexpr Range kTurningStiffnessRange{1e-6, 1e9, "N m/rad",
+                                       "torque over the angle by which it makes the joint give way"};
+constexpr Range kSlidingStiffnessRange{1e-3, 1e12, "N/m", "force over the way by which it makes the joint give way"};
+constexpr Range kTorqueLimitRange{1e-9, 1e6, "N m",
+                                  "force times distance from the joint's axis, of each jaw that it moves"};
+constexpr Range kForceLimitRange{1e-9, 1e9, "N", "the force at the finger, of each that it moves"};
 
 JointCompliance parseCompliance(const YamlCursor& cursor) {
   const YamlMap map = cursor.map();
@@ -167,9 +169,8 @@ JointCompliance parseCompliance(const YamlCursor& cursor) {
   const YamlCursor* const force = map.find("force_limit_n");
   if (const YamlCursor* other = compliance.slides ? torque : force) {
     other->fail(
-        "goes with the other stiffness: a joint that turns has stiffness_n_m_per_rad and torque_limit_n_m, one that "
-        "slides "
-        "stiffness_n_per_m and force_limit_n");
+        "a joint that turns has stiffness_n_m_per_rad and torque_limit_n_m, "
+        "one that slides stiffness_n_per_m and force_limit_n");
   }
   if (torque != nullptr) compliance.effort_limit = torque->number(kTorqueLimitRange);
   if (force != nullptr) compliance.effort_limit = force->number(kForceLimitRange);

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <iterator>
+#include <tuple>
 
 namespace tissue_contact {
 namespace {
@@ -40,6 +41,25 @@ Vector3 pointWay(const RobotModel& model, const std::vector<Pose>& X_WL, int lin
   return way;
 }
 
+/// Adds the nodes of a contact that can move. Where some cannot, the others go farther for the point to go its way.
+void addMoved(const ContactProblem& problem, const ContactRow& row, CompliantJoints::Moved one,
+              std::vector<CompliantJoints::Moved>& moved) {
+  const auto canMove = [&](const RowNode& at) {
+    const BodySystem& body = problem.bodies[at.body];
+    return !body.asleep && !(*body.fixed)[at.node];
+  };
+  double share = 0.0;
+  for (int a = 0; a < row.node_count; ++a) share += canMove(row.nodes[a]) ? row.nodes[a].weight : 0.0;
+  one.way /= share;  // infinite only where nothing is added
+  for (int a = 0; a < row.node_count; ++a) {
+    if (!canMove(row.nodes[a])) continue;
+    one.body = row.nodes[a].body;
+    one.node = row.nodes[a].node;
+    one.weight = row.nodes[a].weight;
+    moved.push_back(one);
+  }
+}
+
 /// Where delta of a spring with a limit rests against `effort`, which falls by `resists` for each rad or m that the joint gives way.
 /// @param resists > 0.
 double restOf(const CompliantJoint& joint, double delta, double effort, double resists) {
@@ -75,60 +95,71 @@ double CompliantJoints::effortOn(Joint& joint, const ContactProblem& problem, co
     if (way.isZero(0.0)) continue;
     touches = touches || !solution.impulses[c].isZero(0.0);
     effort -= way.dot(contacts[c].force_on_tissue_n);
-    const ContactRow& row = problem.contacts[c];
-    for (int a = 0; a < row.node_count; ++a) {
-      const RowNode& at = row.nodes[a];
-      const BodySystem& body = problem.bodies[at.body];
-      if (body.asleep || (*body.fixed)[at.node]) continue;
-      joint.moved.push_back({at.body, at.node, at.weight * way, at.weight});
-    }
+    addMoved(problem, problem.contacts[c], {contact.key.link, 0, 0, static_cast<int>(c), way, 0.0}, joint.moved);
   }
   if (!touches) joint.moved.clear();  // what is only near does not hold it up
   return effort;
 }
 
-/// What the touched nodes, moved with the joint and all others held, add to its effort for each rad or m in a step.
+/// What contacts add to the effort on a joint, backwards, for each rad or m that it moves in a step of the problem's length: the sum over the
+/// links of n' A n / dt^2, times their number, since of n fields of velocities the sum has n times the energies of all at most.
 double CompliantJoints::resistance(Joint& joint, const ContactProblem& problem) {
-  const auto key = [](const Moved& one) { return std::make_pair(one.body, one.node); };
+  const auto key = [](const Moved& one) { return std::make_tuple(one.link, one.body, one.node, one.contact); };
   std::sort(joint.moved.begin(), joint.moved.end(),
             [&](const Moved& one, const Moved& other) { return key(one) < key(other); });
-  std::size_t nodes = 0;
-  for (std::size_t m = 0; m < joint.moved.size(); ++m) {
-    const Moved one = joint.moved[m];
-    if (nodes > 0 && key(joint.moved[nodes - 1]) == key(one)) {
-      joint.moved[nodes - 1].way += one.way;
-      joint.moved[nodes - 1].weight += one.weight;
-    } else {
-      joint.moved[nodes++] = one;
-    }
+  double energy = 0.0;
+  int links = 0;
+  for (auto begin = joint.moved.begin(); begin != joint.moved.end(); ++links) {
+    const auto end = std::find_if(begin, joint.moved.end(), [&](const Moved& one) { return one.link != begin->link; });
+    energy += energyOf(problem, begin, end);
+    begin = end;
   }
-  joint.moved.resize(nodes);
+  return links * energy / (problem.dt_s * problem.dt_s);
+}
+
+/// n' A n, n the mean way of the contacts on each node; all other nodes are held.
+double CompliantJoints::energyOf(const ContactProblem& problem, MovedNodes begin, MovedNodes end) {
   ways_.resize(problem.bodies.size());
-  for (const Moved& one : joint.moved) {
-    NodalVectors& ways = ways_[one.body];
-    if (ways.cols() != problem.bodies[one.body].mass.size()) ways.setZero(3, problem.bodies[one.body].mass.size());
-    ways.col(one.node) = one.way / one.weight;
+  const auto sameNode = [](const Moved& one, const Moved& other) {
+    return one.body == other.body && one.node == other.node;
+  };
+  for (auto one = begin; one != end;) {
+    NodalVectors& ways = ways_[one->body];
+    const Eigen::Index nodes = problem.bodies[one->body].mass.size();
+    if (ways.cols() != nodes) ways.setZero(3, nodes);
+    Vector3 sum = Vector3::Zero();
+    double weight = 0.0;
+    const auto first = one;
+    for (; one != end && sameNode(*one, *first); ++one) {
+      sum += one->weight * one->way;
+      weight += one->weight;
+    }
+    ways.col(first->node) = sum / weight;
   }
   double energy = 0.0;
-  for (const Moved& one : joint.moved) {
-    const NodalVectors& ways = ways_[one.body];
-    energy += ways.col(one.node).dot(momentumOf(problem.bodies[one.body], one.node, ways));
+  for (auto one = begin; one != end; ++one) {
+    if (one != begin && sameNode(*one, *std::prev(one))) continue;
+    const NodalVectors& ways = ways_[one->body];
+    energy += ways.col(one->node).dot(momentumOf(problem.bodies[one->body], one->node, ways));
   }
-  for (const Moved& one : joint.moved) ways_[one.body].col(one.node).setZero();
-  return energy / (problem.dt_s * problem.dt_s);
+  for (auto one = begin; one != end; ++one) ways_[one->body].col(one->node).setZero();
+  return energy;
 }
 
 void CompliantJoints::load(const ContactProblem& problem, const ContactSolution& solution,
                            const std::vector<SolvedContact>& contacts, InstrumentMotion& motion) {
   for (Joint& joint : joints_) {
-    const double effort = effortOn(joint, problem, solution, contacts, motion.startPoses()[joint.instrument]);
-    const double before = motion.load(joint.instrument, joint.compliance.joint).effort;
-    motion.setLoad(joint.instrument, joint.compliance.joint, {effort, before, resistance(joint, problem)});
+    InstrumentMotion::JointLoad load;
+    load.effort_before = motion.load(joint.instrument, joint.compliance.joint).effort;
+    load.effort = effortOn(joint, problem, solution, contacts, motion.startPoses()[joint.instrument]);
+    load.stiffness = resistance(joint, problem);
+    load.step_s = problem.dt_s;
+    motion.setLoad(joint.instrument, joint.compliance.joint, load);
   }
   // Joints that give way to the same nodes at once take them as far as their sum: so each meets the resistance of all.
   for (const Joint& joint : joints_) {
     InstrumentMotion::JointLoad load = motion.load(joint.instrument, joint.compliance.joint);
-    load.resists *= static_cast<double>(std::count_if(joints_.begin(), joints_.end(), [&](const Joint& other) {
+    load.stiffness *= static_cast<double>(std::count_if(joints_.begin(), joints_.end(), [&](const Joint& other) {
       return other.instrument == joint.instrument && !other.moved.empty();
     }));
     motion.setLoad(joint.instrument, joint.compliance.joint, load);
@@ -141,19 +172,22 @@ void CompliantJoints::give(double dt, InstrumentMotion& motion) const {
     const InstrumentMotion::JointLoad& load = motion.load(joint.instrument, index);
     const double delta = motion.deflections(joint.instrument)[index];
     double next = delta * kReturnTime_s / (kReturnTime_s + dt);
-    if (load.resists > 0.0) {
+    if (load.stiffness > 0.0) {
+      // Of A / dt^2 a shorter step has (dt / dt')^2 as much at most, a longer one no more.
+      const double shorter = std::max(1.0, load.step_s / dt);
       const double moved = motion.wayOf(joint.instrument, index);
       const double stays = delta - moved;  // where it would be, had it not moved with its joint state
       const double most = joint.longest_way + std::abs(moved);
       const double effort = 0.5 * (load.effort + load.effort_before);
-      next = std::clamp(restOf(joint.compliance, stays, effort, load.resists), stays - most, stays + most);
+      next = restOf(joint.compliance, stays, effort, load.stiffness * shorter * shorter);
+      next = std::clamp(next, stays - most, stays + most);
     } else {
       next = std::clamp(next, delta - joint.longest_way, delta + joint.longest_way);
       if (std::abs(next) < kNothing) next = 0.0;
     }
     motion.deflect(joint.instrument, index, next);
-    motion.poseDeflected(joint.instrument);
   }
+  if (!joints_.empty()) motion.poseDeflected();
 }
 
 }  // namespace tissue_contact

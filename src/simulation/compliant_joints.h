@@ -2,12 +2,13 @@
 /// Room `simulation`, private: joints that give way. Contact forces of a step in; how far each compliant joint is from where its joint state
 /// has it in the next step out.
 ///
-/// A joint rests where the effort of the contacts on it, tau = J_q' f, is what its spring takes, k delta, or its limit. Forces of a step are known when it
-/// is solved, so joints follow by a step. What contacts resist, R = n' A n / dt^2, n the way of the touched nodes with the joint while all others
-/// are held, is more than what they resist with the others free. So the joint goes from where it stood, not from where its joint state moves it, to
-/// where R (q' - q) = tau - k delta' or the limit: into tissue it never goes faster than that gives way. Of tau the mean of the last two steps is
-/// taken, or what damping takes off it while a joint moves, R at most, could drive it back and forth. A joint that nothing touches any more comes back within some
-/// hundredths of a second. A step's way is bounded by what shapes may move in one.
+/// A joint rests where the effort of the contacts on it, tau = J_q' f, is what its spring takes, k delta, or its limit. Forces of a step are
+/// known when it is solved, so joints follow by a step. What contacts resist, R = n' A n / dt^2, n the way of the touched nodes with the
+/// joint while all others are held, is about what they resist with the others free, or more: that is the least energy of all that go that way. So
+/// a joint that touches goes from where it stood, not from where its joint state moves it, to where R (q' - q) = tau - k delta' or the limit.
+/// Of tau the mean of the last two steps is taken, or what damping takes off it while a joint moves, R at most, could drive it back and
+/// forth. A joint that nothing touches goes with its joint state, and comes back to it within some hundredths of a second. Beside what its joint
+/// state moves it, a step's way is bounded by a share of what shapes may move in one.
 #pragma once
 
 #include <vector>
@@ -21,6 +22,16 @@ namespace tissue_contact {
 
 class CompliantJoints {
  public:
+  /// A node that a contact of a link moves with a joint.
+  struct Moved {
+    int link;
+    int body;
+    int node;
+    int contact;
+    Vector3 way;  ///< for each rad or m of the joint
+    double weight;
+  };
+
   /// @param instruments must outlive this object.
   CompliantJoints(const std::vector<Instrument>& instruments, const InstrumentMotion& motion);
 
@@ -32,13 +43,6 @@ class CompliantJoints {
             InstrumentMotion& motion);
 
  private:
-  /// A node that contacts move with a joint: the sum of their ways for each rad or m of it, and of their weights there.
-  struct Moved {
-    int body;
-    int node;
-    Vector3 way;
-    double weight;
-  };
   struct Joint {
     int instrument;
     CompliantJoint compliance;
@@ -48,6 +52,8 @@ class CompliantJoints {
   double effortOn(Joint& joint, const ContactProblem& problem, const ContactSolution& solution,
                   const std::vector<SolvedContact>& contacts, const std::vector<Pose>& X_WL);
   double resistance(Joint& joint, const ContactProblem& problem);
+  using MovedNodes = std::vector<Moved>::const_iterator;
+  double energyOf(const ContactProblem& problem, MovedNodes begin, MovedNodes end);
 
   const std::vector<Instrument>& instruments_;
   std::vector<Joint> joints_;

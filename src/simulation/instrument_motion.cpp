@@ -88,14 +88,18 @@ void InstrumentMotion::reset() {
 
 void InstrumentMotion::place(int instrument, const VectorX& positions) {
   State& state = states_[instrument];
+  state.deflections.setZero();
+  std::fill(state.loads.begin(), state.loads.end(), JointLoad());
+  put(instrument, positions);
+}
+
+/// There at once, as deflected as before: what one arm holds is not let go when another one jumps.
+void InstrumentMotion::put(int instrument, const VectorX& positions) {
+  State& state = states_[instrument];
   state.start = state.target = state.positions = positions;
-  if (state.deflections.size() > 0) {
-    state.positions_before = positions;
-    state.deflections.setZero();
-    std::fill(state.loads.begin(), state.loads.end(), JointLoad());
-  }
-  instruments_[instrument].linkPoses(positions, X_WL_[instrument]);
-  X_WL_end_[instrument] = X_WL_[instrument];
+  if (state.deflections.size() > 0) state.positions_before = positions;
+  poseEnd(instrument);
+  X_WL_[instrument] = X_WL_end_[instrument];
 }
 
 void InstrumentMotion::carry(int instrument, StateArchive& archive) {
@@ -110,12 +114,14 @@ void InstrumentMotion::carry(int instrument, StateArchive& archive) {
   for (JointLoad& load : state.loads) {
     archive.carry(load.effort);
     archive.carry(load.effort_before);
-    archive.carry(load.resists);
-    archive.check(std::isfinite(load.effort + load.effort_before) && std::isfinite(load.resists) && load.resists >= 0.0,
+    archive.carry(load.stiffness);
+    archive.carry(load.step_s);
+    archive.check(std::isfinite(load.effort + load.effort_before) && std::isfinite(load.stiffness + load.step_s) &&
+                      load.stiffness >= 0.0 && load.step_s >= 0.0,
                   "an effort of a joint that is not finite");
   }
   if (!archive.isReading()) return;
-  poseDeflected(instrument);
+  poseEnd(instrument);
   X_WL_[instrument] = X_WL_end_[instrument];
 }
 
@@ -141,7 +147,7 @@ int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vec
   }
   jumped_ = !(steps <= most);
   if (jumped_) {
-    for (std::size_t i = 0; i < states_.size(); ++i) place(static_cast<int>(i), targets[i]);
+    for (std::size_t i = 0; i < states_.size(); ++i) put(static_cast<int>(i), targets[i]);
     steps = by_time;
   }
   return most_steps > 0 ? std::min(most_steps, static_cast<int>(steps)) : static_cast<int>(steps);
@@ -185,15 +191,24 @@ void InstrumentMotion::moveTo(double fraction) {
     // The last step must end exactly at the target, whatever round-off the interpolation has.
     state.positions = state.target;
     if (fraction < 1.0) state.positions = state.start + fraction * (state.target - state.start);
-    state.deflections.size() == 0 ? instruments_[i].linkPoses(state.positions, X_WL_end_[i])
-                                  : poseDeflected(static_cast<int>(i));
+    poseEnd(static_cast<int>(i));
   }
 }
 
-void InstrumentMotion::poseDeflected(int instrument) {
+void InstrumentMotion::poseEnd(int instrument) {
   State& state = states_[instrument];
+  if (state.deflections.size() == 0) {
+    instruments_[instrument].linkPoses(state.positions, X_WL_end_[instrument]);
+    return;
+  }
   state.deflected = state.positions + state.deflections;
   instruments_[instrument].linkPoses(state.deflected, X_WL_end_[instrument]);
+}
+
+void InstrumentMotion::poseDeflected() {
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    if (states_[i].deflections.size() > 0) poseEnd(static_cast<int>(i));
+  }
 }
 
 void InstrumentMotion::finishStep() {

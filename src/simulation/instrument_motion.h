@@ -39,13 +39,14 @@ class InstrumentMotion {
   struct JointLoad {
     double effort = 0.0;         ///< N m or N, along the joint
     double effort_before = 0.0;  ///< of the step before
-    double resists = 0.0;        ///< what they add to it, backwards, for each rad or m in a step; 0: nothing touches
+    double stiffness = 0.0;      ///< what they take off it for each rad or m in that step; 0: nothing touches
+    double step_s = 0.0;         ///< its length
   };
   void setLoad(int instrument, int joint, const JointLoad& load) { states_[instrument].loads[joint] = load; }
   const JointLoad& load(int instrument, int joint) const { return states_[instrument].loads[joint]; }
-  /// After moveTo(): the joint is by so much farther than the joint states say, rad or m; then poseDeflected().
+  /// After moveTo(), until poseDeflected(): the joint is by so much farther than the joint states say, rad or m.
   void deflect(int instrument, int joint, double deflection) { states_[instrument].deflections[joint] = deflection; }
-  void poseDeflected(int instrument);
+  void poseDeflected();
   /// How far the joint states have moved a joint in this step, rad or m. Of instruments with compliant joints.
   double wayOf(int instrument, int joint) const {
     return states_[instrument].positions[joint] - states_[instrument].positions_before[joint];
@@ -92,6 +93,8 @@ class InstrumentMotion {
     std::vector<JointLoad> loads;
     VectorX deflected;  ///< scratch: positions and deflections
   };
+  void put(int instrument, const VectorX& positions);
+  void poseEnd(int instrument);
   double longestTravel(bool per_half_extent) const;
   /// The longest of one step per half extent, of the whole interval cut into so many; of those looked at so far once it
   /// is beyond `most`.

@@ -29,6 +29,16 @@ std::uint64_t instrumentHash(const Instrument& instrument) {
   return hash.value();
 }
 
+std::uint64_t complianceHash(const Instrument& instrument) {
+  ContentHash hash;
+  for (const CompliantJoint& joint : instrument.compliantJoints()) {
+    hash.add(&joint.joint, sizeof joint.joint);
+    hash.add(&joint.stiffness, sizeof joint.stiffness);
+    hash.add(&joint.effort_limit, sizeof joint.effort_limit);
+  }
+  return hash.value();
+}
+
 /// Of what the material makes of the undeformed mesh.
 std::uint64_t materialHash(const Tissue& tissue, const TissueDescription& description) {
   const auto undeformed = tissue.elasticity().makeState();
@@ -62,6 +72,9 @@ void Simulator::Implementation::carry(StateArchive& archive) {
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     archive.section("instrument '" + instruments[i].name() + "'");
     archive.require(instrumentHash(instruments[i]), "it has another model, or stands elsewhere");
+    if (!instruments[i].compliantJoints().empty()) {
+      archive.require(complianceHash(instruments[i]), "other joints of it are compliant, or otherwise");
+    }
     motion.carry(static_cast<int>(i), archive);
     archive.carry(wrenches[i].force);
     archive.carry(wrenches[i].torque);

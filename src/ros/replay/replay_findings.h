@@ -60,8 +60,7 @@ class ReplayFindings {
   long implausible_ = 0;
   long pinched_ = 0;
   std::vector<ForceErrorSummary> force_errors_;  ///< per instrument
-  std::vector<VectorX>
-      gave_way_;  ///< per instrument: the farthest of each joint, rad or m; see Simulator::jointDeflections
+  std::vector<VectorX> gave_way_;                ///< per instrument: most of each joint (Simulator::jointDeflections)
   LawAlarm law_alarm_;
   long law_alarms_ = 0;  ///< how often the law left its range
   LawError law_error_;   ///< largest

@@ -94,7 +94,7 @@ const BadScene kTypes[] = {
      "45: instruments[0].compliant_joints[0].stiffness_n_m_per_rad", "N m/rad"},
     {"      yaw: 0.25",
      "      yaw: 0.25\n    compliant_joints: [{joint: yaw, stiffness_n_m_per_rad: 1, torque_limit_n_m: 0}]",
-     "45: instruments[0].compliant_joints[0].torque_limit_n_m", "the force at the jaw times its distance"},
+     "45: instruments[0].compliant_joints[0].torque_limit_n_m", "force times distance from the joint's axis"},
     {"      yaw: 0.25",
      "      yaw: 0.25\n    compliant_joints: [{joint: yaw, stiffness_n_m_per_rad: 1, force_limit_n: 1}]",
      "45: instruments[0].compliant_joints[0].force_limit_n",
