@@ -18,6 +18,18 @@ constexpr double kReturnTime_s = 0.01;
 /// rad or m: nearer than that to its joint state it is there, once nothing touches it.
 constexpr double kNothing = 1e-9;
 
+/// What contacts resist is taken for more where a joint goes back and forth, since other arms press the same nodes or tissue lies under a sheet, and for
+/// less where it goes on and on, since held neighbours make nearly incompressible tissue stiff: by these factors a step, within these bounds.
+constexpr double kGrows = 1.5;
+constexpr double kFalls = 0.97;
+constexpr double kMostCaution = 16.0;
+constexpr double kLeastCaution = 0.1;
+/// Of the way before: a way that turns to more than the first goes back and forth, one of more than the second goes on.
+constexpr double kTurns = 0.5;
+constexpr double kGoesOn = 0.8;
+/// Of the effort: nearer to its balance than that a joint is there.
+constexpr double kBalanced = 0.02;
+
 /// A v of a node, N s. @param v 0 for nodes that cannot move.
 Vector3 momentumOf(const BodySystem& body, int node, const NodalVectors& v) {
   const auto times = [&](const BlockMatrix& matrix) -> Vector3 {
@@ -95,7 +107,10 @@ double CompliantJoints::effortOn(Joint& joint, const ContactProblem& problem, co
     if (way.isZero(0.0)) continue;
     touches = touches || !solution.impulses[c].isZero(0.0);
     effort -= way.dot(contacts[c].force_on_tissue_n);
-    addMoved(problem, problem.contacts[c], {contact.key.link, 0, 0, static_cast<int>(c), way, 0.0}, joint.moved);
+    // What slides, or is only near, resists along its normal alone.
+    const Vector3 n = problem.contacts[c].R_WC.col(0);
+    const Vector3 resisted = solution.states[c] == ContactState::kStatic ? way : n * n.dot(way);
+    addMoved(problem, problem.contacts[c], {contact.key.link, 0, 0, static_cast<int>(c), resisted, 0.0}, joint.moved);
   }
   if (!touches) joint.moved.clear();  // what is only near does not hold it up
   return effort;
@@ -149,8 +164,8 @@ double CompliantJoints::energyOf(const ContactProblem& problem, MovedNodes begin
 void CompliantJoints::load(const ContactProblem& problem, const ContactSolution& solution,
                            const std::vector<SolvedContact>& contacts, InstrumentMotion& motion) {
   for (Joint& joint : joints_) {
-    InstrumentMotion::JointLoad load;
-    load.effort_before = motion.load(joint.instrument, joint.compliance.joint).effort;
+    InstrumentMotion::JointLoad load = motion.load(joint.instrument, joint.compliance.joint);
+    load.effort_before = load.effort;
     load.effort = effortOn(joint, problem, solution, contacts, motion.startPoses()[joint.instrument]);
     load.stiffness = resistance(joint, problem);
     load.step_s = problem.dt_s;
@@ -169,7 +184,7 @@ void CompliantJoints::load(const ContactProblem& problem, const ContactSolution&
 void CompliantJoints::give(double dt, InstrumentMotion& motion) const {
   for (const Joint& joint : joints_) {
     const int index = joint.compliance.joint;
-    const InstrumentMotion::JointLoad& load = motion.load(joint.instrument, index);
+    InstrumentMotion::JointLoad load = motion.load(joint.instrument, index);
     const double delta = motion.deflections(joint.instrument)[index];
     double next = delta * kReturnTime_s / (kReturnTime_s + dt);
     if (load.stiffness > 0.0) {
@@ -179,12 +194,29 @@ void CompliantJoints::give(double dt, InstrumentMotion& motion) const {
       const double stays = delta - moved;  // where it would be, had it not moved with its joint state
       const double most = joint.longest_way + std::abs(moved);
       const double effort = 0.5 * (load.effort + load.effort_before);
-      next = restOf(joint.compliance, stays, effort, load.stiffness * shorter * shorter);
+      next = restOf(joint.compliance, stays, effort, load.caution * load.stiffness * shorter * shorter);
+      if (next * effort < 0.0) next = 0.0;  // contacts push: none holds a joint back from its joint state
       next = std::clamp(next, stays - most, stays + most);
+      const double way = next - stays;
+      const double lacks = effort - std::clamp(joint.compliance.stiffness * next, -joint.compliance.effort_limit,
+                                               joint.compliance.effort_limit);
+      if (way * load.way < 0.0 && std::abs(way) > kTurns * std::abs(load.way)) {
+        load.caution = std::min(kGrows * std::max(load.caution, load.least_caution), kMostCaution);
+        load.least_caution = 1.0;
+      } else if (way * load.way > 0.0 && std::abs(way) > kGoesOn * std::abs(load.way) &&
+                 std::abs(lacks) > kBalanced * std::abs(effort)) {
+        load.caution = std::max(kFalls * load.caution, load.least_caution);
+      }
+      load.way = way;
     } else {
       next = std::clamp(next, delta - joint.longest_way, delta + joint.longest_way);
       if (std::abs(next) < kNothing) next = 0.0;
+      const bool is_back = next == 0.0;
+      load.least_caution = is_back ? kLeastCaution : 1.0;
+      load.caution = is_back ? 1.0 : std::max(load.caution, 1.0);
+      load.way = 0.0;
     }
+    motion.setLoad(joint.instrument, index, load);
     motion.deflect(joint.instrument, index, next);
   }
   if (!joints_.empty()) motion.poseDeflected();

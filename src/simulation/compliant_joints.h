@@ -7,8 +7,9 @@
 /// joint while all others are held, is about what they resist with the others free, or more: that is the least energy of all that go that way. So
 /// a joint that touches goes from where it stood, not from where its joint state moves it, to where R (q' - q) = tau - k delta' or the limit.
 /// Of tau the mean of the last two steps is taken, or what damping takes off it while a joint moves, R at most, could drive it back and
-/// forth. A joint that nothing touches goes with its joint state, and comes back to it within some hundredths of a second. Beside what its joint
-/// state moves it, a step's way is bounded by a share of what shapes may move in one.
+/// forth; where a joint does so nevertheless R is taken for more, and where it goes on and on before that for less. A joint that nothing touches goes with
+/// its joint state, and comes back to it within some hundredths of a second. Beside what its joint state moves it, a step's way is bounded by a share of
+/// what shapes may move in one.
 #pragma once
 
 #include <vector>

@@ -41,6 +41,9 @@ class InstrumentMotion {
     double effort_before = 0.0;  ///< of the step before
     double stiffness = 0.0;      ///< what they take off it for each rad or m in that step; 0: nothing touches
     double step_s = 0.0;         ///< its length
+    double way = 0.0;            ///< that the joint gave way in it, rad or m
+    double least_caution = 1.0;  ///< below which that may not be
+    double caution = 1.0;        ///< what `stiffness` is multiplied by, as the joint's way so far tells
   };
   void setLoad(int instrument, int joint, const JointLoad& load) { states_[instrument].loads[joint] = load; }
   const JointLoad& load(int instrument, int joint) const { return states_[instrument].loads[joint]; }

@@ -124,7 +124,7 @@ bool IterativePredictorCorrector::looseBodiesBalanced(const ContactProblem& prob
     }
   }
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
-    if (!is_loose(problem.bodies[k])) continue;
+    if (!is_loose(problem.bodies[k]) || brought_[k].sum_n_s == 0.0) continue;
     const double moves = problem.bodies[k].net_change_n_s + brought_[k].net_n_s.norm();
     const double scale = std::max(moves, kLooseShare * brought_[k].sum_n_s);
     if (net_n_s[k] > kNetShare * options_.tolerance * scale) return false;
