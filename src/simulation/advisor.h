@@ -43,7 +43,7 @@ std::optional<Advice> heldDoubt(const TissueDescription& description, const Tiss
 /// A warning where a constant of a tissue is such as that of no tissue, and likely in another unit; else none.
 std::optional<Advice> unitDoubt(const TissueDescription& tissue);
 
-/// Where steps are so long that what a tissue does by itself is damped by them far more than by its own damping: what to expect; else none.
+/// Where steps are so long that what a tissue does by itself is damped by them more than by its own damping: what to expect; else none.
 std::optional<Advice> stepDoubt(const Scene& scene, const TissueDescription& tissue);
 
 /// A warning where nothing holds a tissue, or all of it is held, so that nothing can press on it; else none.

@@ -81,7 +81,7 @@ std::optional<Advice> unitDoubt(const TissueDescription& tissue) {
 }
 
 std::optional<Advice> stepDoubt(const Scene& scene, const TissueDescription& tissue) {
-  constexpr double kShort = 0.0025;  // s: 2 ms, as scenes of recordings at 100 Hz have, cost some per cent
+  constexpr double kShort = 0.0025;  // s: 2 ms, as many recordings are played with, are let pass
   const double step_s = scene.step.max_step_s;
   const double own_s = tissue.damping.stiffness_s;
   if (step_s <= std::max(kShort, own_s)) return std::nullopt;

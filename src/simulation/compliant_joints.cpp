@@ -8,12 +8,15 @@
 namespace tissue_contact {
 namespace {
 
-/// Of its smallest half extent that a shape may move in a step, beside what the joint states move it.
+/// Of its smallest half extent that a shape may move in a step, by all compliant joints, beside what the joint states move it.
 constexpr double kWayPerStep = 0.25;
 
 /// In which a joint that nothing touches any more comes back by all but 1/e, s. One that moved on faster than the tissue follows would
 /// otherwise be back within a step, and so on for ever.
 constexpr double kReturnTime_s = 0.01;
+
+/// Of a point that can move: those of which less can are no contacts (doc/method.md, "Finding contacts"), but for some that are only near.
+constexpr double kLeastShare = 0.25;
 
 /// rad or m: nearer than that to its joint state it is there, once nothing touches it.
 constexpr double kNothing = 1e-9;
@@ -62,7 +65,7 @@ void addMoved(const ContactProblem& problem, const ContactRow& row, CompliantJoi
   };
   double share = 0.0;
   for (int a = 0; a < row.node_count; ++a) share += canMove(row.nodes[a]) ? row.nodes[a].weight : 0.0;
-  one.way /= share;  // infinite only where nothing is added
+  one.way /= std::max(share, kLeastShare);
   for (int a = 0; a < row.node_count; ++a) {
     if (!canMove(row.nodes[a])) continue;
     one.body = row.nodes[a].body;
@@ -86,8 +89,9 @@ CompliantJoints::CompliantJoints(const std::vector<Instrument>& instruments, con
     : instruments_(instruments) {
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     const int instrument = static_cast<int>(i);
+    const double share = kWayPerStep / static_cast<double>(instruments[i].compliantJoints().size());
     for (const CompliantJoint& joint : instruments[i].compliantJoints()) {
-      joints_.push_back({instrument, joint, motion.longestWay(instrument, joint.joint, kWayPerStep), {}});
+      joints_.push_back({instrument, joint, motion.longestWay(instrument, joint.joint, share), {}});
     }
   }
 }
@@ -195,7 +199,7 @@ void CompliantJoints::give(double dt, InstrumentMotion& motion) const {
       const double most = joint.longest_way + std::abs(moved);
       const double effort = 0.5 * (load.effort + load.effort_before);
       next = restOf(joint.compliance, stays, effort, load.caution * load.stiffness * shorter * shorter);
-      if (next * effort < 0.0) next = 0.0;  // contacts push: none holds a joint back from its joint state
+      if (next * effort < 0.0) next = 0.0;  // what pushes the other way holds no joint back from its joint state
       next = std::clamp(next, stays - most, stays + most);
       const double way = next - stays;
       const double lacks = effort - std::clamp(joint.compliance.stiffness * next, -joint.compliance.effort_limit,

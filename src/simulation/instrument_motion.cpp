@@ -121,7 +121,7 @@ void InstrumentMotion::carry(int instrument, StateArchive& archive) {
     archive.carry(load.least_caution);
     archive.check(std::isfinite(load.effort + load.effort_before) && std::isfinite(load.stiffness + load.step_s) &&
                       std::isfinite(load.way + load.caution) && load.stiffness >= 0.0 && load.step_s >= 0.0 &&
-                      load.caution > 0.0,
+                      load.caution > 0.0 && load.least_caution > 0.0 && load.least_caution <= 1.0,
                   "an effort of a joint that is not finite");
   }
   if (!archive.isReading()) return;

@@ -176,6 +176,15 @@ TEST_P(Jaws, HoldAFlapWithTheTorqueThatTheyHave) {
   EXPECT_NEAR(torques.left, 0.002, GetParam() ? 2e-4 : 4e-5);  // of one joint only the sum is given
   EXPECT_LT(torques.most, 1.15 * 0.004);
   EXPECT_GT(simulator.jointDeflections(0)[0], 0.2);
+
+  const VectorX ones = simulator.instruments()[0].initialPositions().array() + 1.0;
+  double least = 0.0;  // tissue that is let go holds no jaw back
+  for (int k = 1; k <= 300; ++k) {
+    simulator.advance(kStep, {(0.5 * std::min(1.0, k / 200.0) - 0.2) * ones});
+    least = std::min(least, simulator.jointDeflections(0).minCoeff());
+  }
+  EXPECT_GT(least, -0.01);
+  EXPECT_NEAR(simulator.jointDeflections(0).cwiseAbs().maxCoeff(), 0.0, 1e-4);
 }
 
 /// Both jaws press the same nodes of a sheet, from opposed sides.
