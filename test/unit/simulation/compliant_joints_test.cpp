@@ -78,6 +78,23 @@ TEST(CompliantJoints, ComeToRestOnStiffTissue) {
   }
 }
 
+/// Without friction nothing along the surface holds a ball back but the slope it goes up.
+TEST(CompliantJoints, SlideWithTheirJointState) {
+  std::string tissue = blockScene("[0.06, 0.06, 0.02]", "[12, 12, 4]");
+  tissue.replace(tissue.find("5000"), 4, "1.0e6");
+  std::string ball = onlyBall("[-0.01, 0.002, 0.0251]");
+  ball.insert(ball.rfind("}\n"), ", compliant_joints: [{joint: x, stiffness_n_per_m: 1000}]");
+  Simulator simulator = makeSimulator(tissue + ball, {{"probe", probeUrdf(0.005)}});
+  press(simulator, -0.0006);
+  double farthest = 0.0, hardest = 0.0;
+  for (int k = 1; k <= 1000; ++k) {
+    simulator.advance(kStep, {Vector3(1e-5 * k, 0.0, -0.0006)});
+    farthest = std::max(farthest, std::abs(simulator.jointDeflections(0)[0]));
+    hardest = std::max(hardest, std::abs(simulator.wrench(0).force.x()));
+  }
+  EXPECT_LT(farthest, 1.3 * hardest / 1000.0);
+}
+
 /// Stamps that jitter: what contacts resist in a short step is not what they did in a long one before it.
 TEST(CompliantJoints, PressNoHarderInStepsOfUnequalLength) {
   Simulator simulator = ballOn("[{joint: z, stiffness_n_per_m: 1.0e4, force_limit_n: 0.02}]");
