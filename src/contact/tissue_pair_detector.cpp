@@ -40,7 +40,7 @@ struct TissuePairDetector::Implementation {
   VertexFace vertex_face;
   EdgeEdge edge_edge;
 
-  void detectPair(const SurfacePair& pair, std::vector<Contact>& contacts);
+  void detectPair(const SurfacePair& pair, const std::vector<ContactKey>& pressing, std::vector<Contact>& contacts);
 };
 
 TissuePairDetector::TissuePairDetector(std::vector<TouchingTissues> pairs, SharedSurfaces surfaces)
@@ -56,11 +56,12 @@ TissuePairDetector& TissuePairDetector::operator=(TissuePairDetector&&) noexcept
 
 void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, double margin_m,
                                 std::vector<Contact>& contacts) {
-  detect(positions, std::vector<double>(implementation_->pairs.size(), margin_m), {}, contacts);
+  detect(positions, std::vector<double>(implementation_->pairs.size(), margin_m), {}, {}, contacts);
 }
 
 void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, const std::vector<double>& margins_m,
-                                const std::vector<bool>& apart, std::vector<Contact>& contacts) {
+                                const std::vector<bool>& apart, const std::vector<ContactKey>& pressing,
+                                std::vector<Contact>& contacts) {
   Implementation& self = *implementation_;
   requireCount("margins of pairs of tissues", margins_m.size(), self.pairs.size());
   for (const double margin_m : margins_m) {
@@ -72,7 +73,7 @@ void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, cons
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(contacts.size());
   for (std::size_t p = 0; p < self.pairs.size(); ++p) {
     if (!apart.empty() && apart[p]) continue;
-    self.detectPair({surfaces[self.pairs[p].tissue], surfaces[self.pairs[p].other], margins_m[p]}, contacts);
+    self.detectPair({surfaces[self.pairs[p].tissue], surfaces[self.pairs[p].other], margins_m[p]}, pressing, contacts);
   }
   const auto order = [](const Contact& a, const Contact& b) {
     return std::tie(a.key, a.gap_m) < std::tie(b.key, b.gap_m);
@@ -82,14 +83,15 @@ void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, cons
   contacts.erase(std::unique(contacts.begin() + first, contacts.end(), same), contacts.end());
 }
 
-void TissuePairDetector::Implementation::detectPair(const SurfacePair& pair, std::vector<Contact>& contacts) {
+void TissuePairDetector::Implementation::detectPair(const SurfacePair& pair, const std::vector<ContactKey>& pressing,
+                                                    std::vector<Contact>& contacts) {
   Eigen::AlignedBox3d near = pair.own.box();
   near.min().array() -= pair.reach();
   near.max().array() += pair.reach();
   if (!near.intersects(pair.other.box())) return;
   vertex_face.find(pair, false, contacts);
   if (!pair.folds()) vertex_face.find({pair.other, pair.own, pair.margin}, true, contacts);
-  edge_edge.find(pair, contacts);
+  edge_edge.find(pair, pressing, contacts);
 }
 
 }  // namespace tissue_contact

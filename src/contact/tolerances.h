@@ -26,8 +26,12 @@ constexpr double kFacing = 0.05;
 constexpr double kCornerSlope = 0.1;
 
 /// Slope (6 degrees) above which the surface beside an edge or a vertex of a tissue counts as leading away from what it
-/// touches; an edge with less on both sides is as good as flat. Between two flat edges, vertices on faces leave a
-/// penetration of less than this slope times a quarter of the edge.
+/// touches.
 constexpr double kSharp = 0.1;
+
+/// Slope (1.7 degrees) up to which an edge of a tissue is as good as flat: between two such edges vertices on faces leave
+/// a penetration of less than this slope times a quarter of the edge. A crossing that comes when edges have become
+/// steeper pushes them out by that at once; with more the force jumps more, with less flat surfaces have more contacts.
+constexpr double kFlat = 0.03;
 
 }  // namespace tissue_contact

@@ -49,6 +49,14 @@ EdgeTable::EdgeTable(const std::vector<Triangle>& triangles) : edges_of_(triangl
   }
 }
 
+const EdgeTable::Edge* EdgeTable::find(const std::array<int, 3>& feature) const {
+  if (feature[2] >= 0) return nullptr;
+  const std::array<int, 2> nodes = {feature[0], feature[1]};
+  const auto before = [](const Edge& edge, const std::array<int, 2>& of) { return edge.nodes < of; };
+  const auto edge = std::lower_bound(edges_.begin(), edges_.end(), nodes, before);
+  return edge == edges_.end() || edge->nodes != nodes ? nullptr : &*edge;
+}
+
 EdgeLengths edgeLengths(const NodalVectors& x, const std::vector<Triangle>& triangles) {
   EdgeLengths lengths;
   for (const EdgeTable::Edge& edge : EdgeTable(triangles)) {

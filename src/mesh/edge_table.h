@@ -42,6 +42,9 @@ class EdgeTable {
   std::size_t size() const { return edges_.size(); }
   const Edge& operator[](int i) const { return edges_[i]; }
 
+  /// Null where a feature, as ContactKey names it, is no edge of this mesh.
+  const Edge* find(const std::array<int, 3>& feature) const;
+
   /// The triangles beside an edge, ascending.
   Uses usesOf(const Edge& edge) const { return {&uses_[edge.first], &uses_[edge.first] + edge.count}; }
   /// Indices of a triangle's edges, by side.

@@ -327,6 +327,14 @@ void StepContacts::requireContact(const StateArchive& archive, const SolvedConta
   archive.requireIndex(static_cast<int>(solved.state), 0, 3, "the state");
 }
 
+void StepContacts::pressingBetweenTissues(std::vector<ContactKey>& keys) const {
+  keys.clear();
+  for (const SolvedContact& solved : contacts_) {
+    if (solved.contact.key.other_tissue >= 0 && !solved.force_on_tissue_n.isZero(0.0))
+      keys.push_back(solved.contact.key);
+  }
+}
+
 int StepContacts::count(ContactState state) const {
   return static_cast<int>(std::count_if(contacts_.begin(), contacts_.end(),
                                         [state](const SolvedContact& contact) { return contact.state == state; }));

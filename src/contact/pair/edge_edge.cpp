@@ -35,10 +35,10 @@ bool maybeSharp(MovingSurface& surface, const Edge& edge) {
   if (sides.size() == 1) return true;
   // Two sides at an angle of pi - a to each other have a sum of length 2 sin(a / 2), and normals of product cos a.
   const double product = surface.normal(sides[0].triangle).dot(surface.normal(sides[1].triangle));
-  if (sides.size() == 2 && product >= 1.0 - 0.5 * kSharp * kSharp) return false;
+  if (sides.size() == 2 && product >= 1.0 - 0.5 * kFlat * kFlat) return false;
   Vector3 sum = Vector3::Zero();
   forEachSide(surface, edge, [&](const Vector3& side) { sum += side; });
-  if (!(sum.norm() > kSharp)) return false;
+  if (!(sum.norm() > kFlat)) return false;
   return !surface.isVolume() || sum.dot(surface.featureNormal(edgeFeature(edge))) < 0.0;
 }
 
@@ -55,8 +55,8 @@ struct Slopes {
     if (edge.count == 1) sum += 1.0;
   }
   bool nearest() const { return lowest >= -kSharp; }
-  bool sharp() const { return sum > kSharp; }
-  bool ridge() const { return lowest > kSharp; }
+  bool sharp() const { return sum > kFlat; }
+  bool ridge() const { return lowest > kFlat; }
 };
 
 bool shareANode(const Edge& a, const Edge& b) {
@@ -65,7 +65,13 @@ bool shareANode(const Edge& a, const Edge& b) {
 
 }  // namespace
 
-void EdgeEdge::find(const SurfacePair& pair, std::vector<Contact>& contacts) {
+void EdgeEdge::find(const SurfacePair& pair, const std::vector<ContactKey>& pressing, std::vector<Contact>& contacts) {
+  for (const ContactKey& key : pressing) {
+    if (key.tissue != pair.own.tissue() || key.other_tissue != pair.other.tissue()) continue;
+    const Edge* const own = pair.own.edges().find(key.feature);
+    const Edge* const other = pair.other.edges().find(key.other_feature);
+    if (own != nullptr && other != nullptr) test(pair, *own, *other, true, contacts);
+  }
   // Every pair in which an edge is sharp, once: sharp edges of own with all of other, then the others way round with
   // those of own that are not sharp.
   for (const Edge& edge : pair.own.edges()) {
@@ -73,7 +79,8 @@ void EdgeEdge::find(const SurfacePair& pair, std::vector<Contact>& contacts) {
     for (const int i : near_) {
       const Edge& near = pair.other.edges()[i];
       if (pair.folds() && !(edge.nodes < near.nodes) && maybeSharp(pair.own, near)) continue;
-      test(pair, edge, near, contacts);
+      const bool in_order = !pair.folds() || edge.nodes < near.nodes;  // a fold's crossing has one key
+      test(pair, in_order ? edge : near, in_order ? near : edge, false, contacts);
     }
   }
   if (pair.folds()) return;
@@ -81,7 +88,7 @@ void EdgeEdge::find(const SurfacePair& pair, std::vector<Contact>& contacts) {
     collectNear(pair, pair.other, edge, pair.own);
     for (const int i : near_) {
       const Edge& near = pair.own.edges()[i];
-      if (!maybeSharp(pair.own, near)) test(pair, near, edge, contacts);
+      if (!maybeSharp(pair.own, near)) test(pair, near, edge, false, contacts);
     }
   }
 }
@@ -106,7 +113,8 @@ void EdgeEdge::collectNear(const SurfacePair& pair, MovingSurface& surface, cons
   }
 }
 
-void EdgeEdge::test(const SurfacePair& pair, const Edge& own, const Edge& other, std::vector<Contact>& contacts) {
+void EdgeEdge::test(const SurfacePair& pair, const Edge& own, const Edge& other, bool pressed,
+                    std::vector<Contact>& contacts) {
   if (pair.folds() && shareANode(own, other)) return;
   Crossing crossing;
   if (!cross(pair, own, other, crossing)) return;
@@ -115,7 +123,7 @@ void EdgeEdge::test(const SurfacePair& pair, const Edge& own, const Edge& other,
   if (pair.nearAtRest(on_own, on_other) || !orient(pair, own, other, crossing)) return;
   const Slopes ours(pair.own, own, crossing.normal);
   const Slopes theirs(pair.other, other, -crossing.normal);
-  const bool matters = (ours.sharp() && theirs.sharp()) || ours.ridge() || theirs.ridge();
+  const bool matters = pressed || (ours.sharp() && theirs.sharp()) || ours.ridge() || theirs.ridge();
   if (!ours.nearest() || !theirs.nearest() || !matters) return;
   pair.add(edgeFeature(own), on_own, edgeFeature(other), on_other, crossing.normal, crossing.distance, contacts);
 }

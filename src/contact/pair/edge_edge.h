@@ -6,7 +6,9 @@
 ///    triangles next to it, within kSharp);
 ///  - the edges are sharp enough to matter: both are the rim of something or one is a ridge. A flat edge crossing
 ///    another flat edge or a rim is covered by vertices on faces; without this, flat surfaces lying on each other would
-///    have a contact at every crossing of their grids.
+///    have a contact at every crossing of their grids. A crossing that pressed in the step before goes on to count,
+///    however flat: where what presses makes the edges flat, they would let go and sink in in turn, and the force swing
+///    from step to step.
 ///  - where they penetrate, no end of an edge is nearer than the depth: that end has a shorter way out.
 #pragma once
 
@@ -19,8 +21,9 @@ namespace tissue_contact {
 /// Scratch memory that grows to what is needed.
 class EdgeEdge {
  public:
-  /// Appends contacts of pair.own's edges with pair.other's edges, unsorted.
-  void find(const SurfacePair& pair, std::vector<Contact>& contacts);
+  /// Appends contacts of pair.own's edges with pair.other's edges, unsorted, some twice.
+  /// @param pressing contacts that pressed in the step before, of these surfaces and of others.
+  void find(const SurfacePair& pair, const std::vector<ContactKey>& pressing, std::vector<Contact>& contacts);
 
  private:
   using Edge = EdgeTable::Edge;
@@ -34,7 +37,8 @@ class EdgeEdge {
   };
 
   void collectNear(const SurfacePair& pair, MovingSurface& surface, const Edge& edge, MovingSurface& among);
-  static void test(const SurfacePair& pair, const Edge& own, const Edge& other, std::vector<Contact>& contacts);
+  static void test(const SurfacePair& pair, const Edge& own, const Edge& other, bool pressed,
+                   std::vector<Contact>& contacts);
   static bool cross(const SurfacePair& pair, const Edge& own, const Edge& other, Crossing& crossing);
   static bool orient(const SurfacePair& pair, const Edge& own, const Edge& other, Crossing& crossing);
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <set>
 
@@ -126,6 +127,43 @@ TEST(TissuePairDetector, LayerOnARidge) {
     }
     EXPECT_EQ(on_top, 11 + 10);  // lines of the grid, and one diagonal per cell
   }
+}
+
+/// Two sheets folded to roofs of this slope, top against top, whose ridges cross in the middle with this gap.
+std::vector<TestTissue> crossingRoofs(double slope, double gap) {
+  constexpr double kThickness = 2e-5;
+  Surface lower = movedBy(sheetSurface({0.02, 0.01}, 2, 1), {-0.01, -0.005, 0.0});
+  Surface upper = movedBy(sheetSurface({0.01, 0.02}, 1, 2), {-0.005, -0.01, gap + kThickness});
+  lower.nodes.row(2) -= slope * lower.nodes.row(0).cwiseAbs();
+  upper.nodes.row(2) += slope * upper.nodes.row(1).cwiseAbs();
+  return {{upper, kThickness}, {lower, kThickness}};
+}
+
+/// Where a force flattens the edges it comes from, these would let go and press in turn.
+TEST(TissuePairDetector, CrossingOfFlatEdgesCountsOnlyWhileItPresses) {
+  const auto steep = pairContacts(crossingRoofs(0.05, 1e-5), kBoth, 5e-5);
+  ASSERT_EQ(edgePairs(steep), 1);
+  const ContactKey key = std::find_if(steep.begin(), steep.end(), isEdgePair)->key;
+  const auto crossings = [&](const std::vector<ContactKey>& pressing, double gap) {
+    const std::vector<TestTissue> flat = crossingRoofs(0.01, gap);
+    TissuePairDetector detector(kBoth, shareSurfaces(surfacesOf(flat), positionsOf(flat)));
+    std::vector<Contact> contacts;
+    detector.detect(positionsOf(flat), {5e-5}, {}, pressing, contacts);
+    for (const Contact& contact : contacts) {
+      if (!isEdgePair(contact)) continue;
+      EXPECT_EQ(contact.key, key);
+      EXPECT_NEAR(contact.gap_m, gap, 1e-15);
+    }
+    return edgePairs(contacts);
+  };
+  EXPECT_EQ(crossings({}, 1e-5), 0);
+  EXPECT_EQ(crossings({key}, 1e-5), 1);
+  EXPECT_EQ(crossings({key}, 1e-4), 0) << "beyond the margin it has come off";
+  ContactKey other = key;
+  other.other_tissue = 7;
+  ContactKey gone = key;  // as of a mesh that has changed
+  gone.feature = {1000, 1001, -1};
+  EXPECT_EQ(crossings({other, gone}, 1e-5), 0);
 }
 
 TEST(TissuePairDetector, FlatBarsCrossingTouchAtTheirFourCorners) {
@@ -309,7 +347,7 @@ TEST(TissuePairDetector, RefusesWhatDoesNotFit) {
   std::vector<Contact> contacts;
   for (const std::vector<double>& margins :
        {std::vector<double>(kBoth.size() + 1, 1e-3), std::vector<double>{}, std::vector<double>(kBoth.size(), -1e-3)}) {
-    EXPECT_THROW(detector.detect(positionsOf(good), margins, {}, contacts), std::invalid_argument);
+    EXPECT_THROW(detector.detect(positionsOf(good), margins, {}, {}, contacts), std::invalid_argument);
   }
   for (const double thickness : {-1e-3, std::numeric_limits<double>::quiet_NaN(), HUGE_VAL}) {
     bad = good;

@@ -90,6 +90,67 @@ TEST(TissuePairs, FrictionOverPressureSlidesByThatOfTheWeight) {
   EXPECT_NEAR(tangential / normal, 0.3, 0.03);
 }
 
+struct Layer {
+  std::string name;
+  std::string shape;     ///< of the tissue between ball and bed
+  std::string material;  ///< more of it
+  std::string bed_pa;
+  std::string friction;  ///< of layer on bed
+};
+
+void PrintTo(const Layer& layer, std::ostream* stream) { *stream << layer.name; }
+
+class BallOnALayer : public ::testing::TestWithParam<Layer> {};
+
+/// A ball of 5 mm pressed 3 mm deep into a layer on a bed, both of cells nearly as large, and held: the force comes to
+/// rest. While edges let go when what they press makes them flat, it swung from step to step (by 55, 18 and 9 % RMS).
+TEST_P(BallOnALayer, ComesToRest) {
+  const Layer& layer = GetParam();
+  Simulator simulator = makeSimulator(
+      "gravity_m_per_s2: [0, 0, -9.81]\ntissues:\n  - name: bed\n"
+      "    block: {size_m: [0.04, 0.04, 0.02], cells: [8, 8, 5]}\n    material: {youngs_modulus_pa: " +
+          layer.bed_pa +
+          ", poissons_ratio: 0.4, density_kg_per_m3: 1000}\n    damping: {stiffness_s: 0.003, mass_per_s: 5}\n"
+          "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n  - name: layer\n    " +
+          layer.shape + "\n    material: {" + layer.material +
+          ", poissons_ratio: 0.4, density_kg_per_m3: 1000}\n    damping: {stiffness_s: 0.003, mass_per_s: 5}\n" +
+          onlyBall("[0, 0, 0.03]") + "tissue_pairs: [{tissue: bed, other: layer}]\nfriction:\n" + layer.friction +
+          "  - {instrument: probe, tissue: layer, static: 0.5, kinetic: 0.4}\n",
+      {{"probe", probeUrdf(0.005)}});
+  const double top = simulator.positions(1).row(2).maxCoeff();
+  const double touch = top + 0.005 - 0.03;
+  simulator.advance(0.05, {Vector3(0.0, 0.0, touch)});
+  const Vector3 pressed(0.0, 0.0, touch - 0.003);
+  simulator.advance(0.2, {pressed});
+  simulator.advance(0.3, {pressed});
+  double least = 1e9;
+  double most = 0.0;
+  for (int k = 0; k < 50; ++k) {
+    simulator.advance(0.001, {pressed});
+    const double force = simulator.wrench(0).force.norm();
+    least = std::min(least, force);
+    most = std::max(most, force);
+  }
+  ASSERT_GT(least, 0.01);
+  EXPECT_LE(most - least, 0.01 * most);  // what steps may leave unbalanced at the tolerance of 1e-3 is less
+}
+
+INSTANTIATE_TEST_SUITE_P(TissuePairs, BallOnALayer,
+                         ::testing::Values(Layer{"Sheet",
+                                                 "sheet: {size_m: [0.03, 0.03], cells: [8, 8], thickness_m: 0.001}\n"
+                                                 "    pose: {position_m: [0, 0, 0.0202]}",
+                                                 "youngs_modulus_pa: 100000", "5000", ""},
+                                           Layer{"StickingVolume",
+                                                 "block: {size_m: [0.03, 0.03, 0.003], cells: [8, 8, 1]}\n"
+                                                 "    pose: {position_m: [0, 0, 0.02]}",
+                                                 "youngs_modulus_pa: 5000", "50000",
+                                                 "  - {tissue: bed, other_tissue: layer, static: 0.4, kinetic: 0.3}\n"},
+                                           Layer{"SlidingVolume",
+                                                 "block: {size_m: [0.03, 0.03, 0.003], cells: [10, 10, 1]}\n"
+                                                 "    pose: {position_m: [0, 0, 0.02]}",
+                                                 "youngs_modulus_pa: 5000", "5000", ""}),
+                         [](const auto& info) { return info.param.name; });
+
 TEST(ContactProblemFile, HoldsTheProblemOfTheLastStep) {
   Simulator simulator = makeStack(0.5, 0.2);
   simulator.advance(0.3, {});
