@@ -48,7 +48,11 @@ void DelassusSystem::addContact(Eigen::Index c) {
       addRelative(contacts_.contacts[d], k, v, problem_.W.block<3, 3>(3 * static_cast<Eigen::Index>(d), 3 * c));
     }
   }
-  if (!can_move) problem_.q.segment<3>(3 * c).setZero();
+  if (!can_move) {
+    problem_.q.segment<3>(3 * c).setZero();
+  } else {
+    problem_.W(3 * c, 3 * c) += row.compliance;
+  }
 }
 
 /// Row's part of J times body k's velocities (columns: cases), contact frame.

@@ -11,7 +11,7 @@
 
 namespace tissue_contact {
 
-/// W = J A^-1 J', q = J A^-1 b - u_tool - required_u_n n, by sparse Cholesky.
+/// W = J A^-1 J' with the rows' compliances, q = J A^-1 b - u_tool - required_u_n n, by sparse Cholesky.
 class DelassusSystem {
  public:
   /// Contacts on nodes that cannot move get zero rows (q too): r = 0, open.

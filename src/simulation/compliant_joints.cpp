@@ -83,7 +83,14 @@ double restOf(const CompliantJoint& joint, double delta, double effort, double r
   return delta + (effort - std::copysign(joint.effort_limit, elastic)) / resists;
 }
 
+/// Of the body of a node of the row, inwards.
+Vector3 normalAt(const ContactRow& row, double weight) { return std::copysign(1.0, weight) * row.R_WC.col(0); }
+
 }  // namespace
+
+bool CompliantJoints::beforeNode(const PressedSide& one, const PressedSide& other) {
+  return std::tie(one.body, one.node) < std::tie(other.body, other.node);
+}
 
 CompliantJoints::CompliantJoints(const std::vector<Instrument>& instruments, const InstrumentMotion& motion)
     : instruments_(instruments) {
@@ -133,7 +140,40 @@ double CompliantJoints::resistance(Joint& joint, const ContactProblem& problem) 
     energy += energyOf(problem, begin, end);
     begin = end;
   }
-  return links * energy / (problem.dt_s * problem.dt_s);
+  return links * energy / (problem.dt_s * problem.dt_s) + squeezing(joint, problem);
+}
+
+void CompliantJoints::findPressed(const ContactProblem& problem, const ContactSolution& solution) {
+  pressed_.clear();
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+    const ContactRow& row = problem.contacts[c];
+    if (row.compliance == 0.0 || solution.impulses[c].isZero(0.0)) continue;
+    for (int a = 0; a < row.node_count; ++a) {
+      const RowNode& at = row.nodes[a];
+      pressed_.push_back({at.body, at.node, normalAt(row, at.weight)});
+    }
+  }
+  std::sort(pressed_.begin(), pressed_.end(), beforeNode);
+}
+
+/// Whether the node is of a sheet that something presses from the other side.
+bool CompliantJoints::isPressedBehind(const ContactProblem& problem, const Moved& one) const {
+  const Vector3 normal = normalAt(problem.contacts[one.contact], one.weight);
+  const auto [begin, end] =
+      std::equal_range(pressed_.begin(), pressed_.end(), PressedSide{one.body, one.node, normal}, beforeNode);
+  return std::any_of(begin, end, [&](const PressedSide& side) { return side.normal_W.dot(normal) < 0.0; });
+}
+
+/// A sheet between two sides resists by its thickness, however light it is: what half of it takes, for each rad or m of the joint.
+double CompliantJoints::squeezing(const Joint& joint, const ContactProblem& problem) const {
+  double sum = 0.0;
+  for (const Moved& one : joint.moved) {
+    const ContactRow& row = problem.contacts[one.contact];
+    if (row.compliance == 0.0 || !isPressedBehind(problem, one)) continue;
+    const double way = row.R_WC.col(0).dot(one.way);
+    sum += std::abs(one.weight) * way * way / (row.compliance * problem.dt_s * problem.dt_s);
+  }
+  return sum;
 }
 
 /// n' A n, n the mean way of the contacts on each node; all other nodes are held.
@@ -167,6 +207,7 @@ double CompliantJoints::energyOf(const ContactProblem& problem, MovedNodes begin
 
 void CompliantJoints::load(const ContactProblem& problem, const ContactSolution& solution,
                            const std::vector<SolvedContact>& contacts, InstrumentMotion& motion) {
+  if (!joints_.empty()) findPressed(problem, solution);
   for (Joint& joint : joints_) {
     InstrumentMotion::JointLoad load = motion.load(joint.instrument, joint.compliance.joint);
     load.effort_before = load.effort;

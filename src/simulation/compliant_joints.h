@@ -50,15 +50,26 @@ class CompliantJoints {
     double longest_way;        ///< in a step, rad or m
     std::vector<Moved> moved;  ///< by the contacts
   };
+  /// A side of a sheet's node that something presses.
+  struct PressedSide {
+    int body;
+    int node;
+    Vector3 normal_W;  ///< into the sheet
+  };
+  static bool beforeNode(const PressedSide& one, const PressedSide& other);
   double effortOn(Joint& joint, const ContactProblem& problem, const ContactSolution& solution,
                   const std::vector<SolvedContact>& contacts, const std::vector<Pose>& X_WL);
   double resistance(Joint& joint, const ContactProblem& problem);
+  void findPressed(const ContactProblem& problem, const ContactSolution& solution);
+  bool isPressedBehind(const ContactProblem& problem, const Moved& one) const;
+  double squeezing(const Joint& joint, const ContactProblem& problem) const;
   using MovedNodes = std::vector<Moved>::const_iterator;
   double energyOf(const ContactProblem& problem, MovedNodes begin, MovedNodes end);
 
   const std::vector<Instrument>& instruments_;
   std::vector<Joint> joints_;
-  std::vector<NodalVectors> ways_;  ///< scratch: per body, 0 between calls
+  std::vector<PressedSide> pressed_;  ///< scratch of load()
+  std::vector<NodalVectors> ways_;    ///< scratch: per body, 0 between calls
 };
 
 }  // namespace tissue_contact

@@ -87,7 +87,7 @@ void sumImpulsesOn(int tissue, const std::vector<SolvedContact>& contacts, const
 
 StepContacts::StepContacts(const std::vector<Tissue>& tissues, const InstrumentMotion& motion,
                            const FrictionTable& friction, const SurfaceEdges& edges)
-    : tissues_(tissues), motion_(motion), friction_(friction), edges_(edges) {
+    : tissues_(tissues), motion_(motion), friction_(friction), edges_(edges), thickness_(tissues) {
   if (friction.dependsOnPressure()) pressure_.emplace(tissues);
 }
 
@@ -140,12 +140,13 @@ void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, doubl
   solution.impulses.resize(contacts_.size());
   solution.states.resize(contacts_.size());
   u_besides_.resize(contacts_.size());
+  thickness_.prepare(contacts_);
   back_time_s_ = std::max(dt, last_dt);  // not faster than it came: a short step after a long one could not hold it
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const SolvedContact& before = contacts_[c];
     const Matrix3& R_WC = before.contact.R_WC;
     ContactRow& row = rows[c];
-    placeRow(before.contact, dt, row);
+    placeRow(c, dt, row);
     row.was_sliding = before.state == ContactState::kKinetic;
     row.law = friction_.at(before.contact, x, motion_.startPoses(), beforeOf(before, x, last_dt));
     u_besides_[c].setZero();
@@ -197,8 +198,9 @@ double& StepContacts::firstTouch(const ContactKey& key) {
   return patches_.back().first_touch;
 }
 
-/// Nodes, frame, gap and tool velocity of a contact.
-void StepContacts::placeRow(const Contact& contact, double dt, ContactRow& row) const {
+/// Nodes, frame, gap, what gives way and tool velocity of a contact.
+void StepContacts::placeRow(std::size_t index, double dt, ContactRow& row) const {
+  const Contact& contact = contacts_[index].contact;
   const ContactKey& key = contact.key;
   row.node_count = 0;
   row.pair = key.instrument >= 0 ? key.instrument : -1 - key.other_tissue;
@@ -221,7 +223,11 @@ void StepContacts::placeRow(const Contact& contact, double dt, ContactRow& row) 
     row.u_tool.setZero();
     half_extent = edges_.finer(contact);
   }
-  row.required_u_n = std::min(-contact.gap_m / dt, half_extent / kRecoveryTime_s);
+  const double compliance = thickness_.complianceOf(index);
+  row.compliance = compliance / (dt * dt);
+  // A sheet that is squeezed is no deeper than its force makes it.
+  const double squeezed = compliance * std::max(contact.R_WC.col(0).dot(contacts_[index].force_on_tissue_n), 0.0);
+  row.required_u_n = std::min(-contact.gap_m / dt, half_extent / kRecoveryTime_s + squeezed / dt);
 }
 
 std::optional<double> StepContacts::weakestNetForce(int tissue, const std::vector<Vector3>& impulses, double dt) {

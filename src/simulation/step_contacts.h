@@ -12,6 +12,7 @@
 #include "simulation/detection_margins.h"
 #include "simulation/friction_table.h"
 #include "simulation/instrument_motion.h"
+#include "simulation/sheet_thickness.h"
 #include "tissue_contact/contact/contact_detector.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/simulation/solved_contact.h"
@@ -91,7 +92,7 @@ class StepContacts {
     ContactKey key;            ///< of one of them
     double first_touch = 1.0;  ///< share of the step that is over then
   };
-  void placeRow(const Contact& contact, double dt, ContactRow& row) const;
+  void placeRow(std::size_t contact, double dt, ContactRow& row) const;
   ContactBefore beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x, double last_dt) const;
   void land(const std::vector<NodalVectors>& v, double dt, std::vector<ContactRow>& rows);
   double& firstTouch(const ContactKey& key);
@@ -104,6 +105,7 @@ class StepContacts {
   const FrictionTable& friction_;
   const SurfaceEdges& edges_;
   ContactMemory memory_;
+  SheetThickness thickness_;
   std::optional<ContactPressure> pressure_;  ///< only where friction depends on it
   std::vector<SolvedContact> contacts_;      ///< before the solve with what they inherit, after it with what was found
   /// Per contact, what is in its row's u_tool besides the instrument's motion, contact plane, m/s: the way back of a

@@ -131,7 +131,10 @@ void CholeskyRelaxation::prepareContact(const ContactProblem& problem, std::size
     }
   }
   local.W = row.R_WC.transpose() * W_W * row.R_WC;
-  if (local.W(0, 0) > 0.0) return;
+  if (local.W(0, 0) > 0.0) {
+    local.W(0, 0) += row.compliance;
+    return;
+  }
   solution.impulses[contact].setZero();
   solution.states[contact] = ContactState::kOpen;
 }

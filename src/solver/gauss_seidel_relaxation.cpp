@@ -72,8 +72,8 @@ class GaussSeidelRelaxation : public Relaxation {
     int node;
     Vector3 v;  ///< after the sweep forth, m/s
   };
-  std::vector<Touched> touched_;                ///< nodes that contacts may move between the sweeps, each once
-  std::vector<Matrix3> W_;                      ///< W_P per contact, contact frame, 1/kg; W(0, 0) = 0: it cannot move
+  std::vector<Touched> touched_;  ///< nodes that contacts may move between the sweeps, each once
+  std::vector<Matrix3> W_;  ///< W_P per contact with its compliance, contact frame, 1/kg; W(0, 0) = 0: it cannot move
   std::vector<std::vector<int>> node_contact_;  ///< per body and node: the contact that alone holds it, else -1
   bool holding_ = false;                        ///< some node_contact_ is a contact
   std::vector<int> excluded_;                   ///< scratch: nodes of a body that contacts may move
@@ -120,6 +120,7 @@ void GaussSeidelRelaxation::prepareContacts(const ContactProblem& problem, Conta
       solution.states[c] = ContactState::kOpen;
       continue;
     }
+    W_[c](0, 0) += row.compliance;
     const Vector3 impulse_W = row.R_WC * solution.impulses[c];
     for (int a = 0; a < row.node_count; ++a) {
       const RowNode& at = row.nodes[a];
@@ -325,7 +326,8 @@ void GaussSeidelRelaxation::correctNormal(const ContactRow& row, std::size_t con
   const Vector3 n = row.R_WC.col(0);
   const double u_n = n.dot(tissueVelocity(row, solution.v)) - row.u_tool[0];
   Vector3& impulse = solution.impulses[contact];
-  const double wanted = impulse[0] - (u_n - row.required_u_n) / W_[contact](0, 0);
+  const double lacking = row.required_u_n - u_n - row.compliance * impulse[0];
+  const double wanted = impulse[0] + lacking / W_[contact](0, 0);
   const double normal = wanted > 0.0 ? wanted : 0.0;
   const double change = normal - impulse[0];
   impulse = Vector3(normal, 0.0, 0.0);

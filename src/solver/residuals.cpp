@@ -118,9 +118,10 @@ Residuals computeResiduals(const ContactProblem& problem, const ContactSolution&
     const Vector3 u = relativeVelocity(row, solution.v);
     const Vector3 force = solution.impulses[c] / dt;
     const ContactState state = solution.states[c];
-    worsen(worst.penetration_m, -(row.gap_m + dt * u[0]));
+    const double u_n = u[0] + row.compliance * solution.impulses[c][0];
+    worsen(worst.penetration_m, -(row.gap_m + dt * u_n));
     worsen(worst.adhesion_n, -force[0]);
-    worsen(worst.complementarity_w, std::abs(force[0] * (u[0] - row.required_u_n)));
+    worsen(worst.complementarity_w, std::abs(force[0] * (u_n - row.required_u_n)));
     if (state == ContactState::kOpen) continue;
     const Vector2 friction = force.tail<2>();
     const Vector2 sliding = u.tail<2>();

@@ -228,6 +228,24 @@ VectorX lumpedMasses(const Tissue& tissue, const ElementMaterials& materials) {
   return masses;
 }
 
+/// See Tissue::thicknessStiffness().
+VectorX thicknessStiffnessOf(const Tissue& tissue, const ElementMaterials& materials) {
+  // Beyond it as at it, 3.8 E: what is nearly incompressible flows out sideways. As stiff is a bonded layer between plates
+  // that are five times as wide as it is thick: E (1 + 2 S^2), S = 1.2 (Gent and Lindley, Proc. Inst. Mech. Eng. 173, 1959).
+  constexpr double kMostPoissonsRatio = 0.45;
+  VectorX stiffness = VectorX::Zero(tissue.nodeCount());
+  for (std::size_t t = 0; t < tissue.surface().size(); ++t) {
+    MaterialDescription material = materials.of(t);
+    material.poissons_ratio = std::min(material.poissons_ratio, kMostPoissonsRatio);
+    const LameParameters lame = lameParameters(material);
+    const double third = triangleArea(tissue.restPositions(), tissue.surface()[t]) / 3.0;
+    for (const int node : tissue.surface()[t]) {
+      stiffness[node] += (lame.lambda + 2.0 * lame.mu) * third / (0.5 * tissue.thickness());
+    }
+  }
+  return stiffness;
+}
+
 double smallestHeightOf(const NodalVectors& x, const std::vector<Tetrahedron>& tetrahedra) {
   double smallest = tetrahedra.empty() ? 0.0 : std::numeric_limits<double>::infinity();
   for (const Tetrahedron& nodes : tetrahedra) {
@@ -284,6 +302,7 @@ void Tissue::changeMaterials(const TissueDescription& description) {
     elasticity_ = makeVolumeElasticity(rest_, tetrahedra_, fixed_, materials, parts_->patch_of);
   } else {
     elasticity_ = std::make_unique<Membrane>(rest_, surface_, fixed_, thickness_, materials);
+    thickness_stiffness_ = thicknessStiffnessOf(*this, materials);
   }
   if (parts_->springs.empty()) return;
   elasticity_ = std::make_unique<AttachedElasticity>(std::move(elasticity_), rest_, parts_->springs,

@@ -56,6 +56,9 @@ class Tissue {
 
   /// Thickness of a membrane, m: it can be touched from both sides, at half of it from its triangles. 0: a volume.
   double thickness() const { return thickness_; }
+  /// Per node of a membrane, N/m: what half its thickness resists with when squeezed over the node's share of its area,
+  /// (lambda + 2 mu) A / (t / 2): the sheet is wide and does not stretch meanwhile. Empty: a volume.
+  const VectorX& thicknessStiffness() const { return thickness_stiffness_; }
 
   /// Per surface triangle: index into TissueDescription::regions (by the triangle's own centroid; in a refined mesh that of the
   /// triangle it is a part of in the mesh that nothing touches), -1 where none.
@@ -98,6 +101,7 @@ class Tissue {
   VectorX masses_;
   DampingDescription damping_;
   double thickness_ = 0.0, smallest_height_ = 0.0;
+  VectorX thickness_stiffness_;
   std::vector<int> surface_regions_, element_regions_;
   std::vector<std::vector<int>> stiff_parts_;
   std::vector<Vector2> surface_fibres_;
