@@ -40,7 +40,7 @@ struct TissuePairDetector::Implementation {
   VertexFace vertex_face;
   EdgeEdge edge_edge;
 
-  void detectPair(const SurfacePair& pair, const std::vector<ContactKey>& pressing, std::vector<Contact>& contacts);
+  void detectPair(const SurfacePair& pair, const std::vector<ContactKey>& known, std::vector<Contact>& contacts);
 };
 
 TissuePairDetector::TissuePairDetector(std::vector<TouchingTissues> pairs, SharedSurfaces surfaces)
@@ -60,7 +60,7 @@ void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, doub
 }
 
 void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, const std::vector<double>& margins_m,
-                                const std::vector<bool>& apart, const std::vector<ContactKey>& pressing,
+                                const std::vector<bool>& apart, const std::vector<ContactKey>& known,
                                 std::vector<Contact>& contacts) {
   Implementation& self = *implementation_;
   requireCount("margins of pairs of tissues", margins_m.size(), self.pairs.size());
@@ -73,7 +73,7 @@ void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, cons
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(contacts.size());
   for (std::size_t p = 0; p < self.pairs.size(); ++p) {
     if (!apart.empty() && apart[p]) continue;
-    self.detectPair({surfaces[self.pairs[p].tissue], surfaces[self.pairs[p].other], margins_m[p]}, pressing, contacts);
+    self.detectPair({surfaces[self.pairs[p].tissue], surfaces[self.pairs[p].other], margins_m[p]}, known, contacts);
   }
   const auto order = [](const Contact& a, const Contact& b) {
     return std::tie(a.key, a.gap_m) < std::tie(b.key, b.gap_m);
@@ -83,7 +83,7 @@ void TissuePairDetector::detect(const std::vector<NodalVectors>& positions, cons
   contacts.erase(std::unique(contacts.begin() + first, contacts.end(), same), contacts.end());
 }
 
-void TissuePairDetector::Implementation::detectPair(const SurfacePair& pair, const std::vector<ContactKey>& pressing,
+void TissuePairDetector::Implementation::detectPair(const SurfacePair& pair, const std::vector<ContactKey>& known,
                                                     std::vector<Contact>& contacts) {
   Eigen::AlignedBox3d near = pair.own.box();
   near.min().array() -= pair.reach();
@@ -91,7 +91,7 @@ void TissuePairDetector::Implementation::detectPair(const SurfacePair& pair, con
   if (!near.intersects(pair.other.box())) return;
   vertex_face.find(pair, false, contacts);
   if (!pair.folds()) vertex_face.find({pair.other, pair.own, pair.margin}, true, contacts);
-  edge_edge.find(pair, pressing, contacts);
+  edge_edge.find(pair, known, contacts);
 }
 
 }  // namespace tissue_contact

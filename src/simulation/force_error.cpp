@@ -84,13 +84,13 @@ std::vector<double> shearModuli(const TissueDescription& description) {
 double ForceErrorEstimate::total_n() const { return std::hypot(mesh_n, step_n, solver_n); }
 
 MeshErrorFactors meshErrorFactors(const ElementMaterials& materials) {
-  if (!averagesDistortion(materials)) return {1.7, 0.5};
-  if (!averagesDilatation(materials)) return {1.3, 0.4};
-  return {0.85, 0.3};
+  if (!averagesDistortion(materials)) return {1.7, 1.5, 0.5};
+  if (!averagesDilatation(materials)) return {1.3, 1.5, 0.4};
+  return {0.97, 1.8, 0.3};
 }
 
 double likelyMeshError(double recovered, const MeshErrorFactors& factors) {
-  const double share = factors.of_strain * recovered * std::sqrt(recovered);
+  const double share = factors.of_strain * std::pow(recovered, factors.power_of_strain);
   return share < 1.0 ? share : 1.0;  // not finite as well: nothing is known then
 }
 
@@ -102,9 +102,13 @@ std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const st
                                                     const std::vector<NodalVectors>& x,
                                                     const std::vector<SolvedContact>& contacts,
                                                     const TouchedPlaces& shapes, std::size_t instruments,
-                                                    double unbalanced_n) {
+                                                    const std::vector<double>& step_defects_n, double unbalanced_n) {
   std::vector<ForceErrorEstimate> errors(instruments);
   std::vector<double> pressed_n(instruments, 0.0);
+  std::vector<double> borne_n(tissues.size(), 0.0);
+  for (const SolvedContact& solved : contacts) {
+    if (solved.contact.key.instrument >= 0) borne_n[solved.contact.key.tissue] += solved.force_on_tissue_n.norm();
+  }
   for (std::size_t first = 0, end = 0; first < contacts.size(); first = end) {
     const ContactKey& key = contacts[first].contact.key;
     const auto t = static_cast<std::size_t>(key.tissue);
@@ -137,7 +141,9 @@ std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const st
     ForceErrorEstimate& error = errors[static_cast<std::size_t>(key.instrument)];
     pressed_n[static_cast<std::size_t>(key.instrument)] += sum_n;
     error.mesh_n += force_n.norm() * mesh / sum_n;
-    error.step_n += force_n.norm() * step / sum_n;
+    // Not more than all it presses with: of a body that swings beside it, most is not its.
+    const double of_swing_n = std::min(step_defects_n[t] * (sum_n / borne_n[t]), sum_n);
+    error.step_n += std::hypot(force_n.norm() * step / sum_n, of_swing_n);
     error.knows_mesh = error.knows_mesh && judges_mesh;
   }
   const double all_n = std::accumulate(pressed_n.begin(), pressed_n.end(), 0.0);

@@ -35,6 +35,7 @@ void MovingTissue::changeMesh(std::unique_ptr<Elasticity::State>& elastic_state,
   elastic_state_.swap(elastic_state);
   makeState();
   energy_debt_.clear();
+  momentum_rate_.clear();
   watchSleep(edge_m);
 }
 
@@ -45,6 +46,7 @@ void MovingTissue::changeMaterials() {
   watchSleep(meanSurfaceEdge(&tissue_, 1));
   still_changed_ = false;
   energy_debt_.clear();
+  momentum_rate_.clear();
 }
 
 void MovingTissue::reset() {
@@ -63,6 +65,7 @@ void MovingTissue::stop() {
   if (sleep_) sleep_->wakeAll();
   still_changed_ = false;
   energy_debt_.clear();
+  momentum_rate_.clear();
 }
 
 void MovingTissue::carry(StateArchive& archive) {
@@ -84,6 +87,7 @@ void MovingTissue::carry(StateArchive& archive) {
   archive.carry(system_.damping_scale);
   archive.carry(still_changed_);
   energy_debt_.carry(archive, tissue_.nodeCount());
+  momentum_rate_.carry(archive);
   if (sleep_) sleep_->carry(archive);
 }
 
@@ -158,8 +162,12 @@ void MovingTissue::keepElements(double dt) {
 }
 
 void MovingTissue::move(double dt, double contact_work_j, bool was_cut) {
-  if (system_.asleep) return;
+  if (system_.asleep) {
+    momentum_rate_.clear();
+    return;
+  }
   energy_debt_.finish(dt, contact_work_j, was_cut);
+  momentum_rate_.step(v_ * tissue_.nodeMasses(), dt);
   x_ += dt * v_;
   if (tissue_.elasticity().hasMemory()) elastic_state_->elapsed_s += dt;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "simulation/energy_debt.h"
+#include "simulation/momentum_rate.h"
 #include "simulation/tissue_sleep.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/simulation/scene.h"
@@ -74,6 +75,9 @@ class MovingTissue {
   /// @param contact_work_j, was_cut see EnergyDebt::finish().
   void move(double dt, double contact_work_j, bool was_cut);
 
+  /// What the last step left out of the forces on the tissue, N (MomentumRate).
+  double stepDefect() const { return momentum_rate_.halfChange(); }
+
   bool canSleep() const { return sleep_.has_value(); }
   int sleepers() const { return sleep_ ? sleep_->sleepers() : 0; }
   double heldForce() const { return sleep_ ? sleep_->heldForce() : 0.0; }  ///< see TissueSleep::heldForce()
@@ -91,6 +95,7 @@ class MovingTissue {
   std::unique_ptr<Elasticity::State> elastic_state_;
   NodalVectors loads_;  ///< elastic forces and pressure, and weight if nodes can sleep, N
   EnergyDebt energy_debt_;
+  MomentumRate momentum_rate_;
   bool is_free_ = false;              ///< nothing of the tissue is fixed or attached
   std::optional<TissueSleep> sleep_;  ///< none: no node ever sleeps
   bool still_changed_ = false;        ///< sleepers have changed since the elasticity was told

@@ -213,8 +213,8 @@ void Simulator::Implementation::detectContacts(double dt) {
   detector.detect(x, motion.startPoses(), margins.ofTissues(), found);
   report.pinched_contacts = detector.pinchedContacts();
   if (pair_detector) {
-    contacts.pressingBetweenTissues(pressing);
-    pair_detector->detect(x, margins.ofPairs(), folds.apart(x, margins.ofTissues()), pressing, found);
+    contacts.keysBetweenTissues(known);
+    pair_detector->detect(x, margins.ofPairs(), folds.apart(x, margins.ofTissues()), known, found);
     std::sort(found.begin(), found.end(), [](const Contact& a, const Contact& b) { return a.key < b.key; });
   }
   contacts.begin(detector, x, margins, found);

@@ -73,8 +73,8 @@ struct Simulator::Implementation {
   ContactDetector detector;
   std::optional<TissuePairDetector> pair_detector;  ///< only where tissues touch each other
   FoldWatch folds;
-  std::vector<ContactKey> pressing;  ///< scratch: between tissues, in the step before
-  std::vector<Contact> found;        ///< scratch: by the detectors
+  std::vector<ContactKey> known;  ///< scratch: contacts between tissues of the step before
+  std::vector<Contact> found;     ///< scratch: by the detectors
   StepContacts contacts;
   std::unique_ptr<ContactSolver> solver;
   double deadline_s = std::numeric_limits<double>::infinity();  ///< of the solver, see setSolverDeadline()

@@ -333,11 +333,10 @@ void StepContacts::requireContact(const StateArchive& archive, const SolvedConta
   archive.requireIndex(static_cast<int>(solved.state), 0, 3, "the state");
 }
 
-void StepContacts::pressingBetweenTissues(std::vector<ContactKey>& keys) const {
+void StepContacts::keysBetweenTissues(std::vector<ContactKey>& keys) const {
   keys.clear();
   for (const SolvedContact& solved : contacts_) {
-    if (solved.contact.key.other_tissue >= 0 && !solved.force_on_tissue_n.isZero(0.0))
-      keys.push_back(solved.contact.key);
+    if (solved.contact.key.other_tissue >= 0) keys.push_back(solved.contact.key);
   }
 }
 

@@ -82,8 +82,7 @@ class StepContacts {
   void carry(StateArchive& archive, const std::vector<Instrument>& instruments);
 
   const std::vector<SolvedContact>& solved() const { return contacts_; }
-  /// Those between tissues that carry a force; overwrites `keys`.
-  void pressingBetweenTissues(std::vector<ContactKey>& keys) const;
+  void keysBetweenTissues(std::vector<ContactKey>& keys) const;  ///< overwrites `keys`
   int count(ContactState state) const;
 
  private:

@@ -34,10 +34,10 @@ class TissuePairDetector {
   /// edge_edge.h.
   /// @param margins_m per pair of tissues.
   /// @param apart per pair: known not to touch and left out; empty: none is.
-  /// @param pressing contacts between tissues that pressed in the step before (edge_edge.h); empty: none did.
+  /// @param known contacts between tissues of the step before (edge_edge.h); empty: there were none.
   /// @throws std::invalid_argument for sizes that differ from the construction's and a margin not finite or < 0.
   void detect(const std::vector<NodalVectors>& positions, const std::vector<double>& margins_m,
-              const std::vector<bool>& apart, const std::vector<ContactKey>& pressing, std::vector<Contact>& contacts);
+              const std::vector<bool>& apart, const std::vector<ContactKey>& known, std::vector<Contact>& contacts);
   /// All pairs, with the same margin.
   void detect(const std::vector<NodalVectors>& positions, double margin_m, std::vector<Contact>& contacts);
 

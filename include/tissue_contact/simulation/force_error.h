@@ -14,7 +14,9 @@ struct ForceErrorEstimate {
   bool knows_mesh = true;
   double mesh_n = 0.0;
   /// The force times 0.18 of the slip over the contact radius, by which normals turn around a ball in the step: frames follow, but for what
-  /// changes from step to step. Too small where they do not, at tools' sharp edges. What only presses has none: forces are those at the step's end.
+  /// changes from step to step. Too small where they do not, at tools' sharp edges. With it, root of the sum of squares, what the step leaves out of
+  /// the forces on the tissue: half of how much the rate of its momentum has changed since the step before, by the instrument's share of all that
+  /// presses on it; at most all it presses with.
   double step_n = 0.0;
   /// .7 of what the step leaves unbalanced in all tissues that something touches, by the instrument's share of all pressing; at most all it presses with.
   double solver_n = 0.0;
@@ -25,6 +27,7 @@ struct ForceErrorEstimate {
 /// part of all strain (neo-Hookean tissue as it comes), or neither.
 struct MeshErrorFactors {
   double of_strain;
+  double power_of_strain;
   double of_lengths;
 };
 MeshErrorFactors meshErrorFactors(const ElementMaterials& materials);
@@ -32,8 +35,8 @@ MeshErrorFactors meshErrorFactors(const ElementMaterials& materials);
 /// Likely share of a contact force that is due to the mesh, from recoveredStrainError() `recovered` within four contact radii of the middle of a
 /// shape's contacts, radius sqrt(A / pi) for the rest area A of the nodes that carry force. At most 1.
 ///
-/// of_strain times recovered^1.5: 1.7 by element, .85 where strain is averaged as said above, fitted to forces against the stored truths of the benchmark (press and drag of a ball, a recorded robot over a pad)
-/// on meshes of 288 to 3714 nodes, which err by 4 to 350 %; 1.3 where a part of all strain is, from presses of a ball at nu .45 and .49 (force_error_test). An energy's error would be `recovered` itself. Forces of contact at vertices
+/// of_strain times a power of it: 1.7 recovered^1.5 by element, .97 recovered^1.8 where strain is averaged as said above, fitted to forces against the stored truths of the benchmark (press and drag of a ball, a recorded robot over a pad)
+/// on meshes of 288 to 13 550 nodes, which err by .6 to 350 %; 1.3 recovered^1.5 where a part of all strain is, from presses of a ball at nu .45 and .49 (force_error_test). An energy's error would be `recovered` itself. Forces of contact at vertices
 /// err by less where cells are small, since what is held at vertices only is soft while cells are stiff; and by more where the contact is
 /// smaller than a cell. Where five nodes or fewer carry a shape, what its lengths say (expectedMeshError()) counts if that is more. How well
 /// it does: doc/accuracy.md, and doc/notes/accuracy.md for fits that were tried.

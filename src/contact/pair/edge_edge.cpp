@@ -65,8 +65,8 @@ bool shareANode(const Edge& a, const Edge& b) {
 
 }  // namespace
 
-void EdgeEdge::find(const SurfacePair& pair, const std::vector<ContactKey>& pressing, std::vector<Contact>& contacts) {
-  for (const ContactKey& key : pressing) {
+void EdgeEdge::find(const SurfacePair& pair, const std::vector<ContactKey>& known, std::vector<Contact>& contacts) {
+  for (const ContactKey& key : known) {
     if (key.tissue != pair.own.tissue() || key.other_tissue != pair.other.tissue()) continue;
     const Edge* const own = pair.own.edges().find(key.feature);
     const Edge* const other = pair.other.edges().find(key.other_feature);
@@ -113,7 +113,7 @@ void EdgeEdge::collectNear(const SurfacePair& pair, MovingSurface& surface, cons
   }
 }
 
-void EdgeEdge::test(const SurfacePair& pair, const Edge& own, const Edge& other, bool pressed,
+void EdgeEdge::test(const SurfacePair& pair, const Edge& own, const Edge& other, bool is_known,
                     std::vector<Contact>& contacts) {
   if (pair.folds() && shareANode(own, other)) return;
   Crossing crossing;
@@ -123,7 +123,7 @@ void EdgeEdge::test(const SurfacePair& pair, const Edge& own, const Edge& other,
   if (pair.nearAtRest(on_own, on_other) || !orient(pair, own, other, crossing)) return;
   const Slopes ours(pair.own, own, crossing.normal);
   const Slopes theirs(pair.other, other, -crossing.normal);
-  const bool matters = pressed || (ours.sharp() && theirs.sharp()) || ours.ridge() || theirs.ridge();
+  const bool matters = is_known || (ours.sharp() && theirs.sharp()) || ours.ridge() || theirs.ridge();
   if (!ours.nearest() || !theirs.nearest() || !matters) return;
   pair.add(edgeFeature(own), on_own, edgeFeature(other), on_other, crossing.normal, crossing.distance, contacts);
 }

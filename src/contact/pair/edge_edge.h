@@ -6,9 +6,9 @@
 ///    triangles next to it, within kSharp);
 ///  - the edges are sharp enough to matter: both are the rim of something or one is a ridge. A flat edge crossing
 ///    another flat edge or a rim is covered by vertices on faces; without this, flat surfaces lying on each other would
-///    have a contact at every crossing of their grids. A crossing that pressed in the step before goes on to count,
-///    however flat: where what presses makes the edges flat, they would let go and sink in in turn, and the force swing
-///    from step to step.
+///    have a contact at every crossing of their grids. A crossing goes on to count until it is farther away
+///    than the margin, however flat: where what presses makes the edges flat, they would let go and sink in in turn, and
+///    the force swing from step to step.
 ///  - where they penetrate, no end of an edge is nearer than the depth: that end has a shorter way out.
 #pragma once
 
@@ -22,8 +22,8 @@ namespace tissue_contact {
 class EdgeEdge {
  public:
   /// Appends contacts of pair.own's edges with pair.other's edges, unsorted, some twice.
-  /// @param pressing contacts that pressed in the step before, of these surfaces and of others.
-  void find(const SurfacePair& pair, const std::vector<ContactKey>& pressing, std::vector<Contact>& contacts);
+  /// @param known contacts of the step before, of these surfaces and of others.
+  void find(const SurfacePair& pair, const std::vector<ContactKey>& known, std::vector<Contact>& contacts);
 
  private:
   using Edge = EdgeTable::Edge;
@@ -37,7 +37,7 @@ class EdgeEdge {
   };
 
   void collectNear(const SurfacePair& pair, MovingSurface& surface, const Edge& edge, MovingSurface& among);
-  static void test(const SurfacePair& pair, const Edge& own, const Edge& other, bool pressed,
+  static void test(const SurfacePair& pair, const Edge& own, const Edge& other, bool is_known,
                    std::vector<Contact>& contacts);
   static bool cross(const SurfacePair& pair, const Edge& own, const Edge& other, Crossing& crossing);
   static bool orient(const SurfacePair& pair, const Edge& own, const Edge& other, Crossing& crossing);

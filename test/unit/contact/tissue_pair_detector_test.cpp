@@ -140,15 +140,15 @@ std::vector<TestTissue> crossingRoofs(double slope, double gap) {
 }
 
 /// Where a force flattens the edges it comes from, these would let go and press in turn.
-TEST(TissuePairDetector, CrossingOfFlatEdgesCountsOnlyWhileItPresses) {
+TEST(TissuePairDetector, CrossingOfFlatEdgesCountsOnlyWhereItHas) {
   const auto steep = pairContacts(crossingRoofs(0.05, 1e-5), kBoth, 5e-5);
   ASSERT_EQ(edgePairs(steep), 1);
   const ContactKey key = std::find_if(steep.begin(), steep.end(), isEdgePair)->key;
-  const auto crossings = [&](const std::vector<ContactKey>& pressing, double gap) {
+  const auto crossings = [&](const std::vector<ContactKey>& known, double gap) {
     const std::vector<TestTissue> flat = crossingRoofs(0.01, gap);
     TissuePairDetector detector(kBoth, shareSurfaces(surfacesOf(flat), positionsOf(flat)));
     std::vector<Contact> contacts;
-    detector.detect(positionsOf(flat), {5e-5}, {}, pressing, contacts);
+    detector.detect(positionsOf(flat), {5e-5}, {}, known, contacts);
     for (const Contact& contact : contacts) {
       if (!isEdgePair(contact)) continue;
       EXPECT_EQ(contact.key, key);

@@ -196,6 +196,28 @@ TEST(ForceError, OfABodyThatGivesWayAsAWholeIsKnownAndFollowsTheTolerance) {
   }
 }
 
+// A block that a ball shakes by 10 mm at 3.2 Hz, the same mesh in steps of 4 and .5 ms. Slip alone tells a seventh of what is found.
+TEST(ForceError, TissueThatSwingsHasMoreInLongSteps) {
+  const std::string tissue = blockScene("[0.06, 0.06, 0.04]", "[8, 8, 5]", "poissons_ratio: 0.45");
+  const auto simulator = [&](const std::string& step) {
+    return simulatorOf(scene("gravity_m_per_s2: [0, 0, 0]\nstep: {max_step_s: " + step + "}\n", tissue, 0.5));
+  };
+  Simulator fine = simulator("0.0005");
+  Simulator coarse = simulator("0.004");
+  double found = 0.0;
+  double expected = 0.0;
+  for (int k = 1; k <= 250; ++k) {
+    const double t = 0.004 * k;
+    const std::vector<VectorX> q = {Vector3(0.01 * std::sin(20.0 * t), 0.0, -0.004 * std::min(t / 0.2, 1.0))};
+    fine.advance(0.004, q);
+    coarse.advance(0.004, q);
+    if (k <= 60) continue;
+    found += (coarse.wrench(0).force - fine.wrench(0).force).squaredNorm();
+    expected += std::pow(coarse.forceErrors()[0].step_n, 2);
+  }
+  EXPECT_LT(std::abs(std::log(expected / found)), 2.0 * std::log(2.0));
+}
+
 // Patches of a sheet bend as well as stretch; what the recovery of strain tells of them has not been compared with anything.
 TEST(ForceError, TellsWhereTheMeshIsNotJudged) {
   const std::string sheet =
@@ -223,12 +245,12 @@ TEST(ForceError, AskingForItChangesNothing) {
   }
 }
 
-constexpr MeshErrorFactors kByElement = {1.7, 0.5};
-constexpr MeshErrorFactors kAveraged = {0.85, 0.3};
+constexpr MeshErrorFactors kByElement = {1.7, 1.5, 0.5};
+constexpr MeshErrorFactors kAveraged = {0.97, 1.8, 0.3};
 
 TEST(LikelyMeshError, IsAShareOfTheForce) {
   EXPECT_NEAR(likelyMeshError(0.04, kByElement), 1.7 * 0.008, 1e-15);
-  EXPECT_NEAR(likelyMeshError(0.04, kAveraged), 0.85 * 0.008, 1e-15);
+  EXPECT_NEAR(likelyMeshError(0.04, kAveraged), 0.97 * std::pow(0.04, 1.8), 1e-15);
   for (const MeshErrorFactors& factors : {kByElement, kAveraged}) {
     EXPECT_EQ(likelyMeshError(0.0, factors), 0.0);
     EXPECT_EQ(likelyMeshError(5.0, factors), 1.0);

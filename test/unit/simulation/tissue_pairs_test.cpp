@@ -149,7 +149,7 @@ INSTANTIATE_TEST_SUITE_P(TissuePairs, BallOnALayer,
                                                  "block: {size_m: [0.03, 0.03, 0.003], cells: [10, 10, 1]}\n"
                                                  "    pose: {position_m: [0, 0, 0.02]}",
                                                  "youngs_modulus_pa: 5000", "5000", ""}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& one) { return one.param.name; });
 
 TEST(ContactProblemFile, HoldsTheProblemOfTheLastStep) {
   Simulator simulator = makeStack(0.5, 0.2);
