@@ -15,7 +15,7 @@ namespace tissue_contact {
 namespace {
 
 /// With the version of what follows it.
-constexpr const char* kStateTitle = "tissue_contact simulation 4";
+constexpr const char* kStateTitle = "tissue_contact simulation 5";
 
 NodalVectors handOver(NodalVectors& values) {
   NodalVectors copy = values;
