@@ -129,7 +129,7 @@ double CompliantJoints::effortOn(Joint& joint, const ContactProblem& problem, co
 
 /// What contacts add to the effort on a joint, backwards, for each rad or m that it moves in a step of the problem's length: the sum over the
 /// links of n' A n / dt^2, times their number, since of n fields of velocities the sum has n times the energies of all at most.
-double CompliantJoints::resistance(Joint& joint, const ContactProblem& problem) {
+double CompliantJoints::resistance(Joint& joint, const ContactProblem& problem, const ContactSolution& solution) {
   const auto key = [](const Moved& one) { return std::make_tuple(one.link, one.body, one.node, one.contact); };
   std::sort(joint.moved.begin(), joint.moved.end(),
             [&](const Moved& one, const Moved& other) { return key(one) < key(other); });
@@ -140,14 +140,14 @@ double CompliantJoints::resistance(Joint& joint, const ContactProblem& problem) 
     energy += energyOf(problem, begin, end);
     begin = end;
   }
-  return links * energy / (problem.dt_s * problem.dt_s) + squeezing(joint, problem);
+  return links * energy / (problem.dt_s * problem.dt_s) + squeezing(joint, problem, solution);
 }
 
 void CompliantJoints::findPressed(const ContactProblem& problem, const ContactSolution& solution) {
   pressed_.clear();
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     const ContactRow& row = problem.contacts[c];
-    if (row.compliance == 0.0 || solution.impulses[c].isZero(0.0)) continue;
+    if (row.normal_compliance == 0.0 || solution.impulses[c].isZero(0.0)) continue;
     for (int a = 0; a < row.node_count; ++a) {
       const RowNode& at = row.nodes[a];
       pressed_.push_back({at.body, at.node, normalAt(row, at.weight)});
@@ -165,13 +165,15 @@ bool CompliantJoints::isPressedBehind(const ContactProblem& problem, const Moved
 }
 
 /// A sheet between two sides resists by its thickness, however light it is: what half of it takes, for each rad or m of the joint.
-double CompliantJoints::squeezing(const Joint& joint, const ContactProblem& problem) const {
+double CompliantJoints::squeezing(const Joint& joint, const ContactProblem& problem,
+                                  const ContactSolution& solution) const {
   double sum = 0.0;
   for (const Moved& one : joint.moved) {
     const ContactRow& row = problem.contacts[one.contact];
-    if (row.compliance == 0.0 || !isPressedBehind(problem, one)) continue;
+    if (row.normal_compliance == 0.0 || solution.impulses[one.contact].isZero(0.0)) continue;
+    if (!isPressedBehind(problem, one)) continue;
     const double way = row.R_WC.col(0).dot(one.way);
-    sum += std::abs(one.weight) * way * way / (row.compliance * problem.dt_s * problem.dt_s);
+    sum += std::abs(one.weight) * way * way / (row.normal_compliance * problem.dt_s * problem.dt_s);
   }
   return sum;
 }
@@ -212,7 +214,7 @@ void CompliantJoints::load(const ContactProblem& problem, const ContactSolution&
     InstrumentMotion::JointLoad load = motion.load(joint.instrument, joint.compliance.joint);
     load.effort_before = load.effort;
     load.effort = effortOn(joint, problem, solution, contacts, motion.startPoses()[joint.instrument]);
-    load.stiffness = resistance(joint, problem);
+    load.stiffness = resistance(joint, problem, solution);
     load.step_s = problem.dt_s;
     motion.setLoad(joint.instrument, joint.compliance.joint, load);
   }

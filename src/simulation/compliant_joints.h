@@ -59,10 +59,10 @@ class CompliantJoints {
   static bool beforeNode(const PressedSide& one, const PressedSide& other);
   double effortOn(Joint& joint, const ContactProblem& problem, const ContactSolution& solution,
                   const std::vector<SolvedContact>& contacts, const std::vector<Pose>& X_WL);
-  double resistance(Joint& joint, const ContactProblem& problem);
+  double resistance(Joint& joint, const ContactProblem& problem, const ContactSolution& solution);
   void findPressed(const ContactProblem& problem, const ContactSolution& solution);
   bool isPressedBehind(const ContactProblem& problem, const Moved& one) const;
-  double squeezing(const Joint& joint, const ContactProblem& problem) const;
+  double squeezing(const Joint& joint, const ContactProblem& problem, const ContactSolution& solution) const;
   using MovedNodes = std::vector<Moved>::const_iterator;
   double energyOf(const ContactProblem& problem, MovedNodes begin, MovedNodes end);
 

@@ -76,7 +76,7 @@ class MovingTissue {
   void move(double dt, double contact_work_j, bool was_cut);
 
   /// What the last step left out of the forces on the tissue, N (MomentumRate).
-  double stepDefect() const { return momentum_rate_.halfChange(); }
+  double stepDefect() const { return momentum_rate_.defect(); }
 
   bool canSleep() const { return sleep_.has_value(); }
   int sleepers() const { return sleep_ ? sleep_->sleepers() : 0; }

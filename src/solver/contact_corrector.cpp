@@ -15,7 +15,7 @@ Vector3 ContactCorrector::correct(const ContactProblem& problem, std::size_t con
   Vector3& impulse = solution.impulses[contact];
   ContactState& state = solution.states[contact];
   Vector3 q = u - W * impulse;
-  q[0] += row.compliance * impulse[0] - row.required_u_n;
+  q[0] += row.normal_compliance * impulse[0] - row.required_u_n;
   const ContactAnswer answer = solve(contact, W, q, row.law, row.was_sliding, state);
   Vector3 change = answer.impulse - impulse;
   impulse = answer.impulse;

@@ -120,7 +120,7 @@ void GaussSeidelRelaxation::prepareContacts(const ContactProblem& problem, Conta
       solution.states[c] = ContactState::kOpen;
       continue;
     }
-    W_[c](0, 0) += row.compliance;
+    W_[c](0, 0) += row.normal_compliance;
     const Vector3 impulse_W = row.R_WC * solution.impulses[c];
     for (int a = 0; a < row.node_count; ++a) {
       const RowNode& at = row.nodes[a];
@@ -326,7 +326,7 @@ void GaussSeidelRelaxation::correctNormal(const ContactRow& row, std::size_t con
   const Vector3 n = row.R_WC.col(0);
   const double u_n = n.dot(tissueVelocity(row, solution.v)) - row.u_tool[0];
   Vector3& impulse = solution.impulses[contact];
-  const double lacking = row.required_u_n - u_n - row.compliance * impulse[0];
+  const double lacking = row.required_u_n - u_n - row.normal_compliance * impulse[0];
   const double wanted = impulse[0] + lacking / W_[contact](0, 0);
   const double normal = wanted > 0.0 ? wanted : 0.0;
   const double change = normal - impulse[0];

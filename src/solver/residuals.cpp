@@ -118,7 +118,7 @@ Residuals computeResiduals(const ContactProblem& problem, const ContactSolution&
     const Vector3 u = relativeVelocity(row, solution.v);
     const Vector3 force = solution.impulses[c] / dt;
     const ContactState state = solution.states[c];
-    const double u_n = u[0] + row.compliance * solution.impulses[c][0];
+    const double u_n = u[0] + row.normal_compliance * solution.impulses[c][0];
     worsen(worst.penetration_m, -(row.gap_m + dt * u_n));
     worsen(worst.adhesion_n, -force[0]);
     worsen(worst.complementarity_w, std::abs(force[0] * (u_n - row.required_u_n)));

@@ -16,7 +16,7 @@ namespace tissue_contact {
 constexpr int kMostDenseContacts = 3000;
 
 /// Per contact three rows (n, t1, t2): u = W r + q, 0 <= u_n  _|_  r_n >= 0, Coulomb friction. u_n here has the
-/// velocity that closes the gap already taken off (u_n - required_u_n of ContactRow).
+/// velocity that closes the gap already taken off (u_n + normal_compliance r_n - required_u_n of ContactRow).
 struct DelassusProblem {
   Eigen::MatrixXd W;              ///< 3n x 3n, 1/kg; symmetric for tissue, not always in files
   VectorX q;                      ///< 3n, m/s
@@ -62,7 +62,7 @@ struct DelassusReport {
 DelassusReport solveDelassus(const DelassusProblem& problem, const SolverDescription& description,
                              DelassusSolution& solution);
 
-/// A step's problem with its bodies eliminated by sparse Cholesky: W = J A^-1 J', q = J A^-1 b - u_tool - required_u_n
+/// A step's problem with its bodies eliminated by sparse Cholesky: W = J A^-1 J' with normal compliances, q = J A^-1 b - u_tool - required_u_n
 /// n. Contacts on nodes that cannot move get zero rows (q too): r = 0, open.
 /// @throws std::runtime_error naming the body whose A is not positive definite.
 /// @throws std::invalid_argument for more than kMostDenseContacts.

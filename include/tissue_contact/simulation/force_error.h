@@ -15,8 +15,8 @@ struct ForceErrorEstimate {
   double mesh_n = 0.0;
   /// The force times 0.18 of the slip over the contact radius, by which normals turn around a ball in the step: frames follow, but for what
   /// changes from step to step. Too small where they do not, at tools' sharp edges. With it, root of the sum of squares, what the step leaves out of
-  /// the forces on the tissue: half of how much the rate of its momentum has changed since the step before, by the instrument's share of all that
-  /// presses on it; at most all it presses with.
+  /// the forces on the tissue: half of how much the rate of its momentum has changed since the step before, by the instrument's share of what
+  /// instruments press on it with; at most all it presses with.
   double step_n = 0.0;
   /// .7 of what the step leaves unbalanced in all tissues that something touches, by the instrument's share of all pressing; at most all it presses with.
   double solver_n = 0.0;

@@ -2,8 +2,8 @@
 /// Room `solver`: the contact problem of one step. Linear systems of the tissues and contact rows in; velocities,
 /// impulses and states out.
 ///
-///   A v = b + J' lambda,   u = J v - u_tool,   0 <= lambda_n  _|_  u_n + s lambda_n + gap/dt >= 0,   Coulomb friction per
-///   contact, s: what gives way within the contact.
+///   A v = b + J' lambda,   u = J v - u_tool,   0 <= lambda_n  _|_  u_n + C lambda_n + gap/dt >= 0,   Coulomb friction per
+///   contact, C: normal_compliance of its row.
 #pragma once
 
 #include <array>
@@ -53,10 +53,10 @@ struct ContactRow {
   std::array<RowNode, 4> nodes;        ///< no node twice
   int node_count = 0;                  ///< 1 to 4
   Matrix3 R_WC = Matrix3::Identity();  ///< columns (n, t1, t2), n from the instrument into the tissue
-  double gap_m = 0.0;                  ///< at the start of the step
-  /// u_n + compliance * lambda_n must be at least this, m/s: -gap/dt, limited when penetrating deeply.
+  double gap_m = 0.0;  ///< at the start of the step; of a squeezed sheet < 0, what its force then makes of its tangent
+  /// u_n + normal_compliance * lambda_n must be at least this, m/s: -gap/dt, limited when penetrating deeply.
   double required_u_n = 0.0;
-  double compliance = 0.0;  ///< 1/kg: c / dt^2 where a sheet's thickness gives way by c of the normal force, m/N
+  double normal_compliance = 0.0;  ///< 1/kg: c / dt^2 where a sheet gives way through its thickness by c, m/N
   /// Velocity of the instrument's material point, contact frame, m/s; tangentially with what the simulation lets the
   /// contact do besides (a landing, a slip taken back).
   Vector3 u_tool = Vector3::Zero();

@@ -14,9 +14,10 @@ struct Residuals {
   double momentum_defect_n_s = 0.0;  ///< |A v - b - J'lambda|, N s
   /// Its sum over the nodes of a body, N s: magnitudes added over the bodies that a contact presses or pulls.
   double net_defect_n_s = 0.0;
-  double penetration_m = 0.0;        ///< how deep the linearised gap at the end of the step is below 0, m
+  double penetration_m =
+      0.0;  ///< how deep the linearised gap at the end of the step is below 0, and below what squeezes a sheet, m
   double adhesion_n = 0.0;           ///< pulling normal force, N
-  double complementarity_w = 0.0;    ///< normal force times separation speed, W
+  double complementarity_w = 0.0;    ///< normal force times separation speed, likewise, W
   double cone_violation_n = 0.0;     ///< tangential force beyond its limit, N
   double static_slip_m_per_s = 0.0;  ///< sliding speed of contacts called static, m/s
   double kinetic_angle_rad = 0.0;    ///< between friction force and the opposite of sliding, over sliding contacts, rad

@@ -56,8 +56,8 @@ class Tissue {
 
   /// Thickness of a membrane, m: it can be touched from both sides, at half of it from its triangles. 0: a volume.
   double thickness() const { return thickness_; }
-  /// Per node of a membrane, N/m: what half its thickness resists with when squeezed over the node's share of its area,
-  /// (lambda + 2 mu) A / (t / 2): the sheet is wide and does not stretch meanwhile. Empty: a volume.
+  /// Per node of a membrane, N/m: what half its thickness t resists with when it begins to be squeezed over the node's share A of its
+  /// area at rest, (lambda + 2 mu) A / (t / 2), of Poisson's ratio .45 at most: it is wide and does not stretch meanwhile. Empty: a volume.
   const VectorX& thicknessStiffness() const { return thickness_stiffness_; }
 
   /// Per surface triangle: index into TissueDescription::regions (by the triangle's own centroid; in a refined mesh that of the

@@ -63,6 +63,11 @@ bool shareANode(const Edge& a, const Edge& b) {
   return a.nodes[0] == b.nodes[0] || a.nodes[0] == b.nodes[1] || a.nodes[1] == b.nodes[0] || a.nodes[1] == b.nodes[1];
 }
 
+/// Not where a fold's crossing would have another key than the same crossing found from its other edge.
+bool isInOrder(const SurfacePair& pair, const Edge& own, const Edge& other) {
+  return !pair.folds() || own.nodes < other.nodes;
+}
+
 }  // namespace
 
 void EdgeEdge::find(const SurfacePair& pair, const std::vector<ContactKey>& known, std::vector<Contact>& contacts) {
@@ -70,7 +75,9 @@ void EdgeEdge::find(const SurfacePair& pair, const std::vector<ContactKey>& know
     if (key.tissue != pair.own.tissue() || key.other_tissue != pair.other.tissue()) continue;
     const Edge* const own = pair.own.edges().find(key.feature);
     const Edge* const other = pair.other.edges().find(key.other_feature);
-    if (own != nullptr && other != nullptr) test(pair, *own, *other, true, contacts);
+    if (own == nullptr || other == nullptr) continue;
+    const bool in_order = isInOrder(pair, *own, *other);  // a mesh that has changed numbers nodes anew
+    test(pair, in_order ? *own : *other, in_order ? *other : *own, true, contacts);
   }
   // Every pair in which an edge is sharp, once: sharp edges of own with all of other, then the others way round with
   // those of own that are not sharp.
@@ -79,7 +86,7 @@ void EdgeEdge::find(const SurfacePair& pair, const std::vector<ContactKey>& know
     for (const int i : near_) {
       const Edge& near = pair.other.edges()[i];
       if (pair.folds() && !(edge.nodes < near.nodes) && maybeSharp(pair.own, near)) continue;
-      const bool in_order = !pair.folds() || edge.nodes < near.nodes;  // a fold's crossing has one key
+      const bool in_order = isInOrder(pair, edge, near);
       test(pair, in_order ? edge : near, in_order ? near : edge, false, contacts);
     }
   }

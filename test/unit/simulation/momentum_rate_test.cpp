@@ -18,27 +18,37 @@ TEST(MomentumRate, IsHalfTheStepTimesTheSecondDerivative) {
     for (int k = 0; k <= 100; ++k) rate.step(swinging(kOmega, k * dt), dt);
     const double middle = 99.0 * dt;  // of the three momenta
     const double second = 0.2 * 0.01 * kOmega * kOmega * kOmega * std::abs(std::cos(kOmega * middle));
-    EXPECT_NEAR(rate.halfChange(), 0.5 * dt * second, 1e-3 * dt * second);
+    EXPECT_NEAR(rate.defect(), 0.5 * dt * second, 1e-3 * dt * second);
   }
+}
+
+TEST(MomentumRate, OfAShortStepAfterALongOneIsThatOfTheShortOne) {
+  MomentumRate rate;
+  const auto momentum = [](double t) { return Vector3(t * t, 0.0, 0.0); };  // rate 2 t, mean over a step in its middle
+  rate.step(momentum(0.0), 0.01);
+  rate.step(momentum(0.01), 0.01);
+  rate.step(momentum(0.02), 0.01);
+  rate.step(momentum(0.022), 0.002);
+  EXPECT_NEAR(rate.defect(), 2.0 * 0.022 - 2.0 * 0.021, 1e-12);
 }
 
 TEST(MomentumRate, OfAFreeFallIsNone) {
   MomentumRate rate;
   for (int k = 1; k <= 10; ++k) rate.step(Vector3(0.0, 0.0, -9.81 * 0.001 * k), 0.001);
-  EXPECT_NEAR(rate.halfChange(), 0.0, 1e-12);
+  EXPECT_NEAR(rate.defect(), 0.0, 1e-12);
 }
 
 TEST(MomentumRate, IsNotKnownBeforeTheThirdStep) {
   MomentumRate rate;
   for (const double momentum : {1.0, 3.0}) {
     rate.step(Vector3(momentum, 0.0, 0.0), 0.001);
-    EXPECT_EQ(rate.halfChange(), 0.0);
+    EXPECT_EQ(rate.defect(), 0.0);
   }
   rate.step(Vector3(4.0, 0.0, 0.0), 0.001);
-  EXPECT_NEAR(rate.halfChange(), 500.0, 1e-9);  // rates 2000 and 1000 N
+  EXPECT_NEAR(rate.defect(), 500.0, 1e-9);  // rates 2000 and 1000 N
   rate.clear();
   rate.step(Vector3(9.0, 0.0, 0.0), 0.001);
-  EXPECT_EQ(rate.halfChange(), 0.0);
+  EXPECT_EQ(rate.defect(), 0.0);
 }
 
 }  // namespace momentum_rate_test

@@ -62,15 +62,16 @@ void closeTo(Simulator& simulator, double distance_m, double rest_s) {
   for (int k = 1; k <= steps; ++k) simulator.advance(kStep, {Vector2::Constant(to * std::min(k / 100.0, 1.0))});
 }
 
-/// (lambda + 2 mu) A (t - d) / t, as a sheet that does not stretch meanwhile has it.
+/// (lambda + 2 mu) A ln(t / d), as a sheet that does not stretch meanwhile has it.
 double plateForce(double youngs_modulus_pa, double nu, double distance_m) {
   const double modulus = youngs_modulus_pa * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
-  return modulus * 1e-4 * (kThickness - distance_m) / kThickness;
+  return modulus * 1e-4 * std::log(kThickness / distance_m);
 }
 
 TEST(SheetThickness, PlatesMeetTheModulusOfTheSheet) {
   for (const char* end : {"friction: [{instrument: jaws, tissue: sheet, static: 0.6, kinetic: 0.5}]\n", "",
-                          "solver: {relaxation: cholesky}\n", "solver: {method: reference}\n"}) {
+                          "solver: {relaxation: cholesky}\n", "solver: {method: reference}\n",
+                          "solver: {method: cone4}\n", "solver: {method: condensed_lcp}\n"}) {
     for (const double distance : {0.9e-3, 0.5e-3}) {
       Simulator simulator = sheetBetween("0.02 0.02 0.002", {}, "", end);
       closeTo(simulator, distance, 0.1);
@@ -78,7 +79,8 @@ TEST(SheetThickness, PlatesMeetTheModulusOfTheSheet) {
       const Vector2 force = squeezeOf(simulator);
       EXPECT_NEAR(-force[0], expected, 2e-3 * expected) << end << distance;  // twice the solver's tolerance
       EXPECT_NEAR(force[1], expected, 2e-3 * expected) << end << distance;
-      EXPECT_LE(simulator.residuals().penetration_m, 0.01 * (kThickness - distance)) << "beyond the squeeze";
+      EXPECT_LE(simulator.residuals().penetration_m, 0.01 * (kThickness - distance))
+          << "beyond the squeeze: ten times the tolerance";
       EXPECT_EQ(simulator.report().stop, StopReason::kTolerance) << end;
     }
   }
@@ -121,6 +123,45 @@ TEST(SheetThickness, CompliantJawsRestOnASheet) {
     EXPECT_NEAR(most, 0.3, 0.003) << youngs_modulus_pa;
     EXPECT_NEAR(least, 0.3, 0.003) << youngs_modulus_pa;
   }
+}
+
+/// A limit of three times what a linear law would bear before the jaws meet.
+TEST(SheetThickness, AStrongGripSqueezesOnAndHolds) {
+  const std::string both =
+      ", compliant_joints: [{joint: upper_joint, stiffness_n_per_m: 2000, force_limit_n: 1.5}, "
+      "{joint: lower_joint, stiffness_n_per_m: 2000, force_limit_n: 1.5}]";
+  Simulator simulator = sheetBetween("0.004 0.003 0.002", {"[20, 20]", "20000", "0.4"}, both);
+  closeTo(simulator, -0.003, 0.5);
+  EXPECT_NEAR(squeezeOf(simulator)[1], 1.5, 0.015);
+}
+
+/// Contacts between tissues that are known, squeezed ones and the rate of momentum are all in a saved state.
+TEST(SheetThickness, ASavedStateGoesOnWithTheSameBits) {
+  const auto make = [] {
+    return makeSimulator(
+        blockScene("[0.04, 0.04, 0.02]", "[8, 8, 4]") +
+            "  - name: layer\n    sheet: {size_m: [0.03, 0.03], cells: [8, 8], thickness_m: 0.001}\n"
+            "    pose: {position_m: [0, 0, 0.0202]}\n    material: {youngs_modulus_pa: 50000, poissons_ratio: 0.4, "
+            "density_kg_per_m3: 1000}\n    damping: {stiffness_s: 0.003, mass_per_s: 5}\n" +
+            onlyBall("[0, 0, 0.026]") +
+            "tissue_pairs: [{tissue: block, other: layer}]\n"
+            "friction: [{instrument: probe, tissue: layer, static: 0.5, kinetic: 0.4}]\n",
+        {{"probe", probeUrdf(0.005)}});
+  };
+  Simulator goes_on = make();
+  const auto advance = [](Simulator& simulator, int step) {
+    simulator.advance(kStep, {Vector3(0.0, 0.0, -2.5e-5 * step)});
+  };
+  for (int k = 1; k <= 120; ++k) advance(goes_on, k);
+  Simulator loaded = make();
+  loaded.loadState(goes_on.saveState());
+  for (int k = 121; k <= 150; ++k) {
+    for (Simulator* simulator : {&goes_on, &loaded}) advance(*simulator, k);
+    ASSERT_EQ(goes_on.wrench(0).force, loaded.wrench(0).force) << k;
+    ASSERT_EQ(goes_on.forceErrors()[0].step_n, loaded.forceErrors()[0].step_n) << k;
+    ASSERT_EQ(goes_on.contacts().size(), loaded.contacts().size()) << k;
+  }
+  EXPECT_GT(goes_on.wrench(0).force.z(), 0.01);
 }
 
 /// The other side may be a tissue: a sheet that lies on a stiff block gives way by half its thickness from each side as well.
