@@ -1,17 +1,9 @@
 #include "simulation/sheet_thickness.h"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 namespace tissue_contact {
-namespace {
-
-/// Of its thickness, that a sheet is squeezed by at most before its tangent stays what it is.
-constexpr double kMostSqueezed = 0.95;
-
-}  // namespace
-
 SheetThickness::SheetThickness(const std::vector<Tissue>& tissues)
     : tissues_(tissues), any_sheet_(std::any_of(tissues.begin(), tissues.end(), [](const Tissue& tissue) {
         return tissue.thicknessStiffness().size() > 0;
@@ -43,17 +35,6 @@ void SheetThickness::prepare(const std::vector<SolvedContact>& contacts) {
     compliances_[c] = 0.0;
     for (const double stiffness : stiffnesses_[c]) compliances_[c] += stiffness > 0.0 ? 1.0 / stiffness : 0.0;
   }
-}
-
-SheetThickness::Tangent SheetThickness::at(std::size_t index, const Contact& contact) const {
-  if (!any_sheet_ || compliances_[index] == 0.0) return {contact.gap_m, 0.0};
-  double thickness = 0.5 * tissues_[contact.key.tissue].thickness();
-  if (contact.key.other_tissue >= 0) thickness += 0.5 * tissues_[contact.key.other_tissue].thickness();
-  const double squeezed = std::max(-contact.gap_m / thickness, 0.0);
-  if (squeezed == 0.0) return {contact.gap_m, compliances_[index]};
-  const double left = 1.0 - std::min(squeezed, kMostSqueezed);
-  const double beyond = std::max(squeezed - kMostSqueezed, 0.0);
-  return {thickness * (left * std::log(left) - beyond), left * compliances_[index]};
 }
 
 void SheetThickness::add(const SolvedContact& solved, std::size_t contact, int side) {

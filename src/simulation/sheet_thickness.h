@@ -1,6 +1,6 @@
 /// @file
 /// Room `simulation`, private: how far sheets give way through their thickness where something presses them. Contacts of a
-/// step in; a gap and a compliance for each out.
+/// step in; a compliance for each out.
 #pragma once
 
 #include <array>
@@ -12,11 +12,10 @@
 namespace tissue_contact {
 
 /// Without it jaws that close to less than the thickness of a sheet between them would ask for what no force can do.
-/// A part of thickness h that is squeezed by s bears k h ln(h / (h - s)), by the logarithmic strain (Hencky, Z. Tech. Phys. 9, 1928), and
-/// more and more as it is squeezed out; k is what it resists with at first, Tissue::thicknessStiffness() of a node. Steps have
-/// its tangent. A node's k is divided among the contacts of one shape, or other tissue, that press there, by their weights:
-/// so plates over all of a sheet meet (lambda + 2 mu) A ln(t / d) at the distance d. No allocation once vectors have grown;
-/// nothing is done where all tissues are volumes.
+/// What half the thickness resists with over a node's share of the area, Tissue::thicknessStiffness(), is divided among the
+/// contacts of one shape, or other tissue, that press there, by their weights: so plates over all of a sheet meet
+/// (lambda + 2 mu) A (1 - d / t) at the distance d. Linear: with a law that stiffens to the end jaws with real meshes press single
+/// nodes with all they have. No allocation once vectors have grown; nothing is done where all tissues are volumes.
 class SheetThickness {
  public:
   explicit SheetThickness(const std::vector<Tissue>& tissues);
@@ -24,12 +23,8 @@ class SheetThickness {
   /// @param contacts of the step, with the forces of the step before.
   void prepare(const std::vector<SolvedContact>& contacts);
 
-  struct Tangent {
-    double gap_m;       ///< that of the contact; < 0: minus the compliance times the force at this squeeze
-    double compliance;  ///< m/N: of the sheets on both sides; 0: volumes touch
-  };
-  /// @param contact of that index.
-  Tangent at(std::size_t index, const Contact& contact) const;
+  /// Of the contact of that index, m/N: what the sheets on both its sides give way; 0: volumes touch.
+  double complianceOf(std::size_t contact) const { return any_sheet_ ? compliances_[contact] : 0.0; }
 
  private:
   /// A sheet's node as one contact presses it.

@@ -208,6 +208,7 @@ void StepContacts::placeRow(std::size_t index, double dt, ContactRow& row) const
     if (contact.weights[i] != 0.0) row.nodes[row.node_count++] = {key.tissue, contact.nodes[i], contact.weights[i]};
   }
   row.R_WC = contact.R_WC;
+  row.gap_m = contact.gap_m;
   double half_extent = 0.0;
   if (key.instrument >= 0) {
     const double to_shape = contact.gap_m + 0.5 * tissues_[key.tissue].thickness();
@@ -222,12 +223,11 @@ void StepContacts::placeRow(std::size_t index, double dt, ContactRow& row) const
     row.u_tool.setZero();
     half_extent = edges_.finer(contact);
   }
-  const SheetThickness::Tangent squeezed = thickness_.at(index, contact);
-  row.gap_m = squeezed.gap_m;
-  row.normal_compliance = squeezed.compliance / (dt * dt);
+  const double compliance = thickness_.complianceOf(index);
+  row.normal_compliance = compliance / (dt * dt);
   // A sheet that is squeezed is no deeper than its force makes it.
   const double force = std::max(contact.R_WC.col(0).dot(contacts_[index].force_on_tissue_n), 0.0);
-  row.required_u_n = std::min(-row.gap_m / dt, half_extent / kRecoveryTime_s + squeezed.compliance * force / dt);
+  row.required_u_n = std::min(-row.gap_m / dt, half_extent / kRecoveryTime_s + compliance * force / dt);
 }
 
 std::optional<double> StepContacts::weakestNetForce(int tissue, const std::vector<Vector3>& impulses, double dt) {

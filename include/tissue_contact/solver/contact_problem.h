@@ -53,7 +53,7 @@ struct ContactRow {
   std::array<RowNode, 4> nodes;        ///< no node twice
   int node_count = 0;                  ///< 1 to 4
   Matrix3 R_WC = Matrix3::Identity();  ///< columns (n, t1, t2), n from the instrument into the tissue
-  double gap_m = 0.0;  ///< at the start of the step; of a squeezed sheet < 0, what its force then makes of its tangent
+  double gap_m = 0.0;                  ///< at the start of the step
   /// u_n + normal_compliance * lambda_n must be at least this, m/s: -gap/dt, limited when penetrating deeply.
   double required_u_n = 0.0;
   double normal_compliance = 0.0;  ///< 1/kg: c / dt^2 where a sheet gives way through its thickness by c, m/N

@@ -56,7 +56,7 @@ class Tissue {
 
   /// Thickness of a membrane, m: it can be touched from both sides, at half of it from its triangles. 0: a volume.
   double thickness() const { return thickness_; }
-  /// Per node of a membrane, N/m: what half its thickness t resists with when it begins to be squeezed over the node's share A of its
+  /// Per node of a membrane, N/m: what half its thickness t resists with when squeezed over the node's share A of its
   /// area at rest, (lambda + 2 mu) A / (t / 2), of Poisson's ratio .45 at most: it is wide and does not stretch meanwhile. Empty: a volume.
   const VectorX& thicknessStiffness() const { return thickness_stiffness_; }
 

@@ -62,19 +62,19 @@ void closeTo(Simulator& simulator, double distance_m, double rest_s) {
   for (int k = 1; k <= steps; ++k) simulator.advance(kStep, {Vector2::Constant(to * std::min(k / 100.0, 1.0))});
 }
 
-/// (lambda + 2 mu) A ln(t / d), as a sheet that does not stretch meanwhile has it.
+/// (lambda + 2 mu) A (t - d) / t, as a sheet that does not stretch meanwhile has it.
 double plateForce(double youngs_modulus_pa, double nu, double distance_m) {
   const double modulus = youngs_modulus_pa * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
-  return modulus * 1e-4 * std::log(kThickness / distance_m);
+  return modulus * 1e-4 * (kThickness - distance_m) / kThickness;
 }
 
 TEST(SheetThickness, PlatesMeetTheModulusOfTheSheet) {
-  for (const char* end : {"friction: [{instrument: jaws, tissue: sheet, static: 0.6, kinetic: 0.5}]\n", "",
-                          "solver: {relaxation: cholesky}\n", "solver: {method: reference}\n",
-                          "solver: {method: cone4}\n", "solver: {method: condensed_lcp}\n"}) {
+  for (const char* end :
+       {"friction: [{instrument: jaws, tissue: sheet, static: 0.6, kinetic: 0.5}]\n", "",
+        "solver: {relaxation: cholesky}\n", "solver: {method: reference}\n", "solver: {method: cone4}\n"}) {
     for (const double distance : {0.9e-3, 0.5e-3}) {
       Simulator simulator = sheetBetween("0.02 0.02 0.002", {}, "", end);
-      closeTo(simulator, distance, 0.1);
+      closeTo(simulator, distance, 0.3);
       const double expected = plateForce(50000, 0.3, distance);
       const Vector2 force = squeezeOf(simulator);
       EXPECT_NEAR(-force[0], expected, 2e-3 * expected) << end << distance;  // twice the solver's tolerance
@@ -125,16 +125,6 @@ TEST(SheetThickness, CompliantJawsRestOnASheet) {
   }
 }
 
-/// A limit of three times what a linear law would bear before the jaws meet.
-TEST(SheetThickness, AStrongGripSqueezesOnAndHolds) {
-  const std::string both =
-      ", compliant_joints: [{joint: upper_joint, stiffness_n_per_m: 2000, force_limit_n: 1.5}, "
-      "{joint: lower_joint, stiffness_n_per_m: 2000, force_limit_n: 1.5}]";
-  Simulator simulator = sheetBetween("0.004 0.003 0.002", {"[20, 20]", "20000", "0.4"}, both);
-  closeTo(simulator, -0.003, 0.5);
-  EXPECT_NEAR(squeezeOf(simulator)[1], 1.5, 0.015);
-}
-
 /// Contacts between tissues that are known, squeezed ones and the rate of momentum are all in a saved state.
 TEST(SheetThickness, ASavedStateGoesOnWithTheSameBits) {
   const auto make = [] {
@@ -154,7 +144,7 @@ TEST(SheetThickness, ASavedStateGoesOnWithTheSameBits) {
   };
   for (int k = 1; k <= 120; ++k) advance(goes_on, k);
   Simulator loaded = make();
-  loaded.loadState(goes_on.saveState());
+  loaded.restoreState(goes_on.saveState());
   for (int k = 121; k <= 150; ++k) {
     for (Simulator* simulator : {&goes_on, &loaded}) advance(*simulator, k);
     ASSERT_EQ(goes_on.wrench(0).force, loaded.wrench(0).force) << k;
