@@ -71,6 +71,12 @@ constexpr const char* kStiffNodule =
     "    regions: [{name: nodule, where: [{sphere: {center_m: [0, 0, 0.01], radius_m: 0.01}}],\n"
     "               material: {youngs_modulus_pa: 1e5}}]\n";
 
+/// Touched by the probe before the block is.
+constexpr const char* kSheetOnTop =
+    "  - name: sheet\n    sheet: {size_m: [0.05, 0.05], cells: [9, 9], thickness_m: 0.001}\n"
+    "    pose: {position_m: [0, 0, 0.0202]}\n"
+    "    material: {youngs_modulus_pa: 50000, poissons_ratio: 0.4, density_kg_per_m3: 1000}\n";
+
 void PrintTo(const Case& value, std::ostream* out) { *out << value.name; }
 
 /// Before a test: a sanitizer has a malloc of its own, so that nothing would be counted.
@@ -135,6 +141,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"Viscoelastic", ", prony_series: [{modulus_ratio: 1, time_s: 0.1}]", ""},
                     Case{"FrictionOverPressure", "", "", "", ", pressures_pa: [0, 5000], pressure_factors: [1, 0.8]"},
                     Case{"FrictionOverSpeed", "", "", "", ", speeds_m_per_s: [0, 0.05], speed_factors: [1, 0.8]"},
+                    Case{"SheetBetween", "", "tissue_pairs: [{tissue: block, other: sheet}]\n", kSheetOnTop},
                     Case{"AdaptedRotations", "", "advisor: {rotations: auto}\n"}),
     [](const auto& one) { return std::string(one.param.name); });
 

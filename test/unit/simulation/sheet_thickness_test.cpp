@@ -7,6 +7,7 @@
 #include <string>
 
 #include "support/text_scene.h"
+#include "tissue_contact/scene/tuning.h"
 
 namespace tissue_contact {
 namespace sheet_thickness_test {
@@ -123,6 +124,15 @@ TEST(SheetThickness, CompliantJawsRestOnASheet) {
     EXPECT_NEAR(most, 0.3, 0.003) << youngs_modulus_pa;
     EXPECT_NEAR(least, 0.3, 0.003) << youngs_modulus_pa;
   }
+}
+
+TEST(SheetThickness, FollowsYoungsModulusInTheNextSteps) {
+  Simulator simulator = sheetBetween("0.02 0.02 0.002", {});
+  closeTo(simulator, 0.9e-3, 0.1);
+  simulator.retune(tuned(simulator.scene(), {{"tissues/sheet/youngs_modulus_pa", 100000.0}}));
+  for (int k = 0; k < 100; ++k) simulator.advance(kStep, {simulator.jointPositions(0)});
+  const double expected = plateForce(100000, 0.3, 0.9e-3);
+  EXPECT_NEAR(squeezeOf(simulator)[1], expected, 2e-3 * expected);
 }
 
 /// Contacts between tissues that are known, squeezed ones and the rate of momentum are all in a saved state.
