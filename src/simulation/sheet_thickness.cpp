@@ -4,6 +4,7 @@
 #include <tuple>
 
 namespace tissue_contact {
+
 SheetThickness::SheetThickness(const std::vector<Tissue>& tissues)
     : tissues_(tissues), any_sheet_(std::any_of(tissues.begin(), tissues.end(), [](const Tissue& tissue) {
         return tissue.thicknessStiffness().size() > 0;
@@ -51,7 +52,8 @@ void SheetThickness::add(const SolvedContact& solved, std::size_t contact, int s
   }
 }
 
-/// Among the contacts of one shape on one node, of whose area they bear no more than their weights. One that does not press yet is told what it would have beside those that do.
+/// Among the contacts of one shape on one node, of whose area they bear no more than their weights. One that does not press
+/// yet is told what it would have beside those that do.
 void SheetThickness::divide(std::vector<Pressed>::const_iterator begin, std::vector<Pressed>::const_iterator end) {
   double pressing = 0.0;
   for (auto one = begin; one != end; ++one) pressing += one->presses ? one->weight : 0.0;

@@ -1,0 +1,128 @@
+#!/usr/bin/python3
+"""Prints the forces of doc/notes/method.md ("Crossing edges of two tissues", "Sheets that are squeezed"): a ball held on a layer that lies on a bed, boxes
+that close on a sheet, and on a gut. Mean and RMS about it of what the last .2 s hold, N. A minute or two.
+
+usage, after `source scripts/env.bash`: benchmark/drivers/touching_tissues.py
+"""
+import math
+import os
+import tempfile
+
+import numpy as np
+import tissue_contact as tc
+
+BALL = "<link name='tip'><collision><geometry><sphere radius='0.005'/></geometry></collision></link>"
+BOX = "<link name='%s'><collision><geometry><box size='%g 0.002 %g'/></geometry></collision></link>"
+JOINT = ("<joint name='%s_joint' type='prismatic'><parent link='base'/><child link='%s'/><origin xyz='0 %g 0'/><axis xyz='%s'/>"
+         "<limit lower='-1' upper='1' effort='1' velocity='1'/></joint>")
+PROBE = "<robot name='r'><link name='base'/>" + BALL + JOINT % ("tip", "tip", 0, "0 0 1") + "</robot>"
+STEP_S = 0.001
+
+
+def jaws(width_m, length_m):
+    """Two boxes whose faces are at +-q for positions q of both joints."""
+    links = "".join(BOX % (name, width_m, length_m) for name in ("a", "b"))
+    return ("<robot name='r'><link name='base'/>" + links + JOINT % ("a", "a", 0.001, "0 1 0") + JOINT % ("b", "b", -0.001, "0 -1 0") + "</robot>")
+
+
+def material(young_pa, nu=0.4, mass_per_s=20):
+    return ("    material: {youngs_modulus_pa: %g, poissons_ratio: %g, density_kg_per_m3: 1000}\n"
+            "    damping: {stiffness_s: 0.003, mass_per_s: %g}\n" % (young_pa, nu, mass_per_s))
+
+
+def simulator(tissues, urdf, links, tissue, base_m, more="", friction=""):
+    instrument = ("  - {name: tool, robot_description: tool, tip_link: base, contact_links: [%s], joint_state_topics: [/js], "
+                  "base_pose: {position_m: [0, 0, %g]}%s}\n" % (links, base_m, more))
+    pairs = "tissue_pairs: [{tissue: bed, other: layer}]\n" if "name: bed" in tissues else "tissue_pairs: [{tissue: gut, other: gut}]\n" if "gut" in tissues else ""
+    text = ("gravity_m_per_s2: [0, 0, %g]\ntissues:\n" % (-9.81 if "name: bed" in tissues else 0) + tissues + "instruments:\n" + instrument + pairs +
+            "friction:\n" + friction + "  - {instrument: tool, tissue: %s, static: 0.5, kinetic: 0.4}\n" % tissue)
+    with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+        file.write(urdf)
+        file.flush()
+        return tc.Simulator(tc.parse_scene(text), urdf=file.name)
+
+
+def held(model, start, end, move_s, rest_s, force):
+    """`force` in each of the last .2 s; the joints go from start to end in move_s."""
+    model.place("tool", start)
+    found, missed = [], 0
+    for k in range(1, round((move_s + rest_s) / STEP_S) + 1):
+        share = min(k * STEP_S / move_s, 1.0)
+        model.advance(STEP_S, {"tool": [a + (b - a) * share for a, b in zip(start, end)]})
+        missed += not model.report().converged
+        found.append(force(model))
+    last = np.array(found[-round(0.2 / STEP_S):])
+    return "%9.4f +- %.4f   %4d steps of %d not converged" % (last.mean(), last.std(), missed, len(found))
+
+
+def on_layer(shape, top_m, young_pa, bed_pa, depth_m, bed_cells="[8, 8, 5]", friction=""):
+    tissues = ("  - name: bed\n    block: {size_m: [0.04, 0.04, 0.02], cells: %s}\n" % bed_cells + material(bed_pa, mass_per_s=5) +
+               "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n  - name: layer\n    " + shape + material(young_pa, mass_per_s=5))
+    start = [top_m + 0.005 - 0.03]
+    return held(simulator(tissues, PROBE, "tip", "layer", 0.03, friction=friction), start, [start[0] - depth_m], 0.2, 0.4,
+                lambda model: model.wrench("tool", frame="world")[2])
+
+
+def squeeze(model):
+    contacts = model.contacts()
+    return -contacts["force"][(contacts["instrument"] == 0) & (contacts["link"] == 0)][:, 1].sum()
+
+
+def on_sheet(cells, distance_m, young_pa=5e4, more=""):
+    tissues = ("  - name: sheet\n    sheet: {size_m: [0.02, 0.02], cells: [%d, %d], thickness_m: 0.001}\n" % (cells, cells) +
+               "    pose: {position_m: [0, 0, 0], rpy_rad: [%.17g, 0, 0]}\n" % (0.5 * math.pi) + material(young_pa) +
+               "    fixed: [{plane: {point_m: [0, -0.01, 0], normal: [0, 1, 0]}}]\n")
+    return held(simulator(tissues, jaws(0.006, 0.008), "a, b", "sheet", 0.004, more), [0.003] * 2, [0.5 * distance_m] * 2, 0.3, 0.5, squeeze)
+
+
+def tube(file, radius_m=0.006, length_m=0.05, around=24, along=30):
+    angle = lambda i, j: 2.0 * math.pi * (j + 0.5 * (i % 2)) / around
+    with open(file, "w", encoding="utf-8") as stream:
+        for i in range(along + 1):
+            for j in range(around):
+                stream.write("v %.17g %.17g %.17g\n" % (length_m * (i / along - 0.5), radius_m * math.cos(angle(i, j)), radius_m * math.sin(angle(i, j))))
+        for i in range(along):
+            for j in range(around):
+                a, b = i * around + j + 1, i * around + (j + 1) % around + 1
+                c, d = a + around, b + around
+                for nodes in [(a, b, c), (b, d, c)] if i % 2 == 0 else [(a, d, c), (a, b, d)]:
+                    stream.write("f %d %d %d\n" % nodes)
+
+
+def on_gut(file, distance_m, more=""):
+    tissues = ("  - name: gut\n    shell: {file: %s, thickness_m: 0.0015}\n" % file + material(5e4, 0.45) +
+               "    fixed: [{plane: {point_m: [-0.0249, 0, 0], normal: [1, 0, 0]}}, {plane: {point_m: [0.0249, 0, 0], normal: [-1, 0, 0]}}]\n")
+    return held(simulator(tissues, jaws(0.006, 0.02), "a, b", "gut", 0.0, more), [0.008] * 2, [0.5 * distance_m] * 2, 0.6, 0.6, squeeze)
+
+
+def compliant(limit_n):
+    return ", compliant_joints: [%s]" % ", ".join("{joint: %s_joint, stiffness_n_per_m: 1000, force_limit_n: %g}" % (name, limit_n) for name in "ab")
+
+
+def main():
+    sheet = "sheet: {size_m: [0.03, 0.03], cells: [%d, %d], thickness_m: %g}\n    pose: {position_m: [0, 0, 0.0202]}\n"
+    block = "block: {size_m: [0.03, 0.03, 0.003], cells: [%d, %d, %d]}\n    pose: {position_m: [0, 0, 0.02]}\n"
+    stuck = "  - {tissue: bed, other_tissue: layer, static: 0.4, kinetic: 0.3}\n"
+    for name, row in [("sheet of 1 mm, 100 kPa, on 5 kPa", (sheet % (8, 8, 1e-3), 0.0202, 1e5, 5e3, 3e-3)),
+                      ("1 MPa", (sheet % (8, 8, 1e-3), 0.0202, 1e6, 5e3, 3e-3)),
+                      ("100 kPa, 16 x 16 cells on 16 x 16 x 8", (sheet % (16, 16, 1e-3), 0.0202, 1e5, 5e3, 3e-3, "[16, 16, 8]")),
+                      (".5 mm, 20 kPa, 12 x 12 on 10 x 10 x 5", (sheet % (12, 12, 5e-4), 0.0202, 2e4, 5e3, 3e-3, "[10, 10, 5]")),
+                      ("block 10 x 10 x 1, 5 kPa, on 5 kPa", (block % (10, 10, 1), 0.023, 5e3, 5e3, 3e-3)),
+                      ("8 x 8 x 1, stuck, on 5 kPa", (block % (8, 8, 1), 0.023, 5e3, 5e3, 4e-3, "[8, 8, 5]", stuck)),
+                      ("8 x 8 x 1, stuck, on 50 kPa", (block % (8, 8, 1), 0.023, 5e3, 5e4, 4e-3, "[8, 8, 5]", stuck)),
+                      ("8 x 8 x 2, on 50 kPa", (block % (8, 8, 2), 0.023, 5e3, 5e4, 4e-3))]:
+        print("%-40s %s" % (name, on_layer(*row)), flush=True)
+    for cells, distance in [(8, 9e-4), (8, 7e-4), (8, 5e-4), (20, 7e-4)]:
+        print("%-40s %s" % ("boxes on a sheet, %d cells, to %g mm" % (cells, 1e3 * distance), on_sheet(cells, distance)), flush=True)
+    for young, distance in [(5e4, -0.001), (1e6, 0.0)]:
+        print("%-40s %s" % ("compliant, %g kPa, limit .5 N" % (young / 1e3), on_sheet(8, distance, young, compliant(0.5))), flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "gut.obj")
+        tube(file)
+        for distance in (0.0035, 0.0028, 0.002):
+            print("%-40s %s" % ("boxes on a gut, to %g mm" % (1e3 * distance), on_gut(file, distance)), flush=True)
+        print("%-40s %s" % ("compliant, limit .5 N", on_gut(file, 0.0, compliant(0.5))), flush=True)
+
+
+if __name__ == "__main__":
+    main()
