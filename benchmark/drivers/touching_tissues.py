@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Prints the forces of doc/notes/method.md ("Crossing edges of two tissues", "Sheets that are squeezed"): a ball held on a layer that lies on a bed, boxes
-that close on a sheet, and on a gut. Mean and RMS about it of what the last .2 s hold, N. A minute or two.
+that close on a sheet, and on a gut, jaws of a PSM on flaps. Mean and RMS about it of what the last .2 s hold, N. A minute or two.
 
 usage, after `source scripts/env.bash`: benchmark/drivers/touching_tissues.py
 """
@@ -17,6 +17,8 @@ JOINT = ("<joint name='%s_joint' type='prismatic'><parent link='base'/><child li
          "<limit lower='-1' upper='1' effort='1' velocity='1'/></joint>")
 PROBE = "<robot name='r'><link name='base'/>" + BALL + JOINT % ("tip", "tip", 0, "0 0 1") + "</robot>"
 STEP_S = 0.001
+PSM = os.path.join(os.environ.get("TISSUE_CONTACT_SHARED_DATA", ""), "dvrk_psm", "psm2_caudier.urdf")
+TOOL = "PSM2_tool_wrist_caudier"
 
 
 def jaws(width_m, length_m):
@@ -63,6 +65,12 @@ def on_layer(shape, top_m, young_pa, bed_pa, depth_m, bed_cells="[8, 8, 5]", fri
                 lambda model: model.wrench("tool", frame="world")[2])
 
 
+def pressed(model):
+    contacts = model.contacts()
+    of_one = contacts[(contacts["instrument"] == 0) & (contacts["link"] == 0)]
+    return np.abs((of_one["force"] * of_one["normal"]).sum(axis=1)).sum()
+
+
 def squeeze(model):
     contacts = model.contacts()
     return -contacts["force"][(contacts["instrument"] == 0) & (contacts["link"] == 0)][:, 1].sum()
@@ -95,6 +103,25 @@ def on_gut(file, distance_m, more=""):
     return held(simulator(tissues, jaws(0.006, 0.02), "a, b", "gut", 0.0, more), [0.008] * 2, [0.5 * distance_m] * 2, 0.6, 0.6, squeeze)
 
 
+def on_flaps(model, law, count, half_angle_rad, limit_n_m=0.0):
+    """The jaws of a PSM on flaps of 4 mm in all that lie side by side: pressed by one jaw, N."""
+    names, thickness_m = "ab"[:count], 0.004 / count
+    tissues = "".join(
+        "  - name: %s\n    block: {size_m: [%g, 0.01, 0.03], cells: [%d, 8, 12]}\n    pose: {position_m: [%g, 0, 0]}\n    refinement: never\n"
+        "    material: {model: %s, youngs_modulus_pa: 2.0e+4, poissons_ratio: 0.45, density_kg_per_m3: 1000}\n"
+        "    damping: {stiffness_s: 0.003, mass_per_s: 20}\n    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n" %
+        (name, thickness_m, 4 // count, thickness_m * (k + 0.5) - 0.002, law) for k, name in enumerate(names))
+    compliance = ", compliant_joints: [{joint: jaw, stiffness_n_m_per_rad: 0.5, torque_limit_n_m: %g}]" % limit_n_m if limit_n_m else ""
+    psm = ("  - {name: tool, urdf: %s, base_pose: {position_m: [-0.25, 0, -0.311]}, joint_state_topics: [/js], tip_link: %s_ee_link, "
+           "contact_links: [%s_link_2_left, %s_link_2_right]%s}\n" % (model, TOOL, TOOL, TOOL, compliance))
+    text = "gravity_m_per_s2: [0, 0, 0]\ntissues:\n" + tissues + "instruments:\n" + psm
+    text += "tissue_pairs: [{tissue: a, other: b}]\n" if count == 2 else ""
+    text += "friction:\n" + "".join("  - {instrument: tool, tissue: %s, static: 0.6, kinetic: 0.4}\n" % name for name in names)
+    text += "  - {tissue: a, other_tissue: b, static: 0.4, kinetic: 0.3}\n" if count == 2 else ""
+    joints = [[0, 0, 0.15, 0, 0, 0, 2.0 * half_rad] for half_rad in (0.25, half_angle_rad)]
+    return held(tc.Simulator(tc.parse_scene(text)), *joints, 0.5, 0.5, pressed)
+
+
 def compliant(limit_n):
     return ", compliant_joints: [%s]" % ", ".join("{joint: %s_joint, stiffness_n_per_m: 1000, force_limit_n: %g}" % (name, limit_n) for name in "ab")
 
@@ -122,6 +149,14 @@ def main():
         for distance in (0.0035, 0.0028, 0.002):
             print("%-40s %s" % ("boxes on a gut, to %g mm" % (1e3 * distance), on_gut(file, distance)), flush=True)
         print("%-40s %s" % ("compliant, limit .5 N", on_gut(file, 0.0, compliant(0.5))), flush=True)
+    if not os.path.isfile(PSM):
+        print("no %s: its jaws are left out (TISSUE_CONTACT_SHARED_DATA)" % PSM)
+        return
+    for law in ("corotational", "neo_hookean"):
+        for count in (1, 2):
+            for half_angle_rad, limit_n_m in [(0.05, 0.0), (0.04, 0.0), (0.03, 0.0), (-0.2, 0.008)]:
+                closed = "limit %g N m" % limit_n_m if limit_n_m else "to %g rad" % half_angle_rad
+                print("%-40s %s" % ("jaws, %d flap(s), %s, %s" % (count, law, closed), on_flaps(PSM, law, count, half_angle_rad, limit_n_m)), flush=True)
 
 
 if __name__ == "__main__":
