@@ -178,7 +178,7 @@ void bindMemory(py::module_& module) {
 
 void bindSimulator(py::module_& module) {
   const auto make = [](const LoadedScene& loaded, const py::object& urdf, const py::object& frames) {
-    const SceneEnvironment environment = environmentOf(urdf.is_none() ? "" : pathOf(urdf), frames);
+    const SceneEnvironment environment = environmentOf(loaded.scene, urdf.is_none() ? "" : pathOf(urdf), frames);
     const py::gil_scoped_release no_gil;
     return std::make_shared<PythonSimulator>(loaded.scene, environment);
   };

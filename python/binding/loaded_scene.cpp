@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <stdexcept>
@@ -58,7 +59,13 @@ LoadedScene loadScene(const std::string& file, const py::object& set, std::optio
   return loaded;
 }
 
-SceneEnvironment environmentOf(const std::string& urdf_file, const py::object& frames) {
+SceneEnvironment environmentOf(const Scene& scene, const std::string& urdf_file, const py::object& frames) {
+  const auto takes_it = [](const InstrumentDescription& one) { return !one.robot_description_parameter.empty(); };
+  if (!urdf_file.empty() && std::none_of(scene.instruments.begin(), scene.instruments.end(), takes_it)) {
+    throw std::invalid_argument(
+        "urdf='" + urdf_file + "' would change nothing: no instrument of scene '" + scene.file +
+        "' takes its URDF from a parameter; leave it out, or have the scene say robot_description in place of urdf");
+  }
   SceneEnvironment environment;
   environment.package_path = packageDirectory;
   environment.clock = steadySeconds;

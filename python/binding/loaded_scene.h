@@ -27,8 +27,8 @@ LoadedScene loadScene(const std::string& file, const pybind11::object& set, std:
 
 /// Packages through rospkg, URDF parameters as the text of one file, poses of tf frames by name. Holds no Python object: the
 /// simulator keeps some of it, and calls it without the GIL.
-/// @param urdf_file empty: a scene that takes a URDF from a parameter is refused.
+/// @param urdf_file empty: a scene that takes a URDF from a parameter is refused; else one that takes none from there is.
 /// @param frames None, or a dict of 4 x 4 poses in the world frame.
-SceneEnvironment environmentOf(const std::string& urdf_file, const pybind11::object& frames);
+SceneEnvironment environmentOf(const Scene& scene, const std::string& urdf_file, const pybind11::object& frames);
 
 }  // namespace tissue_contact::python

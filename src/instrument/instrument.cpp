@@ -137,7 +137,8 @@ class Builder {
     return joints;
   }
 
-  /// Own names first, then the map, which may give an own name another meaning.
+  /// Own names, but for those of joints that the map gives another: two arms of one model may share a topic. The map may give an own name
+  /// another meaning.
   std::map<std::string, int> makeJointMap() const {
     std::map<std::string, int> joint_of;
     for (std::size_t i = 0; i < model_.joints().size(); ++i) joint_of[model_.joints()[i].name] = static_cast<int>(i);
@@ -146,8 +147,10 @@ class Builder {
       const int joint = findMappedJoint(recorded, name);
       const auto [it, is_new] = recorded_as.emplace(joint, recorded);
       if (!is_new) refuseSharedJoint(it->second, recorded, name);
-      joint_of[recorded] = joint;
     }
+    for (const auto& [joint, recorded] : recorded_as)
+      joint_of.erase(model_.joints()[static_cast<std::size_t>(joint)].name);
+    for (const auto& [joint, recorded] : recorded_as) joint_of[recorded] = joint;
     return joint_of;
   }
 
@@ -171,7 +174,12 @@ class Builder {
   }
 
   int findMappedJoint(const std::string& recorded, const std::string& name) const {
-    return findJoint("joint_names." + recorded, "the joint map sends '" + recorded + "' to", name);
+    const bool is_reversed = model_.findJoint(name) < 0 && model_.findJoint(recorded) >= 0;
+    return findJoint(
+        "joint_names." + recorded,
+        (is_reversed ? "the recorded name stands first (" + name + ": " + recorded + "); " : std::string()) +
+            "the joint map sends '" + recorded + "' to",
+        name);
   }
 
   [[noreturn]] void refuseSharedJoint(const std::string& first, const std::string& second,

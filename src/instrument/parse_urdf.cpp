@@ -11,13 +11,17 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <sstream>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "instrument/urdfdom_document.h"
 #include "instrument/xml_tags.h"
 #include "tissue_contact/core/read_file.h"
+#include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 namespace {
@@ -90,6 +94,7 @@ class UrdfReader {
       independent.lower = limited ? joint.limits->lower : -std::numeric_limits<double>::infinity();
       independent.upper = limited ? joint.limits->upper : std::numeric_limits<double>::infinity();
       independent.turns_on = joint.type == urdf::Joint::CONTINUOUS;
+      independent.wraps = joint.type == urdf::Joint::REVOLUTE;
       joints_.push_back(independent);
     }
   }
@@ -126,7 +131,9 @@ class UrdfReader {
     if (link.joint < 0) return;
     const bool is_same =
         link.motion == RobotModel::Link::Motion::kRevolute && link.multiplier == std::round(link.multiplier);
-    if (!is_same) joints_[static_cast<std::size_t>(link.joint)].turns_on = false;
+    if (is_same) return;
+    IndependentJoint& driver = joints_[static_cast<std::size_t>(link.joint)];
+    driver.turns_on = driver.wraps = false;
   }
 
   void readJoint(const urdf::Joint& joint, RobotModel::Link& link) {
@@ -252,6 +259,52 @@ bool needsXacro(const std::string& xml) {
   return false;
 }
 
+/// The value of an attribute in the text of a tag; empty where it has none.
+std::string_view attributeOf(std::string_view tag, const std::string& name) {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
+  for (std::size_t at = tag.find(name); at != std::string_view::npos; at = tag.find(name, at + 1)) {
+    std::size_t end = at + name.size();
+    if (at == 0 || !is_blank(tag[at - 1])) continue;
+    while (end < tag.size() && is_blank(tag[end])) ++end;
+    if (end >= tag.size() || tag[end] != '=') continue;
+    const std::size_t open = tag.find_first_of("\"'", end);
+    if (open == std::string_view::npos) return {};
+    const std::size_t close = tag.find(tag[open], open + 1);
+    return tag.substr(open + 1, close == std::string_view::npos ? close : close - open - 1);
+  }
+  return {};
+}
+
+/// Rotations that would be left out or be others without a word: quaternions, which urdfdom knows from version 4 on, and degrees.
+void checkOrigins(const std::string& xml, const std::string& source) {
+  constexpr double kTurn = 6.2832;  // rad; degrees are mostly beyond it
+  bool counts = false;              // one of a joint or a shape; those of masses and sensors place nothing here
+  XmlTagScanner scanner(xml);
+  for (XmlTag tag; scanner.next(tag);) {
+    if (tag.name == "joint" || tag.name == "visual" || tag.name == "collision")
+      counts = tag.kind == XmlTag::Kind::kOpen;
+    if (!counts || tag.name != "origin" || tag.kind == XmlTag::Kind::kClose) continue;
+    const std::string_view rest = std::string_view(xml).substr(tag.position);
+    const std::string_view text = rest.substr(0, rest.find('>'));
+    const auto refuse = [&](const std::string& what) {
+      throw std::invalid_argument(source + ":" + std::to_string(lineOf(xml, tag.position)) + ": <origin> " + what);
+    };
+    for (const char* name : {"quat_xyzw", "quat", "wxyz", "quaternion"}) {
+      if (!attributeOf(text, name).empty()) {
+        refuse("has a rotation as " + std::string(name) +
+               ", which is not read here and would be left out; write it as rpy=\"roll pitch yaw\", in rad");
+      }
+    }
+    const std::string rpy(attributeOf(text, "rpy"));
+    std::istringstream angles(rpy);
+    for (double angle = 0.0; angles >> angle;) {
+      if (std::abs(angle) > kTurn) {
+        refuse("has rpy=\"" + printable(rpy) + "\", more than a turn; give radians, not degrees");
+      }
+    }
+  }
+}
+
 }  // namespace
 
 RobotModel parseUrdf(const std::string& xml, const std::string& source, const std::string& base_directory,
@@ -260,7 +313,8 @@ RobotModel parseUrdf(const std::string& xml, const std::string& source, const st
     throw std::invalid_argument(source + ": is a xacro file, not a URDF; expand it first: xacro FILE.urdf.xacro > " +
                                 "FILE.urdf, or load robot_description with xacro's output and name no urdf");
   }
-  const urdf::ModelInterfaceSharedPtr urdf = parseWithUrdfdom(xml, source);
+  const urdf::ModelInterfaceSharedPtr urdf = parseWithUrdfdom(xml, source);  // knows that tags are closed
+  checkOrigins(xml, source);
   return UrdfReader(*urdf, source, base_directory, package_path).read();
 }
 

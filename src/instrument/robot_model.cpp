@@ -63,9 +63,10 @@ void requireDifferentNames(const std::vector<Named>& all, const std::string& com
 
 }  // namespace
 
-double IndependentJoint::nearest(double position, double to) const {
+double IndependentJoint::nearest(double position, double to, double interval_s) const {
   const double way = position - to;
-  if (!turns_on || std::abs(way) <= M_PI || !std::isfinite(way)) return position;
+  const bool turns = turns_on || (wraps && std::abs(way) > kFastest_rad_per_s * interval_s);
+  if (!turns || std::abs(way) <= M_PI || !std::isfinite(way)) return position;
   return to + std::remainder(way, 2.0 * M_PI);
 }
 

@@ -22,7 +22,7 @@ bool isFarOutside(const IndependentJoint& joint, double position) {
 }  // namespace
 
 JointWatch::JointWatch(const Simulator& simulator, const JointStatePlayer& player)
-    : simulator_(simulator), topics_(player.topics().size()), seen_(simulator.instruments().size()) {
+    : simulator_(simulator), player_(player), topics_(player.topics().size()), seen_(simulator.instruments().size()) {
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     for (const JointStateTopic& described : simulator.scene().instruments[i].joint_state_topics) {
       const auto at = std::find(player.topics().begin(), player.topics().end(), described.name);
@@ -55,8 +55,11 @@ void JointWatch::noteNames(Topic& heard, const std::vector<std::string>& names) 
       const int joint = simulator_.instruments()[static_cast<std::size_t>(i)].jointOfRecordedName(names[k]);
       if (joint >= 0) {
         seen.joints.insert(joint);
-        if (known_here.insert(joint).second)
+        if (known_here.insert(joint).second) {
           heard.known.push_back({k, i, joint});  // a message may name one a million times
+        } else {
+          seen.twice.insert(joint);
+        }
       } else if (seen.foreign.size() < kMostForeign &&
                  std::find(seen.foreign.begin(), seen.foreign.end(), names[k]) == seen.foreign.end()) {
         seen.foreign.push_back(names[k]);
@@ -65,12 +68,26 @@ void JointWatch::noteNames(Topic& heard, const std::vector<std::string>& names) 
   }
 }
 
+void JointWatch::notePlayed() {
+  for (std::size_t t = 0; t < topics_.size(); ++t) {
+    const int topic = static_cast<int>(t);
+    if (player_.triggers(topic)) continue;
+    topics_[t].lead_s = std::max(topics_[t].lead_s, player_.lead_s(topic));
+    topics_[t].idle_s = std::max(topics_[t].idle_s, player_.idle_s(topic).value_or(0.0));
+  }
+}
+
 std::vector<std::string> JointWatch::findings() const {
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < seen_.size(); ++i) {
-    for (std::string& line : std::vector<std::string>{namesText(i), limitsText(i)}) {
+    for (std::string& line : std::vector<std::string>{namesText(i), twiceText(i), limitsText(i)}) {
       if (!line.empty()) lines.push_back(std::move(line));
     }
+  }
+  for (std::size_t t = 0; t < topics_.size(); ++t) {
+    std::string line = leadText(player_.topics()[t], topics_[t].lead_s, simulator_.scene().step.max_gap_s);
+    if (line.empty()) line = silenceText(t);
+    if (!line.empty()) lines.push_back(std::move(line));
   }
   return lines;
 }
@@ -82,6 +99,12 @@ std::vector<std::string> JointWatch::takeNews(double now_s) {
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     if (has_heard && !std::exchange(seen_[i].told_names, true)) lines.push_back(namesText(i));
     if (!seen_[i].outside.empty() && !std::exchange(seen_[i].told_limits, true)) lines.push_back(limitsText(i));
+    if (!seen_[i].twice.empty() && !std::exchange(seen_[i].told_twice, true)) lines.push_back(twiceText(i));
+  }
+  for (std::size_t t = 0; t < topics_.size(); ++t) {
+    if (topics_[t].told_lead) continue;
+    lines.push_back(leadText(player_.topics()[t], topics_[t].lead_s, simulator_.scene().step.max_gap_s));
+    topics_[t].told_lead = !lines.back().empty();
   }
   lines.erase(std::remove(lines.begin(), lines.end(), std::string()), lines.end());
   return lines;
@@ -104,6 +127,27 @@ std::string JointWatch::namesText(std::size_t instrument) const {
          (mimics.empty() ? ". If they are the same, map them by joint_names" : ". Of these are " + mimics);
 }
 
+/// Empty where no message names a joint more than once.
+std::string JointWatch::twiceText(std::size_t instrument) const {
+  const Instrument& one = simulator_.instruments()[instrument];
+  std::vector<std::string> names;
+  for (const int joint : seen_[instrument].twice)
+    names.push_back(one.model().joints()[static_cast<std::size_t>(joint)].name);
+  if (names.empty()) return {};
+  return "joint states name these joints of '" + one.name() + "' more than once: " + listOf(names) +
+         ". The last position counts; let the driver name each once, and each arm have names or a topic of its own";
+}
+
+/// Empty where something was taken often enough from a topic that only updates.
+std::string JointWatch::silenceText(std::size_t topic) const {
+  const double max_gap_s = simulator_.scene().step.max_gap_s;
+  if (!(topics_[topic].idle_s > max_gap_s)) return {};
+  std::ostringstream text;
+  text << std::setprecision(3) << "for " << topics_[topic].idle_s << " s no joint state came on "
+       << player_.topics()[topic] << ", which only updates: its joints stood still, with what they pressed";
+  return text.str();
+}
+
 /// Empty where no joint was far outside its limits.
 std::string JointWatch::limitsText(std::size_t instrument) const {
   std::vector<std::string> outside;
@@ -120,6 +164,18 @@ std::string JointWatch::limitsText(std::size_t instrument) const {
          "' are far outside the limits of their URDF: " + listOf(outside) +
          ". Positions are taken in rad and m; look whether they come in degrees or millimetres, and whether "
          "joint_names maps each to its joint";
+}
+
+std::string leadText(const std::string& topic, double lead_s, double max_gap_s) {
+  if (!(lead_s > max_gap_s)) return {};
+  std::ostringstream text;
+  text << std::setprecision(4) << "the stamps on " << topic
+       << ", which only updates, are ahead of those that give wrenches by up to " << lead_s << " s (step.max_gap_s is "
+       << max_gap_s
+       << "): its joints stay where they are until time is there. Set the clocks of all computers by one (NTP), or "
+          "correct "
+          "header.stamp in the recording";
+  return text.str();
 }
 
 }  // namespace tissue_contact

@@ -292,7 +292,10 @@ bool JointStatePlayer::resumes(const Moment& moment) const {
 void JointStatePlayer::resume(const Moment& moment) {
   time_ns_ = std::min(resumptions_.at(moment.epoch), moment.stamp_ns);
   behind_ns_ = 0;
-  for (Topic& topic : topic_states_) topic.taken.reset();
+  for (Topic& topic : topic_states_) {
+    topic.taken.reset();
+    topic.taken_at_ns.reset();
+  }
 }
 
 void JointStatePlayer::forgetJoints() {
@@ -302,7 +305,10 @@ void JointStatePlayer::forgetJoints() {
     targets_.push_back(instrument.initialPositions());
     heard_.emplace_back(instrument.model().joints().size(), Heard::kNever);
   }
-  for (Topic& topic : topic_states_) topic.taken.reset();
+  for (Topic& topic : topic_states_) {
+    topic.taken.reset();
+    topic.taken_at_ns.reset();
+  }
   owes_.assign(owes_.size(), false);
 }
 

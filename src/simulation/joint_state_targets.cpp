@@ -6,6 +6,11 @@
 #include "tissue_contact/simulation/joint_state_player.h"
 
 namespace tissue_contact {
+namespace {
+
+double secondsBetween(std::int64_t from_ns, std::int64_t to_ns) { return 1e-9 * static_cast<double>(to_ns - from_ns); }
+
+}  // namespace
 
 /// Takes everything of a topic up to the moment, and sets its joints to where they are then.
 void JointStatePlayer::take(const Moment& moment, int topic, PlayedSample& played) {
@@ -14,8 +19,9 @@ void JointStatePlayer::take(const Moment& moment, int topic, PlayedSample& playe
     const Queued& next = state.queue.front();
     const bool is_passed_over = state.triggers && next.moment < moment;
     if (next.moment.epoch == moment.epoch) {
-      takeJoints(next.sample, state);
+      takeJoints(next, state);
       state.taken = next.moment;
+      state.taken_at_ns = moment.stamp_ns;
     }
     if (state.triggers && !is_passed_over && played.topic < 0) played.topic = topic;
     ++(is_passed_over ? played.merged : played.accepted);
@@ -25,8 +31,11 @@ void JointStatePlayer::take(const Moment& moment, int topic, PlayedSample& playe
   headForNext(moment, state);
 }
 
-/// Sets the targets of the joints in `sample`.
-void JointStatePlayer::takeJoints(const JointStateSample& sample, const Topic& topic) {
+/// Sets the targets of the joints in a sample.
+void JointStatePlayer::takeJoints(const Queued& queued, const Topic& topic) {
+  const JointStateSample& sample = queued.sample;
+  const double interval_s = secondsBetween(
+      topic.taken ? topic.taken->stamp_ns : time_ns_.value_or(queued.moment.stamp_ns), queued.moment.stamp_ns);
   for (const Listener& listener : topic.listeners) {
     const auto index = static_cast<std::size_t>(listener.instrument);
     bool any_known = false;
@@ -38,7 +47,8 @@ void JointStatePlayer::takeJoints(const JointStateSample& sample, const Topic& t
       double& target = targets_[index][joint];
       Heard& heard = heard_[index][static_cast<std::size_t>(joint)];
       const IndependentJoint& described = instrument.model().joints()[static_cast<std::size_t>(joint)];
-      target = heard == Heard::kNever ? sample.positions[k] : described.nearest(sample.positions[k], target);
+      target =
+          heard == Heard::kNever ? sample.positions[k] : described.nearest(sample.positions[k], target, interval_s);
       if (heard == Heard::kNever) heard = Heard::kNow;
     }
     if (any_known && listener.triggers) owes_[index] = true;
@@ -52,6 +62,7 @@ void JointStatePlayer::headForNext(const Moment& moment, const Topic& topic) {
   const Queued& next = topic.queue.front();
   if (next.moment.epoch != moment.epoch || next.moment.stamp_ns - topic.taken->stamp_ns >= max_gap_ns_) return;
   const std::int64_t from_ns = std::max(topic.taken->stamp_ns, time_ns_.value_or(topic.taken->stamp_ns));
+  const double interval_s = secondsBetween(topic.taken->stamp_ns, next.moment.stamp_ns);
   const double fraction =
       static_cast<double>(moment.stamp_ns - from_ns) / static_cast<double>(next.moment.stamp_ns - from_ns);
   for (const Listener& listener : topic.listeners) {
@@ -62,9 +73,26 @@ void JointStatePlayer::headForNext(const Moment& moment, const Topic& topic) {
       if (joint < 0 || heard_[index][static_cast<std::size_t>(joint)] == Heard::kNever) continue;
       double& target = targets_[index][joint];
       const IndependentJoint& described = instrument.model().joints()[static_cast<std::size_t>(joint)];
-      target += fraction * (described.nearest(next.sample.positions[k], target) - target);
+      target += fraction * (described.nearest(next.sample.positions[k], target, interval_s) - target);
     }
   }
+}
+
+double JointStatePlayer::lead_s(int topic) const {
+  const Topic& own = topic_states_.at(static_cast<std::size_t>(topic));
+  if (own.triggers || !own.last) return 0.0;
+  std::optional<std::int64_t> newest_ns;
+  for (const Topic& other : topic_states_) {
+    if (!other.triggers || !other.last || other.last->epoch != own.last->epoch) continue;
+    newest_ns = std::max(newest_ns.value_or(other.last->stamp_ns), other.last->stamp_ns);
+  }
+  return newest_ns ? std::max(0.0, secondsBetween(*newest_ns, own.last->stamp_ns)) : 0.0;
+}
+
+std::optional<double> JointStatePlayer::idle_s(int topic) const {
+  const Topic& own = topic_states_.at(static_cast<std::size_t>(topic));
+  if (!own.taken_at_ns || !time_ns_) return std::nullopt;
+  return secondsBetween(*own.taken_at_ns, *time_ns_);
 }
 
 void JointStatePlayer::placeNewJoints() {

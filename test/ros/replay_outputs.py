@@ -120,8 +120,17 @@ class ReplayOutputs(harness.TestCase):
         rows = [row for row in harness.read_table(self.path("cut.csv")) if int(row["static_contacts"]) > 0]
         self.assertEqual(int(told[1]), len(rows), errors)
         self.assertEqual(int(told[2]), len(rows), errors)
-        self.assertIn("--set solver.iterations=10 (now 1)", errors)
+        self.assertIn("--set solver.iterations=10 (now 1) or --set solver.relaxation=cholesky\n", errors)
         self.assertNotIn("ended before", self.replay("out.csv"))
+
+    def test_contacts_that_are_not_solved_to_the_end_are_told(self):
+        no_grip = ["--set", "friction[0].static=0", "--set", "friction[0].kinetic=0", "--set", "solver.tolerance=1e-9", "--set", "solver.iterations=1"]
+        told = "something touched in (\\d+) intervals, of which (\\d+) ended before the solver's tolerance"
+        found = re.search(told, self.replay("cut.csv", *no_grip))
+        rows = [row for row in harness.read_table(self.path("cut.csv")) if int(row["kinetic_contacts"]) > 0]
+        self.assertEqual([int(found[1]), int(found[2])], [len(rows)] * 2)
+        solved = ["--set", "solver.relaxation=cholesky", "--set", "solver.iterations=200"]
+        self.assertNotIn("something touched", self.replay("solved.csv", *no_grip[:4], *solved))
 
     def test_times_go_to_a_file_of_their_own(self):
         self.replay("out.csv", "--timing", self.path("timing.csv"))

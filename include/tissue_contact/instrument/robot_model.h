@@ -18,9 +18,17 @@ struct IndependentJoint {
   double upper = 0.0;
   /// Continuous, and so are those that follow it, at whole multiples: whole turns more or less are the same pose, and drivers leave them out.
   bool turns_on = false;
+  /// Turns with limits, and so do those that follow it, at whole multiples: a driver that gives its angle between -pi and pi jumps by a whole
+  /// turn all the same, and one that is off by a turn of its encoder.
+  bool wraps = false;
 
-  /// Of the positions that are the same pose as `position`, that nearest to `to`; of other joints `position`.
-  double nearest(double position, double to) const;
+  /// Of the positions that are the same pose as `position`, that nearest to `to`; of other joints `position`. Of one that wraps only where it
+  /// would turn faster than kFastest_rad_per_s.
+  /// @param interval_s from `to` to `position`.
+  double nearest(double position, double to, double interval_s) const;
+
+  /// Four turns a second: more than twice what the wrists of surgical arms reach; half a turn within 100 ms.
+  static constexpr double kFastest_rad_per_s = 25.0;
 };
 
 /// Geometry of one link as the URDF gives it, meshes not yet read. Mesh paths are resolved; one that cannot be (unknown

@@ -70,7 +70,8 @@ struct PlayedSample {
 /// than its topic's last one, by at most max_gap_s, but later than all that named one of its joints, makes no moment: its joints are taken
 /// with the topic's next sample, and it counts as merged. So the order of arrival on that topic counts, and nothing waits for a publisher.
 ///
-/// Continuous joints go the shorter way from one sample to the next: drivers give their angle between -pi and pi.
+/// Continuous joints go the shorter way from one sample to the next: drivers give their angle between -pi and pi. So do revolute ones that would turn by more
+/// than half a turn faster than any arm does (IndependentJoint::nearest).
 ///
 /// Waiting. A moment waits until every other topic has delivered its stamp or a later one, so that what arrives first
 /// does not matter. A topic is waited for only while its newest stamp is less than max_gap_s behind the newest of all
@@ -150,6 +151,10 @@ class JointStatePlayer {
   bool isOvertaken(int topic) const;
   /// Whether moments of kEveryState wait for such a topic all the same, from now on: wall time has not shown yet that nothing comes.
   void keepWaitingFor(int topic, bool wait) { topic_states_.at(static_cast<std::size_t>(topic)).awaited = wait; }
+  /// Of a topic that only updates: how far its newest stamp is ahead of the newest of those that trigger, s. 0: it is not, or none is in the loop.
+  double lead_s(int topic) const;
+  /// Simulated time since something was taken from the topic, s; nothing: not yet in this loop.
+  std::optional<double> idle_s(int topic) const;
   /// Moments that are here now wait for no topic any longer, since wall time presses or nothing more can come.
   void stopWaiting();
 
@@ -205,11 +210,12 @@ class JointStatePlayer {
 
     TopicClock clock;
     std::deque<Queued> queue;
-    JointStateSample kept;                ///< joints of samples that came too late to be a moment, for the next
-    std::map<std::string, Moment> named;  ///< of the newest sample that names the joint
-    std::vector<JointStateSample> held;   ///< by the clock: a loop perhaps
-    std::optional<Moment> last;           ///< of the last sample queued, to see time go backwards
-    std::optional<Moment> taken;          ///< of the last sample whose joints were taken
+    JointStateSample kept;                    ///< joints of samples that came too late to be a moment, for the next
+    std::map<std::string, Moment> named;      ///< of the newest sample that names the joint
+    std::vector<JointStateSample> held;       ///< by the clock: a loop perhaps
+    std::optional<Moment> last;               ///< of the last sample queued, to see time go backwards
+    std::optional<Moment> taken;              ///< of the last sample whose joints were taken
+    std::optional<std::int64_t> taken_at_ns;  ///< the moment at which that was
     std::vector<Listener> listeners;
     bool triggers = false;  ///< any listener
     bool awaited = false;   ///< see keepWaitingFor()
@@ -246,7 +252,7 @@ class JointStatePlayer {
   void refuseLate();
   void play(const Moment& moment, PlayedSample& played);
   void take(const Moment& moment, int topic, PlayedSample& played);
-  void takeJoints(const JointStateSample& sample, const Topic& topic);
+  void takeJoints(const Queued& queued, const Topic& topic);
   void headForNext(const Moment& moment, const Topic& topic);
   void placeNewJoints();
   void carry(StateArchive& archive);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ros/conversions.h"
+#include "ros/joint_watch.h"
 #include "tissue_contact/ros/environment.h"
 
 namespace tissue_contact {
@@ -111,12 +112,14 @@ bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
   const bool finite = accepted && isFinite(simulator_);
   if (accepted) nodes_ = nodesOf(simulator_);
   const std::string not_converged = accepted && steps > 0 ? notConvergedText(played) : std::string();
+  const std::string ahead = accepted ? aheadText() : std::string();
   std::unique_lock<std::mutex> lock(mutex_);
   for (int v = 0; v < kVerdictCount; ++v) {
     figures_.by_verdict[static_cast<std::size_t>(v)] = player_.count(static_cast<Verdict>(v));
   }
   figures_.accepted = player_.count(Verdict::kAccepted);
   figures_.merged = player_.merged();
+  if (accepted) figures_.ahead = ahead;
   figures_.resets = player_.resets();
   figures_.gaps = player_.gaps();
   held_by_player_ = player_.waiting();
@@ -129,6 +132,16 @@ bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
   lock.unlock();  // a log that blocks must not hold up those who ask for the figures
   if (is_newly_broken) tellBroken(played, finite);
   return finite;
+}
+
+/// Of the first topic that is.
+std::string Health::aheadText() const {
+  for (std::size_t t = 0; t < player_.topics().size(); ++t) {
+    std::string text =
+        leadText(player_.topics()[t], player_.lead_s(static_cast<int>(t)), simulator_.scene().step.max_gap_s);
+    if (!text.empty()) return text;
+  }
+  return {};
 }
 
 void Health::warn(const PlayedSample& played, int steps) {
@@ -364,6 +377,7 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   const auto two_clocks = static_cast<std::size_t>(Verdict::kTwoClocks);
   const bool is_strained = now.newest_state && now.lengthened > told_.lengthened;
   const bool is_implausible = now.implausible > told_.implausible;
+  const bool is_troubled = now.troubles() > told_.troubles();
   const std::string unbearable = "forces that no tissue bears: " + now.last_implausible;
   if (now.failed) {
     status.summary(Level::ERROR, "has stopped: see the log");
@@ -383,11 +397,12 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
     status.summary(Level::WARN, now.last_coarse);
   } else if (is_strained) {
     status.summary(Level::WARN, "steps lengthened, since the machine does not keep up with max_step_s");
-  } else if (now.troubles() > told_.troubles()) {
-    status.summary(Level::WARN, "joint states refused or dropped, or motion cut short");
   } else {
     status.summary(Level::OK, now.accepted > 0 ? "running" : "no joint state yet");
   }
+  if (!now.failed && !now.broken && is_troubled)
+    status.mergeSummary(Level::WARN, "joint states refused or dropped, or motion cut short");
+  if (!now.failed && !now.paused && !now.ahead.empty()) status.mergeSummary(Level::WARN, now.ahead);
   if (!now.failed && !now.paused && !silence_.summary().empty()) status.mergeSummary(Level::WARN, silence_.summary());
   const bool waits_for_topic = !now.newest_state && now.held > 0 && now.held == now.waiting;  // not for want of time
   if (!(now.step_cost_s > 0.0)) return;                                                       // in the first step

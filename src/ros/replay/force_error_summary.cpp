@@ -36,7 +36,7 @@ std::string ForceErrorSummary::text() const {
   } else if (step_ >= solver_) {
     text << "; for less take shorter steps (step.max_step_s)";
   } else {
-    text << "; for less let the solver go on (solver.tolerance, solver.iterations)";
+    text << "; for less let the solver go on (solver.tolerance, solver.iterations, solver.relaxation)";
   }
   return text.str();
 }

@@ -252,6 +252,7 @@ class Replay {
       const long steps = simulator_.stepCount() - (played->was_reset ? 0 : steps_before);
       findings_.note(*played, steps);
       if (played->verdict != Verdict::kAccepted) continue;
+      joint_watch_.notePlayed();
       played_ns_ = played->stamp_ns;
       if (!isFinite(simulator_) || !isFinite(simulator_.residuals())) {
         throw std::runtime_error("the step ending at " + stampText(played->stamp_ns) + " s gave no finite answer");

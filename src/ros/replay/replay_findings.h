@@ -34,7 +34,7 @@ class ReplayFindings {
   std::vector<std::pair<std::string, long>> counts() const;
   /// The same in a sentence: "3 jumps, 0 intervals not converged, ...".
   std::string countsText() const;
-  /// Lines on how far compliant joints gave way, on likely errors of forces, on a law beyond its range, on coarse cells and on grips that are not solved to the end, where there is
+  /// Lines on how far compliant joints gave way, on likely errors of forces, on a law beyond its range, on coarse cells and on contacts that are not solved to the end, where there is
   /// something to tell.
   void summarize() const;
 
@@ -45,7 +45,7 @@ class ReplayFindings {
   void summarizeForceErrors() const;
   void summarizeLaw() const;
   void summarizeCells() const;
-  void summarizeGrips() const;
+  void summarizeUnsolved() const;
   void summarizeJoints() const;
 
   const Simulator& simulator_;
@@ -55,8 +55,19 @@ class ReplayFindings {
   long jumps_ = 0;
   long discarded_ = 0;
   long not_converged_ = 0;
-  long sticking_ = 0;                ///< intervals in which static friction held something
-  long sticking_not_converged_ = 0;  ///< of these, those that ended with the last iteration allowed
+  /// Intervals, and of these those whose last step ended with the last iteration allowed.
+  struct Solved {
+    long all = 0;
+    long not_converged = 0;
+
+    void add(const StepReport& report) {
+      ++all;
+      not_converged += static_cast<long>(report.stop == StopReason::kIterations);
+    }
+    bool mostly(double share) const;
+  };
+  Solved touching_;  ///< with a contact that carries force
+  Solved sticking_;  ///< in which static friction held something
   long implausible_ = 0;
   long pinched_ = 0;
   std::vector<ForceErrorSummary> force_errors_;  ///< per instrument
