@@ -247,14 +247,17 @@ class UrdfReader {
   std::map<std::string, Drive> drives_;
 };
 
-/// Whether xacro has yet to expand it: a xacro element, or a ${...} in a tag, as the oldest files have without any such element. Comments
+/// Whether xacro has yet to expand it: a xacro element, or a ${...} or $(...) in a tag, as the oldest files have without any such element. Comments
 /// do not count, since xacro copies them to what it expands.
 bool needsXacro(const std::string& xml) {
   XmlTagScanner scanner(xml);
   for (XmlTag tag; scanner.next(tag);) {
     if (tag.name.substr(0, 6) == "xacro:") return true;
     const std::string_view text = std::string_view(xml).substr(tag.position);
-    if (text.substr(0, text.find('>')).find("${") != std::string_view::npos) return true;
+    const std::string_view attributes = text.substr(0, text.find('>'));
+    for (const char* open : {"${", "$("}) {
+      if (attributes.find(open) != std::string_view::npos) return true;
+    }
   }
   return false;
 }

@@ -109,3 +109,5 @@ def test_frames_and_urdf(source):
     with pytest.raises(ValueError, match="urdf=FILE"):
         tc.Simulator(by_parameter)
     assert tc.Simulator(by_parameter, urdf=source / "urdf/probe.urdf").joint_names("probe") == ["x", "y", "z"]
+    with pytest.raises(ValueError, match="urdf='/there/is.none' would change nothing"):
+        tc.Simulator(tc.load_scene(source / "config/press_drag.yaml"), urdf="/there/is.none")

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -16,17 +18,19 @@
 #include "mesh/reader/assimp_reader.h"
 #include "mesh/reader/mesh_cleanup.h"
 #include "mesh/reader/mesh_file.h"
+#include "mesh/surface/triangle_tree.h"
 #include "tissue_contact/core/cache_folder.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/read_file.h"
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/mesh/gmsh_version.h"
+#include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
 namespace {
 
 constexpr std::uintmax_t kMostSurfaceBytes = std::uintmax_t{64} << 20U;
-constexpr std::uint64_t kRecipe = 1;          // raise it when what is done to a surface changes
+constexpr std::uint64_t kRecipe = 2;          // raise it when what is done to a surface changes
 constexpr double kTetrahedraPerVolume = 4.5;  // of a cell's edge cubed, as gmsh fills organs
 constexpr double kFewestCells = 3.0;          // across the longest side
 constexpr double kLongOrgan = 2.0;            // m
@@ -140,6 +144,27 @@ ClosedSurface readSurface(const MeshDescription& description) {
   return closeSurface(std::move(mesh), description.cell_size_m, source);
 }
 
+/// Where a surface is farther from the mesh that fills it than a cell: parts that are thinner than cells can be left out though hardly any volume is.
+struct Missing {
+  double farthest = 0.0;  ///< of its vertices from the mesh's surface, m
+  Vector3 p = Vector3::Zero();
+  double share = 0.0;  ///< of its vertices, farther than a cell
+};
+
+Missing findMissing(const TriangleMesh& surface, const TetMesh& mesh, double cell) {
+  const TriangleTree tree(mesh.positions, boundaryTriangles(mesh.tetrahedra));
+  std::set<int> vertices;
+  for (const Triangle& triangle : surface.triangles) vertices.insert(triangle.begin(), triangle.end());
+  Missing missing;
+  for (const int vertex : vertices) {
+    const Vector3 p = surface.vertices.col(vertex);
+    const double distance = std::sqrt(tree.squaredDistance(p, std::numeric_limits<double>::infinity()));
+    if (distance > cell) missing.share += 1.0 / static_cast<double>(vertices.size());
+    if (distance > missing.farthest) missing = {distance, p, missing.share};
+  }
+  return missing;
+}
+
 struct Filled {
   GmshResult made;
   std::vector<std::string> notes;
@@ -165,6 +190,14 @@ Filled fill(const MeshDescription& description, const std::string& version) {
                          roundedText(1e3 * description.cell_size_m, 3) + " mm; smallest angle between faces " +
                          roundedText(filled.made.quality.smallest_angle) + " degrees, volume " +
                          roundedText(100.0 * share, 3) + " % of the surface's; by gmsh " + version);
+  const Missing missing = findMissing(surface.mesh, filled.made.mesh, description.cell_size_m);
+  if (missing.share > 0.0) {
+    filled.notes.push_back(roundedText(100.0 * missing.share) +
+                           " % of the surface's vertices are farther than a cell from that mesh, most " +
+                           roundedText(1e3 * missing.farthest) + " mm, at (" + roundedText(missing.p.x(), 3) + ", " +
+                           roundedText(missing.p.y(), 3) + ", " + roundedText(missing.p.z(), 3) +
+                           ") m: what is thinner than cells is not in it; a smaller cell_size_m keeps more of it");
+  }
   return filled;
 }
 

@@ -59,6 +59,7 @@ TEST(Instrument, LinkPosesAreInTheWorld) {
                  X_WB * translation(0.1, 0, 0) * rotation(0.7, Vector3::UnitZ()), 1e-15);
 }
 
+// Two arms of one model on a topic: that which the map does not mean must not move the other's instrument.
 TEST(Instrument, RecordedNamesGoThroughTheMapOrStandForThemselves) {
   InstrumentDescription description = armDescription();
   description.joint_names = {{"outer_slide", "slide"}};
@@ -66,7 +67,7 @@ TEST(Instrument, RecordedNamesGoThroughTheMapOrStandForThemselves) {
   const int slide = instrument.model().findJoint("slide");
   const int turn = instrument.model().findJoint("turn");
   EXPECT_EQ(instrument.jointOfRecordedName("outer_slide"), slide);
-  EXPECT_EQ(instrument.jointOfRecordedName("slide"), slide);
+  EXPECT_EQ(instrument.jointOfRecordedName("slide"), -1);
   EXPECT_EQ(instrument.jointOfRecordedName("turn"), turn);
   EXPECT_EQ(instrument.jointOfRecordedName("follow"), -1);
   EXPECT_EQ(instrument.jointOfRecordedName("elsewhere"), -1);
@@ -80,10 +81,18 @@ TEST(Instrument, TheMapMayGiveAnOwnNameAnotherMeaning) {
   EXPECT_EQ(instrument.jointOfRecordedName("slide"), instrument.model().findJoint("turn"));
 }
 
+TEST(Instrument, AnOwnNameMayStandInTheMap) {
+  InstrumentDescription description = armDescription();
+  description.joint_names = {{"slide", "slide"}};
+  EXPECT_EQ(make(description).jointOfRecordedName("slide"), 0);
+}
+
 TEST(Instrument, RefusesBadJointMaps) {
   InstrumentDescription description = armDescription();
   description.joint_names = {{"outer_yaw", "yaw"}};
   expectContains(refusalOf(description), {"'outer_yaw'", "'yaw'", "not an independent joint", "slide, turn"});
+  description.joint_names = {{"slide", "outer_slide"}};
+  expectContains(refusalOf(description), {"recorded name stands first (outer_slide: slide)", "'outer_slide'"});
   description.joint_names = {{"outer_follow", "follow"}};
   expectContains(refusalOf(description), {"'outer_follow'", "'follow'", "mimic joints cannot be set"});
   description.joint_names = {{"a", "turn"}, {"b", "turn"}};

@@ -239,6 +239,35 @@ TEST(ParseUrdf, MeshesThatCannotBePlacedAreKeptAsWritten) {
   EXPECT_EQ(std::get<MeshGeometry>(model.links()[0].geometry.visual[1].geometry).file, "a.stl");
 }
 
+// urdfdom 3 leaves quaternions out and takes degrees for what they are: a tool that lies across without a word.
+TEST(ParseUrdf, RotationsThatWouldBeOthersAreRefused) {
+  const auto shape = [](const std::string& origin) {
+    return "<link name=\"a\"><collision>" + origin + "<geometry><sphere radius=\"0.1\"/></geometry></collision></link>";
+  };
+  const auto hinge = [](const std::string& origin) {
+    return "<link name=\"a\"/><link name=\"b\"/>" + joint("j", "revolute", "a", "b", origin);
+  };
+  for (const char* name : {"quat_xyzw", "quat", "wxyz", "quaternion"}) {
+    const std::string origin = "<origin xyz=\"0 0 1\" " + std::string(name) + "=\"0 0.7 0 0.7\"/>";
+    expectContains(refusal([&] { parse(shape(origin)); }),
+                   {"test.urdf:1: <origin>", name, "rpy=\"roll pitch yaw\", in rad"});
+    expectContains(refusal([&] { parse(hinge(origin)); }), {name, "would be left out"});
+  }
+  expectContains(refusal([&] { parse(shape("<origin rpy='0 90\t0'/>")); }),
+                 {"<origin> has rpy=\"0 90", "radians, not degrees"});
+  expectContains(refusal([&] { parse(hinge("\n<origin\nxyz = \"0 0 0\"\nrpy =\n\"0 0 -45\"/>")); }),
+                 {"test.urdf:2: <origin>", "-45"});
+  EXPECT_EQ(parse(shape("<origin rpy=\"6.2831 0 -6.2831\"/>")).links().size(), 1u);
+  EXPECT_EQ(parse("<link name=\"a\"><inertial><origin rpy=\"0 90 0\"/><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" "
+                  "ixz=\"0\" "
+                  "iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>")
+                .links()
+                .size(),
+            1u)
+      << "masses place nothing";
+  EXPECT_EQ(parse("<!-- " + shape("<origin rpy=\"0 90 0\"/>") + " --><link name=\"a\"/>").links().size(), 1u);
+}
+
 TEST(ParseUrdf, XacroIsCalledThatUnlessItIsInAComment) {
   const std::string macro = "<xacro:property name=\"r\" value=\"0.1\"/>";
   expectContains(refusal([&] { parse("<link name=\"a\"/>" + macro); }),
@@ -246,6 +275,7 @@ TEST(ParseUrdf, XacroIsCalledThatUnlessItIsInAComment) {
   EXPECT_EQ(parse("<!-- " + macro + " --><link name=\"a\"/>").links().size(), 1u);
   // The oldest xacro files have no such element; their names would become those of links.
   expectContains(refusal([&] { parse("<link name=\"${prefix}a\"/>"); }), {"xacro FILE.urdf.xacro >"});
+  expectContains(refusal([&] { parse("<link name=\"$(arg prefix)a\"/>"); }), {"xacro FILE.urdf.xacro >"});
   EXPECT_EQ(parse("<!-- <link name=\"${prefix}b\"/> --><link name=\"a\"/>").links().size(), 1u);
   EXPECT_EQ(parse("<link name=\"a\"/><gazebo>${x}</gazebo>").links().size(), 1u);
 }

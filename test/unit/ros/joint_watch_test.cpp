@@ -1,5 +1,5 @@
 /// @file
-/// Joint states that would move a tool silently to a wrong place: other names, other units.
+/// Joint states that would move a tool silently to a wrong place: other names, other units, other clocks.
 #include "ros/joint_watch.h"
 
 #include <gtest/gtest.h>
@@ -72,6 +72,71 @@ TEST_F(JointWatchOfOneArm, AJointThatGoesByAnotherNameIsFoundOnceEveryTopicHadTi
   EXPECT_EQ(watch.takeNews(14.9), std::vector<std::string>());
   EXPECT_EQ(watch.takeNews(15.0), lines);
   EXPECT_EQ(watch.takeNews(30.0), std::vector<std::string>()) << "told twice";
+}
+
+TEST_F(JointWatchOfOneArm, AJointThatAMessageNamesTwiceIsToldOnce) {
+  hear({"x", "y", "x", "z"}, {0.1, 0.0, 0.15, 0.0});
+  const std::vector<std::string> lines = watch.findings();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_NE(lines[0].find("more than once: x. The last position counts"), std::string::npos) << lines[0];
+  EXPECT_EQ(watch.takeNews(0.0), lines);
+  EXPECT_EQ(watch.takeNews(1.0), std::vector<std::string>()) << "told twice";
+}
+
+/// The same with y on a topic that only updates.
+class JointWatchOfAnArmAndAJaw : public testing::Test {
+ protected:
+  /// From 1 s on, ten of each, 200 ms apart.
+  void play(double jaw_ahead_s, int jaws) {
+    for (int i = 0; i < 10; ++i) {
+      const std::int64_t stamp = 1000000000LL + i * 200000000LL;
+      if (i < jaws) hear(1, {stamp + static_cast<std::int64_t>(1e9 * jaw_ahead_s), {"y"}, {0.0}});
+      hear(0, {stamp, {"x", "z"}, {0.1, 0.0}});
+    }
+    player.finish();
+    drain();
+  }
+  void hear(int topic, const JointStateSample& sample) {
+    watch.note(topic, sample);
+    player.push(topic, sample);
+    drain();
+  }
+  void drain() {
+    while (player.playNext()) watch.notePlayed();
+  }
+
+  Simulator simulator = makeSimulator(
+      blockScene() +
+          "instruments:\n  - {name: probe, robot_description: probe, tip_link: tip, contact_links: [tip], "
+          "joint_state_topics: [/arm/js, /arm/jaw/js], base_pose: {position_m: [0, 0, 0.5]}}\n",
+      {{"probe", kRobot}});
+  JointStatePlayer player{simulator};
+  JointWatch watch{simulator, player};
+};
+
+TEST_F(JointWatchOfAnArmAndAJaw, OneThatKeepsUpIsNoFinding) {
+  play(0.5, 10);  // within max_gap_s
+  EXPECT_EQ(watch.findings(), std::vector<std::string>());
+  EXPECT_EQ(watch.takeNews(0.0), std::vector<std::string>());
+}
+
+TEST_F(JointWatchOfAnArmAndAJaw, OneThatIsAheadIsToldOnce) {
+  play(3600.0, 10);
+  const std::vector<std::string> lines = watch.findings();
+  ASSERT_EQ(lines.size(), 1U);
+  for (const char* words : {"/arm/jaw/js", "by up to 3600 s", "max_gap_s is 1", "NTP", "header.stamp"}) {
+    EXPECT_NE(lines[0].find(words), std::string::npos) << words << " in: " << lines[0];
+  }
+  EXPECT_EQ(watch.takeNews(0.0), lines);
+  EXPECT_EQ(watch.takeNews(1.0), std::vector<std::string>()) << "told twice";
+}
+
+TEST_F(JointWatchOfAnArmAndAJaw, OneThatEndsBeforeTheOtherIsToldAtTheEnd) {
+  play(0.0, 3);
+  const std::vector<std::string> lines = watch.findings();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_NE(lines[0].find("for 1.4 s no joint state came on /arm/jaw/js"), std::string::npos) << lines[0];
+  EXPECT_EQ(watch.takeNews(0.0), std::vector<std::string>()) << "TopicSilence tells it";
 }
 
 TEST_F(JointWatchOfOneArm, AJawThatWasNotRecordedIsNoFinding) {

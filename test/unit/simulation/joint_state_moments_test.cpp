@@ -95,6 +95,30 @@ TEST(JointStateMoments, AJawBesideItsArmOnlyUpdates) {
   EXPECT_EQ(player.waiting(), 1);  // the jaw's newest, for the arm's next
 }
 
+TEST(JointStateMoments, TellsHowFarAJawIsAheadAndForHowLongItSaidNothing) {
+  const auto simulator = armAndJaw();
+  JointStatePlayer player(*simulator);
+  EXPECT_EQ(player.lead_s(1), 0.0);
+  EXPECT_FALSE(player.idle_s(1));
+  player.push(1, jaw(kSecond + kMillisecond, 0.001));
+  EXPECT_EQ(player.lead_s(1), 0.0) << "nothing to compare with";
+  player.push(0, arm(kSecond + kMillisecond, 0.0));
+  drain(player);
+  EXPECT_EQ(player.lead_s(1), 0.0);
+  EXPECT_EQ(player.idle_s(1), 0.0);
+  for (int i = 1; i <= 15; ++i) {
+    player.push(1, jaw(10 * kSecond + i * 10 * kMillisecond, 0.002));
+    player.push(0, arm(kSecond + (1 + i * 10) * kMillisecond, 0.0));
+  }
+  player.finish();
+  drain(player);
+  EXPECT_NEAR(player.lead_s(1), 8.999, 1e-9);
+  EXPECT_EQ(player.lead_s(0), 0.0) << "it triggers";
+  EXPECT_NEAR(player.idle_s(1).value(), 0.15, 1e-9);
+  player.reset();
+  EXPECT_FALSE(player.idle_s(1));
+}
+
 TEST(JointStateMoments, AJawThatTriggersGivesWrenchesOfItsOwn) {
   const auto simulator = blockTouchedBy(probe("a", "/a/measured_js, {topic: /a/jaw/measured_js, triggers: true}", 0.0));
   JointStatePlayer player(*simulator);

@@ -110,11 +110,14 @@ TEST_F(OneProbe, OfASharedTopicTheNewestStateHasAllJoints) {
 }
 
 /// A ball on an arm that a joint turns, 30 mm from its axis, and one that follows it at a multiple.
-Simulator crank(const std::string& multiplier) {
+Simulator crank(const std::string& multiplier, const std::string& type = "continuous") {
   const std::string urdf =
       "<robot name='crank'><link name='base'/><link name='tip'><collision><origin xyz='0.03 0 0'/><geometry><sphere "
-      "radius='0.005'/></geometry></collision></link><link name='geared'/><joint name='turn' type='continuous'><parent "
-      "link='base'/><child link='tip'/><axis xyz='0 0 1'/></joint><joint name='gear' type='revolute'><parent "
+      "radius='0.005'/></geometry></collision></link><link name='geared'/><joint name='turn' type='" +
+      type +
+      "'><parent "
+      "link='base'/><child link='tip'/><axis xyz='0 0 1'/><limit lower='-4' upper='4' effort='1' "
+      "velocity='1'/></joint><joint name='gear' type='revolute'><parent "
       "link='base'/><child link='geared'/><axis xyz='0 0 1'/><limit lower='-9' upper='9' effort='1' "
       "velocity='1'/><mimic joint='turn' multiplier='" +
       multiplier + "'/></joint></robot>";
@@ -135,6 +138,21 @@ TEST(JointStateSharedTopic, AContinuousJointGoesTheShorterWay) {
   }
   EXPECT_EQ(simulator.stepCount(), 50) << "a whole turn takes more";
   EXPECT_FALSE(simulator.report().jumped);
+}
+
+// Some give those of all joints so, and a wrist that turns by more than half a turn to either side jumped.
+TEST(JointStateSharedTopic, ARevoluteJointGoesTheShorterWayWhereNoArmTurnsSoFast) {
+  for (const auto& [apart, expected] : {std::pair{10 * kMillisecond, 2.0 * M_PI - 3.1},
+                                        {200 * kMillisecond, 2.0 * M_PI - 3.1},
+                                        {400 * kMillisecond, -3.1}}) {
+    Simulator simulator = crank("1", "revolute");
+    JointStatePlayer player(simulator);
+    for (const auto& [stamp, angle] : {std::pair{kSecond, 3.1}, {kSecond + apart, -3.1}}) {
+      player.push(0, {stamp, {"turn"}, {angle}});
+      drain(player);
+    }
+    EXPECT_NEAR(simulator.jointPositions(0)[0], expected, 1e-12) << apart;
+  }
 }
 
 TEST(JointStateSharedTopic, AWholeTurnOfAGearedJointIsNoneOfItsGear) {
