@@ -83,9 +83,10 @@ class Builder {
         count(result.shapes.back());
       } catch (const std::invalid_argument& error) {
         const bool of_scene = shapes == &contact.shapes;
-        refuse(of_scene ? elementOf(entry + ".shapes", i) : entry, "contact link '" + contact.link + "', " + origin +
-                                                                       " number " + std::to_string(i + 1) + ": " +
-                                                                       error.what());
+        refuse(of_scene ? elementOf(entry + ".shapes", i) : entry,
+               "contact link '" + contact.link + "', " + origin + " number " + std::to_string(i + 1) + ": " +
+                   error.what() +
+                   (of_scene ? "" : "; or name shapes for this link in the scene (contact_links[].shapes)"));
       }
     }
     return result;

@@ -36,7 +36,7 @@ void JointStatePlayer::forgetSamples() {
   epoch_ = 0;
 }
 
-const char* JointStatePlayer::stateTitle() { return "tissue_contact state 5"; }
+const char* JointStatePlayer::stateTitle() { return "tissue_contact state 6"; }
 
 std::string JointStatePlayer::saveState() {
   StateArchive archive(stateTitle());

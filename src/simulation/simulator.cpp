@@ -15,7 +15,7 @@ namespace tissue_contact {
 namespace {
 
 /// With the version of what follows it.
-constexpr const char* kStateTitle = "tissue_contact simulation 5";
+constexpr const char* kStateTitle = "tissue_contact simulation 6";
 
 NodalVectors handOver(NodalVectors& values) {
   NodalVectors copy = values;

@@ -13,6 +13,12 @@ namespace {
 /// inside the tissue is then freed over some steps instead of by an explosion, and as fast at any step.
 constexpr double kRecoveryTime_s = 0.01;
 
+/// Time over which a surface leaves what its new triangles cut into; and, of an edge, how deep that is: less is what solves leave, more was there
+/// before.
+constexpr double kSettlingTime_s = 0.02;
+constexpr double kShallowest = 0.01;
+constexpr double kDeepest = 0.25;
+
 /// More of a static contact's slip than this share of an edge is no error of the solver any more and is let go.
 constexpr double kMostSlipPerEdge = 0.01;
 
@@ -89,12 +95,14 @@ StepContacts::StepContacts(const std::vector<Tissue>& tissues, const InstrumentM
                            const FrictionTable& friction, const SurfaceEdges& edges)
     : tissues_(tissues), motion_(motion), friction_(friction), edges_(edges), thickness_(tissues) {
   if (friction.dependsOnPressure()) pressure_.emplace(tissues);
+  settling_.resize(tissues.size());
 }
 
 void StepContacts::clear() {
   memory_.clear();
   if (pressure_) pressure_->clear();
   contacts_.clear();
+  settling_.assign(settling_.size(), {});
 }
 
 void StepContacts::begin(const ContactDetector& detector, const std::vector<NodalVectors>& x,
@@ -107,6 +115,7 @@ void StepContacts::begin(const ContactDetector& detector, const std::vector<Noda
   reaches_m_.resize(found.size());
   for (std::size_t c = 0; c < found.size(); ++c) reaches_m_[c] = motion_.longestTravel() + edges_.finer(found[c]);
   memory_.recall(found, reaches_m_, contacts_);
+  beginSettling(found);
 }
 
 void StepContacts::slideOn(const ContactDetector& detector, const std::vector<NodalVectors>& v, double dt) {
@@ -158,6 +167,7 @@ void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, doubl
     solution.states[c] = before.state;
   }
   land(solution.v, dt, rows);
+  for (Settling& one : settling_) one.depth_m = std::max(one.depth_m - one.first_m * dt / kSettlingTime_s, 0.0);
 }
 
 ContactBefore StepContacts::beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x,
@@ -227,7 +237,30 @@ void StepContacts::placeRow(std::size_t index, double dt, ContactRow& row) const
   row.normal_compliance = compliance / (dt * dt);
   // A sheet that is squeezed is no deeper than its force makes it.
   const double force = std::max(contact.R_WC.col(0).dot(contacts_[index].force_on_tissue_n), 0.0);
-  row.required_u_n = std::min(-row.gap_m / dt, half_extent / kRecoveryTime_s + compliance * force / dt);
+  const double depth = row.gap_m < 0.0 ? std::max(-row.gap_m - settlingDepth(key), 0.0) : -row.gap_m;
+  row.required_u_n = std::min(depth / dt, half_extent / kRecoveryTime_s + compliance * force / dt);
+}
+
+/// After the mesh of a tissue has changed.
+void StepContacts::beginSettling(const std::vector<Contact>& found) {
+  for (const Contact& contact : found) {
+    for (const int tissue : {contact.key.tissue, contact.key.other_tissue}) {
+      if (tissue < 0 || !settling_[tissue].begins) continue;
+      const double share = -contact.gap_m / edges_.finer(contact);
+      if (share > kShallowest && share < kDeepest)
+        settling_[tissue].depth_m = std::max(settling_[tissue].depth_m, -contact.gap_m);
+    }
+  }
+  for (Settling& one : settling_) {
+    if (one.begins) one.first_m = one.depth_m;
+    one.begins = false;
+  }
+}
+
+/// m, of a contact.
+double StepContacts::settlingDepth(const ContactKey& key) const {
+  const double own = settling_[key.tissue].depth_m;
+  return key.other_tissue < 0 ? own : std::max(own, settling_[key.other_tissue].depth_m);
 }
 
 std::optional<double> StepContacts::weakestNetForce(int tissue, const std::vector<Vector3>& impulses, double dt) {
@@ -271,6 +304,7 @@ Vector3 StepContacts::slipOf(std::size_t c, const ContactProblem& problem, const
 
 void StepContacts::renumber(int tissue, const std::vector<int>& to_new, TrianglesOfNodes& triangles) {
   if (pressure_) pressure_->swapSurface(tissue, triangles);
+  settling_[tissue].begins = true;
   for (SolvedContact& solved : contacts_) {
     Contact& contact = solved.contact;
     if (contact.key.tissue == tissue) renumberPoint(to_new, contact.key.feature, contact.nodes, contact.weights);
@@ -293,6 +327,13 @@ void StepContacts::carry(StateArchive& archive, const std::vector<Instrument>& i
     carryContact(archive, solved);
     if (archive.isReading()) requireContact(archive, solved, instruments);
   });
+  for (Settling& one : settling_) {
+    archive.carry(one.begins);
+    archive.carry(one.first_m);
+    archive.carry(one.depth_m);
+    archive.check(one.first_m >= one.depth_m && one.depth_m >= 0.0 && std::isfinite(one.first_m),
+                  "a depth that no surface settles from");
+  }
   if (!archive.isReading()) return;
   const auto ordered = [](const SolvedContact& a, const SolvedContact& b) { return a.contact.key < b.contact.key; };
   archive.check(std::is_sorted(contacts_.begin(), contacts_.end(), ordered), "contacts out of their order");

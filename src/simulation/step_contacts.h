@@ -95,6 +95,8 @@ class StepContacts {
   ContactBefore beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x, double last_dt) const;
   void land(const std::vector<NodalVectors>& v, double dt, std::vector<ContactRow>& rows);
   double& firstTouch(const ContactKey& key);
+  void beginSettling(const std::vector<Contact>& found);
+  double settlingDepth(const ContactKey& key) const;
   void requireContact(const StateArchive& archive, const SolvedContact& solved,
                       const std::vector<Instrument>& instruments) const;
   Vector3 slipOf(std::size_t contact, const ContactProblem& problem, const ContactSolution& solution) const;
@@ -110,7 +112,15 @@ class StepContacts {
   /// Per contact, what is in its row's u_tool besides the instrument's motion, contact plane, m/s: the way back of a
   /// held contact, or what a contact without a history slid before it touched; each contact has one of them or none.
   std::vector<Vector2> u_besides_;
-  double back_time_s_ = 0.0;          ///< over which slips are taken back
+  double back_time_s_ = 0.0;  ///< over which slips are taken back
+  /// How deep a tissue's surface may be in what touches it, since its mesh has changed: larger triangles cut into what smaller ones fitted, and pushed out
+  /// within a step they met it with 1.7 times its force.
+  struct Settling {
+    bool begins = false;   ///< with the contacts of the next step
+    double first_m = 0.0;  ///< deepest then
+    double depth_m = 0.0;  ///< that is left
+  };
+  std::vector<Settling> settling_;    ///< per tissue
   std::vector<Patch> patches_;        ///< scratch of land()
   std::vector<double> touch_shares_;  ///< per contact, the same
   std::vector<NetImpulse> net_;       ///< scratch

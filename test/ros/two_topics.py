@@ -2,6 +2,8 @@
 """Two topics, of two instruments or of an arm and its jaw: moments in the order of their stamps, whichever way they arrive;
 the bits of the replay."""
 import rospy
+from diagnostic_msgs.msg import DiagnosticStatus
+from rosgraph_msgs.msg import Log
 from tf2_msgs.msg import TFMessage
 
 import harness
@@ -85,6 +87,28 @@ class TwoTopics(harness.TestCase):
             got = wrenches.wait_for_stamp(self.samples[-1][0])
         self.assertEqual([(harness.stamp_text(w.header.stamp), harness.wrench_bits(w)) for w in got],
                          [(stamp, bits) for stamp, _, bits in expected])
+
+    def test_a_jaw_with_a_clock_ahead_is_told(self):
+        arm, jaw = "/ahead/measured_js", "/ahead/gripper/measured_js"  # of no other test, which would publish on them still
+        scene = self.changed_scene({"[%s]" % harness.TOPIC: "[%s, %s]" % (arm, jaw)}, name="ahead.yaml")
+        messages = []
+        for stamp, (x, y, z) in self.samples:
+            messages += [(jaw, stamp + rospy.Duration(3600), "z", (z,)), (arm, stamp, "xy", (x, y))]
+        told = "the stamps on %s, which only updates, are ahead of those that give wrenches by up to 3600 s (step.max_gap_s is 0.2)" % jaw
+        bag = self.write_bag("ahead.bag", messages)
+        errors = self.replayed(scene, bag, bag + ".csv")
+        self.assertEqual(errors.count(told), 1, errors)
+        self.assertIn("100 joint states accepted, 100 later than the last that gives a wrench;", errors)
+        with harness.node(scene):
+            log, diagnostics, wrenches = harness.Listener("/rosout", Log), harness.diagnostics(), harness.wrenches()
+            sources = {topic: harness.JointSource(topic) for topic in [arm, jaw]}
+            for topic, stamp, names, positions in messages:
+                sources[topic].send(stamp, positions, names)
+            wrenches.wait_for_stamp(self.samples[-1][0])
+            diagnostics.wait(lambda all: any(told in status.message and status.level == DiagnosticStatus.WARN
+                                             for message in all for status in message.status), "a warning of " + jaw)
+            log.wait(lambda all: any(told in line.msg for line in all), "a line about " + jaw)
+        self.assertEqual(sum(told in line.msg for line in log.messages), 1)
 
     def test_arrival_order_does_not_matter(self):
         bag = self.path("two.bag")

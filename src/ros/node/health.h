@@ -114,6 +114,7 @@ class Health {
   Throttle resumptions_;
   Throttle jumps_;
   Throttle implausible_loads_;
+  Throttle law_errors_;
   Throttle not_converged_{5};
   std::optional<Clock::time_point> looked_at_force_errors_;
   std::int64_t looked_at_stamp_ns_ = 0;

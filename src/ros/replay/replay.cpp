@@ -295,6 +295,7 @@ class Replay {
       const auto verdict = static_cast<Verdict>(v);
       if (player_.count(verdict) > 0) log_ << ", " << player_.count(verdict) << " " << verdictText(verdict);
     }
+    if (player_.waiting() > 0) log_ << ", " << player_.waiting() << " later than the last that gives a wrench";
     if (player_.merged() > 0) log_ << ", " << player_.merged() << " merged into the next of their topic";
     log_ << "; " << player_.resets() << " resets, " << player_.gaps() << " gaps, " << findings_.countsText() << " -> "
          << options_.csv_file << (table_ && recorder_ ? ", " : "") << options_.out_file << "\n"
