@@ -146,6 +146,7 @@ bool Stepper::playNext() {
     const auto steps = static_cast<int>(simulator_.stepCount() - (played->was_reset ? 0 : steps_before));
     const double step_time_s = steps > 0 ? (steadySeconds() - start_s) / steps : 0.0;
     const bool is_moment = played->verdict == Verdict::kAccepted && !played->interrupted;
+    if (is_moment) joint_watch_.notePlayed();
     const std::optional<Receipt> receipt = is_moment ? receipts_.take(played->stamp_ns) : std::nullopt;
     if (health_.note(*played, steps, pacing_.stepCost())) publish(*played, receipt, steps, step_time_s);
     if (receipt) {

@@ -253,7 +253,7 @@ TEST(ParseUrdf, RotationsThatWouldBeOthersAreRefused) {
                    {"test.urdf:1: <origin>", name, "rpy=\"roll pitch yaw\", in rad"});
     expectContains(refusal([&] { parse(hinge(origin)); }), {name, "would be left out"});
   }
-  expectContains(refusal([&] { parse(shape("<origin rpy='0 90\t0'/>")); }),
+  expectContains(refusal([&] { parse(shape("<origin rpy='0 90 0'/>")); }),
                  {"<origin> has rpy=\"0 90", "radians, not degrees"});
   expectContains(refusal([&] { parse(hinge("\n<origin\nxyz = \"0 0 0\"\nrpy =\n\"0 0 -45\"/>")); }),
                  {"test.urdf:2: <origin>", "-45"});

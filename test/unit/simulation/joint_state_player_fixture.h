@@ -22,7 +22,7 @@ constexpr std::int64_t kMillisecond = 1000000;
 
 /// With joints at 0 its ball (radius 5 mm) just does not touch the block, whose top face is at z = 0.02.
 inline std::string probe(const std::string& name, const std::string& topics, double x) {
-  return probeEntry(name, topics, "[" + std::to_string(x) + ", 0, 0.026]", "    joint_names: {recorded_z: z}\n");
+  return probeEntry(name, topics, "[" + std::to_string(x) + ", 0, 0.026]");
 }
 
 inline std::unique_ptr<Simulator> blockTouchedBy(const std::string& instruments) {
