@@ -290,7 +290,8 @@ void checkOrigins(const std::string& xml, const std::string& source) {
     const std::string_view rest = std::string_view(xml).substr(tag.position);
     const std::string_view text = rest.substr(0, rest.find('>'));
     const auto refuse = [&](const std::string& what) {
-      throw std::invalid_argument(source + ":" + std::to_string(lineOf(xml, tag.position)) + ": <origin> " + what);
+      std::string message = source + ":" + std::to_string(lineOf(xml, tag.position));
+      throw std::invalid_argument(message.append(": <origin> ").append(what));
     };
     for (const char* name : {"quat_xyzw", "quat", "wxyz", "quaternion"}) {
       if (!attributeOf(text, name).empty()) {
