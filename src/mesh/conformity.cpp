@@ -77,4 +77,16 @@ std::size_t countParts(const TetMesh& mesh) {
   return parts;
 }
 
+std::size_t countPartsByFaces(const TetMesh& mesh) {
+  DisjointSets sets(mesh.tetrahedra.size());
+  const std::vector<FaceUse> faces = sortedFaces(mesh.tetrahedra);
+  for (std::size_t i = 1; i < faces.size(); ++i) {
+    if (faces[i].nodes != faces[i - 1].nodes) continue;
+    sets.join(static_cast<int>(faces[i - 1].tetrahedron), static_cast<int>(faces[i].tetrahedron));
+  }
+  std::size_t parts = 0;
+  for (int i = 0; i < static_cast<int>(mesh.tetrahedra.size()); ++i) parts += sets.first(i) == i ? 1 : 0;
+  return parts;
+}
+
 }  // namespace tissue_contact

@@ -18,5 +18,8 @@ void checkConforming(const TetMesh& mesh, const std::string& source);
 
 /// Parts of which no two share a node. @pre node indices in range.
 std::size_t countParts(const TetMesh& mesh);
+/// Parts of which no two share a face: more than those where some hang on others by edges or nodes alone, about which they turn freely.
+/// @pre node indices in range.
+std::size_t countPartsByFaces(const TetMesh& mesh);
 
 }  // namespace tissue_contact

@@ -19,6 +19,19 @@ bool isFarOutside(const IndependentJoint& joint, double position) {
   return range > 0.0 && std::isfinite(position) && (position > joint.upper + range || position < joint.lower - range);
 }
 
+/// Empty where the topic is not ahead by more than max_gap_s.
+std::string leadText(const std::string& topic, double lead_s, double max_gap_s) {
+  if (!(lead_s > max_gap_s)) return {};
+  std::ostringstream text;
+  text << std::setprecision(4) << "the stamps on " << topic
+       << ", which only updates, are ahead of those that give wrenches by up to " << lead_s << " s (step.max_gap_s is "
+       << max_gap_s
+       << "): its joints stay where they are until time is there. Set the clocks of all computers by one (NTP), or "
+          "correct "
+          "header.stamp in the recording";
+  return text.str();
+}
+
 }  // namespace
 
 JointWatch::JointWatch(const Simulator& simulator, const JointStatePlayer& player)
@@ -166,16 +179,12 @@ std::string JointWatch::limitsText(std::size_t instrument) const {
          "joint_names maps each to its joint";
 }
 
-std::string leadText(const std::string& topic, double lead_s, double max_gap_s) {
-  if (!(lead_s > max_gap_s)) return {};
-  std::ostringstream text;
-  text << std::setprecision(4) << "the stamps on " << topic
-       << ", which only updates, are ahead of those that give wrenches by up to " << lead_s << " s (step.max_gap_s is "
-       << max_gap_s
-       << "): its joints stay where they are until time is there. Set the clocks of all computers by one (NTP), or "
-          "correct "
-          "header.stamp in the recording";
-  return text.str();
+std::string aheadText(const JointStatePlayer& player, double max_gap_s) {
+  for (std::size_t t = 0; t < player.topics().size(); ++t) {
+    std::string text = leadText(player.topics()[t], player.lead_s(static_cast<int>(t)), max_gap_s);
+    if (!text.empty()) return text;
+  }
+  return {};
 }
 
 }  // namespace tissue_contact

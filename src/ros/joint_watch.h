@@ -83,7 +83,7 @@ class JointWatch {
   std::optional<double> began_s_;
 };
 
-/// Of a topic that only updates and is ahead of the others: what is the matter and what to do. Empty where it is not, by the scene's max_gap_s.
-std::string leadText(const std::string& topic, double lead_s, double max_gap_s);
+/// Of the first topic that only updates and is ahead of the others by more than the scene's max_gap_s: what is the matter and what to do. Empty: none is.
+std::string aheadText(const JointStatePlayer& player, double max_gap_s);
 
 }  // namespace tissue_contact

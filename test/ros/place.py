@@ -77,6 +77,20 @@ class Place(harness.TestCase):
         self.assertIn("within 0.1 s of a joint state", self.refused(*self.registered(circle(), measured(late))))
         self.assertIn("topics with poses (PoseStamped, TransformStamped): none", self.refused(*self.registered(circle(), [])))
 
+    def test_poses_that_are_none_are_counted(self):
+        def spoilt(count):
+            poses = measured(circle())
+            for _, message, _ in poses[:count]:
+                message.pose.orientation.z = message.pose.orientation.w = 0.0  # as by a driver that fills positions alone
+            return poses
+
+        self.assertIn("by 40 poses", self.placed(*self.registered(circle(), spoilt(10))))
+        self.assertIn("warning: 10 of 50 poses on %s are left out" % CP, self.said)
+        refusal = self.refused(*self.registered(circle(), spoilt(50)))
+        self.assertIn("all 50 poses on '%s' are none: a number is not finite, or the quaternion is zero" % CP, refusal)
+        self.placed(*self.registered(circle(), spoilt(0)))
+        self.assertNotIn("left out", self.said)
+
     def test_the_base_of_a_real_arm(self):
         if not os.path.exists(SHARED_BAG):
             self.skipTest("no " + SHARED_BAG)

@@ -237,6 +237,11 @@ TetMesh loadTetMesh(const MeshDescription& description, const MeshPreparation& p
   say(turned, of_all + "are numbered the other way round, and turned");
   const std::size_t parts = countParts(mesh);
   say(parts > 1 ? parts : 0, "parts that share no node: each is held only by what is fixed of it");
+  const std::size_t by_faces = countPartsByFaces(mesh);
+  say(by_faces > parts ? by_faces : 0,
+      "parts that share no face, some of which hang on others by edges or nodes alone: they turn about these freely, "
+      "as on hinges; "
+      "mesh the body anew if it is one");
   return mesh;
 }
 

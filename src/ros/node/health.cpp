@@ -112,14 +112,13 @@ bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
   const bool finite = accepted && isFinite(simulator_);
   if (accepted) nodes_ = nodesOf(simulator_);
   const std::string not_converged = accepted && steps > 0 ? notConvergedText(played) : std::string();
-  const std::string ahead = accepted ? aheadText() : std::string();
+  const std::string ahead = accepted ? aheadText(player_, simulator_.scene().step.max_gap_s) : std::string();
   std::unique_lock<std::mutex> lock(mutex_);
   for (int v = 0; v < kVerdictCount; ++v) {
     figures_.by_verdict[static_cast<std::size_t>(v)] = player_.count(static_cast<Verdict>(v));
   }
   figures_.accepted = player_.count(Verdict::kAccepted);
   figures_.merged = player_.merged();
-  if (accepted) figures_.ahead = ahead;
   figures_.resets = player_.resets();
   figures_.gaps = player_.gaps();
   held_by_player_ = player_.waiting();
@@ -127,21 +126,12 @@ bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
   if (!accepted) return false;
   if (played.was_reset) figures_.broken = false;
   played_stamp_ns_ = played.stamp_ns;
+  figures_.ahead = ahead;
   if (!not_converged.empty()) figures_.last_not_converged = not_converged;
   const bool is_newly_broken = steps > 0 && noteSteps(played, steps, finite);
   lock.unlock();  // a log that blocks must not hold up those who ask for the figures
   if (is_newly_broken) tellBroken(played, finite);
   return finite;
-}
-
-/// Of the first topic that is.
-std::string Health::aheadText() const {
-  for (std::size_t t = 0; t < player_.topics().size(); ++t) {
-    std::string text =
-        leadText(player_.topics()[t], player_.lead_s(static_cast<int>(t)), simulator_.scene().step.max_gap_s);
-    if (!text.empty()) return text;
-  }
-  return {};
 }
 
 void Health::warn(const PlayedSample& played, int steps) {
@@ -400,10 +390,10 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   } else {
     status.summary(Level::OK, now.accepted > 0 ? "running" : "no joint state yet");
   }
-  if (!now.failed && !now.broken && is_troubled)
-    status.mergeSummary(Level::WARN, "joint states refused or dropped, or motion cut short");
-  if (!now.failed && !now.paused && !now.ahead.empty()) status.mergeSummary(Level::WARN, now.ahead);
-  if (!now.failed && !now.paused && !silence_.summary().empty()) status.mergeSummary(Level::WARN, silence_.summary());
+  const std::string troubles = is_troubled ? "joint states refused or dropped, or motion cut short" : "";
+  for (const std::string& also : {troubles, now.ahead, silence_.summary()}) {
+    if (!now.failed && !now.paused && !also.empty()) status.mergeSummary(Level::WARN, also);
+  }
   const bool waits_for_topic = !now.newest_state && now.held > 0 && now.held == now.waiting;  // not for want of time
   if (!(now.step_cost_s > 0.0)) return;                                                       // in the first step
   if (advised_ || now.paused || waits_for_topic || (lag == LagVerdict::kWithinBound && !is_strained)) return;

@@ -92,7 +92,6 @@ class Health {
   };
 
   void warn(const PlayedSample& played, int steps);
-  std::string aheadText() const;
   void warnOfResult(const PlayedSample& played);
   std::string notConvergedText(const PlayedSample& played);
   bool noteSteps(const PlayedSample& played, int steps, bool finite);

@@ -67,6 +67,11 @@ void print(const PlaceOptions& options, const std::string& frame, std::size_t co
 void placeBase(const PlaceOptions& options) {
   const PlacedScene placed(options);
   const MeasuredPoses measured = readPoses(options.bag_file, options.measured);
+  if (measured.unusable > 0) {
+    std::cerr << "tissue_contact_place: warning: " << measured.unusable << " of "
+              << measured.unusable + measured.poses.size() << " poses on " << options.measured
+              << " are left out, since a number is not finite or the quaternion is zero\n";
+  }
   const std::vector<PosePair> pairs = pairPoses(tipsInBase(options, placed), measured.poses);
   if (pairs.empty()) {
     throw std::runtime_error("no pose of " + options.measured +

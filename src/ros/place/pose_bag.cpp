@@ -46,7 +46,7 @@ void addPose(const BagMessage& message, MeasuredPoses& measured) {
   try {
     measured.poses.push_back({static_cast<std::int64_t>(header.stamp.toNSec()), toPose(transform)});
   } catch (const std::invalid_argument&) {  // a pose that is none
-    return;
+    ++measured.unusable;
   }
 }
 
@@ -70,6 +70,11 @@ MeasuredPoses readPoses(const std::string& bag_file, const std::string& topic) {
     }
     return true;
   });
+  if (measured.poses.empty() && measured.unusable > 0) {
+    bag.fail("all " + std::to_string(measured.unusable) + " poses on '" + topic +
+             "' are none: a number is not finite, or the quaternion is zero; have its publisher fill it (0, 0, 0, 1: "
+             "no rotation)");
+  }
   if (measured.poses.empty()) {
     bag.fail("it has no pose on '" + topic +
              "'; topics with poses (PoseStamped, TransformStamped): " + joinedNames(known));

@@ -84,6 +84,19 @@ TEST(Conformity, CountsPartsThatShareNoNode) {
   EXPECT_EQ(countParts(with_loose_node), 1u);
 }
 
+TEST(Conformity, CountsPartsThatShareNoFace) {
+  EXPECT_EQ(countPartsByFaces(block()), 1u);
+  EXPECT_EQ(countPartsByFaces(apart(block())), 90u);
+  EXPECT_EQ(countPartsByFaces(twoTetrahedra()), 1u);
+  TetMesh hinged = twoTetrahedra();  // the second by an edge of the first alone
+  hinged.positions.conservativeResize(Eigen::NoChange, 7);
+  hinged.positions.col(5) = Vector3(5, 5, 5);
+  hinged.positions.col(6) = Vector3(6, 5, 5);
+  hinged.tetrahedra[1] = {hinged.tetrahedra[0][0], hinged.tetrahedra[0][1], 5, 6};
+  EXPECT_EQ(countPartsByFaces(hinged), 2u);
+  EXPECT_EQ(countParts(hinged), 1u);
+}
+
 class CoincidentNodesOfFiles : public testing::Test {
  protected:
   TetMesh load(CoincidentNodes treatment) {
