@@ -166,6 +166,19 @@ TEST_F(FillSurface, ABallOfEveryFormat) {
   }
 }
 
+// Gmsh meshes a surface anew with triangles of a cell: hardly any volume is in a needle of 6 mm by 40.
+TEST_F(FillSurface, PartsThinnerThanCellsAreTold) {
+  TriangleMesh surface = ball(20.0);
+  fill(surface);
+  EXPECT_EQ(said_.find("farther than a cell"), std::string::npos) << said_;
+  surface.vertices(2, 0) = 60.0;  // the pole
+  const TetMesh mesh = fill(surface);
+  const double left_out_mm = 60.0 - 1e3 * mesh.positions.row(2).maxCoeff();
+  ASSERT_GT(left_out_mm, 5.0) << "this gmsh keeps it";
+  expectContains(said_, {"% of the surface's vertices are farther than a cell from that mesh, most ",
+                         " mm, at (0, 0, 0.06) m: ", "smaller cell_size_m"});
+}
+
 // Of its four triangles alone gmsh 4.8 makes nothing, for as long as it may.
 TEST_F(FillSurface, ATetrahedron) {
   TriangleMesh mesh;
