@@ -32,7 +32,8 @@ bool advisedSleepByParts(const Scene& scene);
 std::vector<Advice> adviceLines(const Scene& scene, const FoldWatch& folds,
                                 const std::vector<std::vector<Advice>>& meshes);
 
-/// A warning where a tissue from a file is so small or so large that its unit is likely another than the scene says; else none.
+/// A warning where a tissue from a file is so small or so large that its unit is likely another than the scene says, or every instrument so large that
+/// the URDF's is; else none.
 /// @param rest 3 x n, m.
 std::optional<Advice> sizeDoubt(const TissueDescription& tissue, const NodalVectors& rest, const HalfExtents& shapes);
 

@@ -13,17 +13,20 @@ namespace tissue_contact {
 std::optional<Advice> sizeDoubt(const TissueDescription& tissue, const NodalVectors& rest, const HalfExtents& shapes) {
   const auto* const mesh = std::get_if<MeshDescription>(&tissue.geometry);
   const auto* const shell = std::get_if<ShellDescription>(&tissue.geometry);
-  if (mesh == nullptr && shell == nullptr) return std::nullopt;
   constexpr double kLongOrgan = 2.0;  // m
+  constexpr double kHugeTool = 0.5;   // m, half extent
   const Vector3 size = rest.rowwise().maxCoeff() - rest.rowwise().minCoeff();
   const bool is_small = size.maxCoeff() < shapes.smallest_m;
-  if (!is_small && size.maxCoeff() < kLongOrgan) return std::nullopt;
+  const bool is_of_file = mesh != nullptr || shell != nullptr;
+  const bool is_tool_huge = is_small && shapes.smallest_m > kHugeTool;
+  if (!(is_of_file && (is_small || size.maxCoeff() >= kLongOrgan)) && !is_tool_huge) return std::nullopt;
   std::string text = "tissue " + quoted(tissue.name) + " is " + twoDigits(1e3 * size.x()) + " x " +
                      twoDigits(1e3 * size.y()) + " x " + twoDigits(1e3 * size.z()) + " mm";
   if (is_small) {
     text +=
         ", smaller than every instrument's shape (" + twoDigits(1e3 * shapes.smallest_m) + " mm half extent and more)";
   }
+  if (is_tool_huge) return Advice{text + ": are lengths of the URDF in millimetres? They are metres", true};
   return Advice{text + ": is the unit of its file that of the scene? It has scale_m_per_unit " +
                     twoDigits(mesh != nullptr ? mesh->scale_m_per_unit : shell->scale_m_per_unit) +
                     " (1 for metres, 0.001 for millimetres)",

@@ -153,6 +153,22 @@ std::vector<std::string> warningsOf(const std::string& scene) {
   return warnings;
 }
 
+TEST(Advisor, DoubtsTheUnitOfARobotWhoseToolIsLargerThanTheTissue) {
+  const auto doubt = [](double radius_m) {
+    const Simulator simulator = makeSimulator(blockScene() + onlyBall("[0, 0, 20]"), {{"probe", probeUrdf(radius_m)}});
+    for (const Advice& advice : simulator.advice()) {
+      if (advice.text.find("are lengths of the URDF in millimetres?") != std::string::npos) return advice.text;
+    }
+    return std::string();
+  };
+  EXPECT_EQ(doubt(0.005), "");
+  EXPECT_EQ(doubt(0.3), "") << "a table";
+  EXPECT_EQ(doubt(5.0),
+            "tissue 'block' is 60 x 60 x 20 mm, smaller than every instrument's shape (5000 mm half extent and more): "
+            "are lengths of the "
+            "URDF in millimetres? They are metres");
+}
+
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
   return text.replace(text.find(what), what.size(), by);
 }
