@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Prints the forces of doc/notes/method.md ("Crossing edges of two tissues", "Sheets that are squeezed"): a ball held on a layer that lies on a bed, boxes
-that close on a sheet, and on a gut, jaws of a PSM on flaps. Mean and RMS about it of what the last .2 s hold, N. A minute or two.
+that close on a sheet, and on a gut, jaws of a PSM on flaps. Mean and RMS about it of what the last .2 s hold, N. Two or three minutes.
 
 usage, after `source scripts/env.bash`: benchmark/drivers/touching_tissues.py
 """
@@ -17,7 +17,8 @@ JOINT = ("<joint name='%s_joint' type='prismatic'><parent link='base'/><child li
          "<limit lower='-1' upper='1' effort='1' velocity='1'/></joint>")
 PROBE = "<robot name='r'><link name='base'/>" + BALL + JOINT % ("tip", "tip", 0, "0 0 1") + "</robot>"
 STEP_S = 0.001
-PSM = os.path.join(os.environ.get("TISSUE_CONTACT_SHARED_DATA", ""), "dvrk_psm", "psm2_caudier.urdf")
+DATA = os.environ.get("TISSUE_CONTACT_SHARED_DATA") or os.path.join(os.path.dirname(os.path.realpath(__file__)), "../../../shared/data")
+PSM = os.path.join(DATA, "dvrk_psm", "psm2_caudier.urdf")
 TOOL = "PSM2_tool_wrist_caudier"
 
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "tissue_contact/core/entry_error.h"
@@ -211,6 +212,19 @@ Instrument::Instrument(const InstrumentDescription& description, RobotModel mode
 int Instrument::jointOfRecordedName(const std::string& recorded) const {
   const auto found = joint_of_recorded_name_.find(recorded);
   return found == joint_of_recorded_name_.end() ? -1 : found->second;
+}
+
+std::string Instrument::mappedText(const std::vector<std::string>& names) const {
+  const std::set<std::string_view> given(names.begin(), names.end());  // a message may name a million
+  std::vector<std::string> mapped;
+  for (const auto& [recorded, joint] : joint_of_recorded_name_) {
+    const std::string& own = model_.joints()[static_cast<std::size_t>(joint)].name;
+    if (recorded != own && given.count(own) > 0 && jointOfRecordedName(own) < 0)
+      mapped.push_back(own + " as " + recorded);
+  }
+  return mapped.empty() ? std::string()
+                        : "joints that joint_names expects under another name: " + listOf(mapped) +
+                              "; take those entries out if they come under their own";
 }
 
 void Instrument::linkPoses(const VectorX& positions, std::vector<Pose>& X_WL) const {

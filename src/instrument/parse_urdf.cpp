@@ -94,7 +94,9 @@ class UrdfReader {
       independent.lower = limited ? joint.limits->lower : -std::numeric_limits<double>::infinity();
       independent.upper = limited ? joint.limits->upper : std::numeric_limits<double>::infinity();
       independent.turns_on = joint.type == urdf::Joint::CONTINUOUS;
-      independent.wraps = joint.type == urdf::Joint::REVOLUTE;
+      constexpr double kTurn = 6.2;  // rad; limits of 3.14 to either side are a turn
+      const double range = independent.upper - independent.lower;
+      independent.wraps = joint.type == urdf::Joint::REVOLUTE && !(range > 0.0 && range < kTurn);
       joints_.push_back(independent);
     }
   }
@@ -280,8 +282,8 @@ std::string_view attributeOf(std::string_view tag, const std::string& name) {
 
 /// Rotations that would be left out or be others without a word: quaternions, which urdfdom knows from version 4 on, and degrees.
 void checkOrigins(const std::string& xml, const std::string& source) {
-  constexpr double kTurn = 6.2832;  // rad; degrees are mostly beyond it
-  bool counts = false;              // one of a joint or a shape; those of masses and sensors place nothing here
+  constexpr double kMost = 12.57;  // rad, two turns: sums of quarters reach that, degrees are mostly beyond it
+  bool counts = false;             // one of a joint or a shape; those of masses and sensors place nothing here
   XmlTagScanner scanner(xml);
   for (XmlTag tag; scanner.next(tag);) {
     if (tag.name == "joint" || tag.name == "visual" || tag.name == "collision")
@@ -302,8 +304,8 @@ void checkOrigins(const std::string& xml, const std::string& source) {
     const std::string rpy(attributeOf(text, "rpy"));
     std::istringstream angles(rpy);
     for (double angle = 0.0; angles >> angle;) {
-      if (std::abs(angle) > kTurn) {
-        refuse("has rpy=\"" + printable(rpy) + "\", more than a turn; give radians, not degrees");
+      if (std::abs(angle) > kMost) {
+        refuse("has rpy=\"" + printable(rpy) + "\", more than two turns; give radians, not degrees");
       }
     }
   }

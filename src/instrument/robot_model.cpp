@@ -63,11 +63,16 @@ void requireDifferentNames(const std::vector<Named>& all, const std::string& com
 
 }  // namespace
 
-double IndependentJoint::nearest(double position, double to, double interval_s) const {
+double IndependentJoint::nearest(double position, double to) const {
   const double way = position - to;
-  const bool turns = turns_on || (wraps && std::abs(way) > kFastest_rad_per_s * interval_s);
-  if (!turns || std::abs(way) <= M_PI || !std::isfinite(way)) return position;
+  if (!turns_on || std::abs(way) <= M_PI || !std::isfinite(way)) return position;
   return to + std::remainder(way, 2.0 * M_PI);
+}
+
+double IndependentJoint::turnsLeftOut(double before, double now, double interval_s) const {
+  const double way = now - before;
+  if (!wraps || !(std::abs(way) > std::max(M_PI, kFastest_rad_per_s * interval_s)) || !std::isfinite(way)) return 0.0;
+  return std::remainder(way, 2.0 * M_PI) - way;
 }
 
 RobotModel::RobotModel(std::string name, std::vector<Link> links, std::vector<IndependentJoint> joints)

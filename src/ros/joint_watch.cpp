@@ -133,7 +133,8 @@ std::string JointWatch::namesText(std::size_t instrument) const {
     if (seen.joints.count(static_cast<int>(j)) == 0) still.push_back(joints[j].name);
   }
   if (still.empty() || seen.foreign.empty()) return {};
-  const std::string mimics = model.mimicsText(seen.foreign);
+  std::string mimics = model.mimicsText(seen.foreign);
+  if (mimics.empty()) mimics = simulator_.instruments()[instrument].mappedText(seen.foreign);
   return "no joint state names these joints of '" + simulator_.instruments()[instrument].name() +
          "', which stay where the scene puts them: " + listOf(still) +
          "; those that come name others, which are none of its independent joints: " + listOf(seen.foreign) +

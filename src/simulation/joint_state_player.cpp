@@ -301,9 +301,11 @@ void JointStatePlayer::resume(const Moment& moment) {
 void JointStatePlayer::forgetJoints() {
   targets_.clear();
   heard_.clear();
+  said_.clear();
   for (const Instrument& instrument : simulator_.instruments()) {
     targets_.push_back(instrument.initialPositions());
     heard_.emplace_back(instrument.model().joints().size(), Heard::kNever);
+    said_.emplace_back(instrument.model().joints().size());
   }
   for (Topic& topic : topic_states_) {
     topic.taken.reset();
@@ -324,6 +326,9 @@ void JointStatePlayer::advanceTo(std::int64_t stamp_ns, PlayedSample& played) {
   if (interval_ns > max_gap_ns_) {
     interval_ns = max_gap_ns_;
     played.was_gap = true;
+    for (Topic& topic : topic_states_) {  // nothing was said by anybody
+      if (topic.taken_at_ns) topic.taken_at_ns = stamp_ns;
+    }
     ++gaps_;
   }
   simulator_.advance(static_cast<double>(interval_ns) / kNanosecondsPerSecond, targets_, limits_);

@@ -98,7 +98,9 @@ Verdict JointStatePlayer::judgeJoints(const JointStateSample& sample, const Topi
   std::string mimics;
   for (const Listener& listener : topic.listeners) {
     if (!mimics.empty()) break;
-    mimics = simulator_.instruments()[static_cast<std::size_t>(listener.instrument)].model().mimicsText(sample.names);
+    const Instrument& instrument = simulator_.instruments()[static_cast<std::size_t>(listener.instrument)];
+    mimics = instrument.model().mimicsText(sample.names);
+    if (mimics.empty()) mimics = instrument.mappedText(sample.names);
   }
   detail += mimics.empty() ? "map them by joint_names" : "of these are " + mimics;
   for (const Listener& listener : topic.listeners) {

@@ -1,6 +1,7 @@
 /// @file
 /// Room `simulation`: JointStatePlayer begun anew, saved and restored.
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "tissue_contact/simulation/joint_state_player.h"
@@ -70,13 +71,23 @@ void JointStatePlayer::carry(StateArchive& archive) {
     if (topic.taken && topic.taken->epoch == epoch_) taken_ns = topic.taken->stamp_ns;
     archive.carry(taken_ns);
     archive.check(!taken_ns || (*taken_ns >= 0 && *taken_ns <= kCentury_ns), "a time that no stamp has");
-    if (archive.isReading()) topic.taken = taken_ns ? std::optional(Moment{epoch_, *taken_ns}) : std::nullopt;
+    if (!archive.isReading()) continue;
+    topic.taken = taken_ns ? std::optional(Moment{epoch_, *taken_ns}) : std::nullopt;
+    topic.taken_at_ns.reset();
   }
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     archive.carry(targets_[i]);
     archive.carry(heard_[i]);
     archive.check(targets_[i].allFinite(), "a joint position that is not finite");
     for (const Heard heard : heard_[i]) archive.requireIndex(static_cast<int>(heard), 0, 3, "the mark of a joint");
+    for (Said& said : said_[i]) {
+      archive.carry(said.position);
+      archive.carry(said.turns);
+      archive.carry(said.stamp_ns);
+      archive.check(std::isfinite(said.position) && std::isfinite(said.turns) && said.stamp_ns >= 0 &&
+                        said.stamp_ns <= kCentury_ns,
+                    "a joint state that is none");
+    }
   }
 }
 

@@ -31,24 +31,34 @@ void JointStatePlayer::take(const Moment& moment, int topic, PlayedSample& playe
   headForNext(moment, state);
 }
 
+/// Where a joint is that a sample of that stamp says to be at `position`: beyond whole turns that its driver leaves out. After a pause nobody knows
+/// how it turned, and the shorter way does less.
+double JointStatePlayer::goneOnTo(double position, std::int64_t stamp_ns, std::size_t instrument, int joint) const {
+  const auto index = static_cast<std::size_t>(joint);
+  if (heard_[instrument][index] == Heard::kNever) return position;
+  const IndependentJoint& described = simulator_.instruments()[instrument].model().joints()[index];
+  if (described.turns_on) return described.nearest(position, targets_[instrument][joint]);
+  const Said& before = said_[instrument][index];
+  const bool goes_on = stamp_ns >= before.stamp_ns && stamp_ns - before.stamp_ns < max_gap_ns_;
+  const double interval_s = goes_on ? secondsBetween(before.stamp_ns, stamp_ns) : 0.0;
+  return position + before.turns + described.turnsLeftOut(before.position, position, interval_s);
+}
+
 /// Sets the targets of the joints in a sample.
 void JointStatePlayer::takeJoints(const Queued& queued, const Topic& topic) {
   const JointStateSample& sample = queued.sample;
-  const double interval_s = secondsBetween(
-      topic.taken ? topic.taken->stamp_ns : time_ns_.value_or(queued.moment.stamp_ns), queued.moment.stamp_ns);
   for (const Listener& listener : topic.listeners) {
     const auto index = static_cast<std::size_t>(listener.instrument);
     bool any_known = false;
     for (std::size_t k = 0; k < sample.names.size(); ++k) {
-      const Instrument& instrument = simulator_.instruments()[index];
-      const int joint = instrument.jointOfRecordedName(sample.names[k]);
+      const int joint = simulator_.instruments()[index].jointOfRecordedName(sample.names[k]);
       if (joint < 0) continue;
       any_known = true;
-      double& target = targets_[index][joint];
+      const double target = goneOnTo(sample.positions[k], queued.moment.stamp_ns, index, joint);
+      targets_[index][joint] = target;
+      said_[index][static_cast<std::size_t>(joint)] = {sample.positions[k], target - sample.positions[k],
+                                                       queued.moment.stamp_ns};
       Heard& heard = heard_[index][static_cast<std::size_t>(joint)];
-      const IndependentJoint& described = instrument.model().joints()[static_cast<std::size_t>(joint)];
-      target =
-          heard == Heard::kNever ? sample.positions[k] : described.nearest(sample.positions[k], target, interval_s);
       if (heard == Heard::kNever) heard = Heard::kNow;
     }
     if (any_known && listener.triggers) owes_[index] = true;
@@ -62,18 +72,15 @@ void JointStatePlayer::headForNext(const Moment& moment, const Topic& topic) {
   const Queued& next = topic.queue.front();
   if (next.moment.epoch != moment.epoch || next.moment.stamp_ns - topic.taken->stamp_ns >= max_gap_ns_) return;
   const std::int64_t from_ns = std::max(topic.taken->stamp_ns, time_ns_.value_or(topic.taken->stamp_ns));
-  const double interval_s = secondsBetween(topic.taken->stamp_ns, next.moment.stamp_ns);
   const double fraction =
       static_cast<double>(moment.stamp_ns - from_ns) / static_cast<double>(next.moment.stamp_ns - from_ns);
   for (const Listener& listener : topic.listeners) {
     const auto index = static_cast<std::size_t>(listener.instrument);
     for (std::size_t k = 0; k < next.sample.names.size(); ++k) {
-      const Instrument& instrument = simulator_.instruments()[index];
-      const int joint = instrument.jointOfRecordedName(next.sample.names[k]);
+      const int joint = simulator_.instruments()[index].jointOfRecordedName(next.sample.names[k]);
       if (joint < 0 || heard_[index][static_cast<std::size_t>(joint)] == Heard::kNever) continue;
       double& target = targets_[index][joint];
-      const IndependentJoint& described = instrument.model().joints()[static_cast<std::size_t>(joint)];
-      target += fraction * (described.nearest(next.sample.positions[k], target, interval_s) - target);
+      target += fraction * (goneOnTo(next.sample.positions[k], next.moment.stamp_ns, index, joint) - target);
     }
   }
 }

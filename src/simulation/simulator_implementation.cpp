@@ -191,6 +191,7 @@ void Simulator::Implementation::takeMesh(int tissue, ComingMesh& coming, const s
   detector.swapSurface(*coming.surface);
   folds.swapMesh(tissue, coming.fold);
   contacts.renumber(tissue, to_new, coming.pressure_triangles);
+  if (!to_new.empty() && followers[tissue]->coarsening() > 1.0) contacts.settle(tissue);
   moving[tissue].changeMesh(coming.elastic_state, edge_m);
 }
 

@@ -167,7 +167,7 @@ void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, doubl
     solution.states[c] = before.state;
   }
   land(solution.v, dt, rows);
-  for (Settling& one : settling_) one.depth_m = std::max(one.depth_m - one.first_m * dt / kSettlingTime_s, 0.0);
+  for (Settling& one : settling_) one.depth_m = std::max(one.depth_m - one.speed_m_per_s * dt, 0.0);
 }
 
 ContactBefore StepContacts::beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x,
@@ -241,26 +241,22 @@ void StepContacts::placeRow(std::size_t index, double dt, ContactRow& row) const
   row.required_u_n = std::min(depth / dt, half_extent / kRecoveryTime_s + compliance * force / dt);
 }
 
-/// After the mesh of a tissue has changed.
+/// After cells of a tissue have grown. Between tissues a gap may be what squeezes a sheet.
 void StepContacts::beginSettling(const std::vector<Contact>& found) {
   for (const Contact& contact : found) {
-    for (const int tissue : {contact.key.tissue, contact.key.other_tissue}) {
-      if (tissue < 0 || !settling_[tissue].begins) continue;
-      const double share = -contact.gap_m / edges_.finer(contact);
-      if (share > kShallowest && share < kDeepest)
-        settling_[tissue].depth_m = std::max(settling_[tissue].depth_m, -contact.gap_m);
-    }
+    Settling& one = settling_[contact.key.tissue];
+    if (!one.begins || contact.key.instrument < 0) continue;
+    const double share = -contact.gap_m / edges_.finer(contact);
+    if (!(share > kShallowest && share < kDeepest && -contact.gap_m > one.depth_m)) continue;
+    one.depth_m = -contact.gap_m;
+    one.speed_m_per_s = one.depth_m / kSettlingTime_s;
   }
-  for (Settling& one : settling_) {
-    if (one.begins) one.first_m = one.depth_m;
-    one.begins = false;
-  }
+  for (Settling& one : settling_) one.begins = false;
 }
 
 /// m, of a contact.
 double StepContacts::settlingDepth(const ContactKey& key) const {
-  const double own = settling_[key.tissue].depth_m;
-  return key.other_tissue < 0 ? own : std::max(own, settling_[key.other_tissue].depth_m);
+  return key.instrument < 0 ? 0.0 : settling_[key.tissue].depth_m;
 }
 
 std::optional<double> StepContacts::weakestNetForce(int tissue, const std::vector<Vector3>& impulses, double dt) {
@@ -304,7 +300,6 @@ Vector3 StepContacts::slipOf(std::size_t c, const ContactProblem& problem, const
 
 void StepContacts::renumber(int tissue, const std::vector<int>& to_new, TrianglesOfNodes& triangles) {
   if (pressure_) pressure_->swapSurface(tissue, triangles);
-  settling_[tissue].begins = true;
   for (SolvedContact& solved : contacts_) {
     Contact& contact = solved.contact;
     if (contact.key.tissue == tissue) renumberPoint(to_new, contact.key.feature, contact.nodes, contact.weights);
@@ -329,9 +324,10 @@ void StepContacts::carry(StateArchive& archive, const std::vector<Instrument>& i
   });
   for (Settling& one : settling_) {
     archive.carry(one.begins);
-    archive.carry(one.first_m);
     archive.carry(one.depth_m);
-    archive.check(one.first_m >= one.depth_m && one.depth_m >= 0.0 && std::isfinite(one.first_m),
+    archive.carry(one.speed_m_per_s);
+    archive.check(one.depth_m >= 0.0 && std::isfinite(one.depth_m) && one.speed_m_per_s >= 0.0 &&
+                      std::isfinite(one.speed_m_per_s),
                   "a depth that no surface settles from");
   }
   if (!archive.isReading()) return;

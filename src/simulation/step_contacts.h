@@ -75,6 +75,8 @@ class StepContacts {
   /// @param to_new per node before; -1: it is no more. A contact of such nodes is continued by the nearest one of its shape.
   /// @param triangles trianglesOfNodes() of it if friction depends on pressure; they are exchanged for those before.
   void renumber(int tissue, const std::vector<int>& to_new, TrianglesOfNodes& triangles);
+  /// The mesh that the tissue has now, and was renumbered for, is coarser in places.
+  void settle(int tissue) { settling_[tissue].begins = true; }
   /// To be called once all meshes that change have been renumbered.
   void finishRenumbering();
 
@@ -113,12 +115,12 @@ class StepContacts {
   /// held contact, or what a contact without a history slid before it touched; each contact has one of them or none.
   std::vector<Vector2> u_besides_;
   double back_time_s_ = 0.0;  ///< over which slips are taken back
-  /// How deep a tissue's surface may be in what touches it, since its mesh has changed: larger triangles cut into what smaller ones fitted, and pushed out
-  /// within a step they met it with 1.7 times its force.
+  /// How deep a tissue's surface may be in instruments, since its cells have grown under them: larger triangles cut into what smaller ones fitted, and
+  /// pushed out within a step they met it with 1.7 times its force.
   struct Settling {
     bool begins = false;   ///< with the contacts of the next step
-    double first_m = 0.0;  ///< deepest then
     double depth_m = 0.0;  ///< that is left
+    double speed_m_per_s = 0.0;
   };
   std::vector<Settling> settling_;    ///< per tissue
   std::vector<Patch> patches_;        ///< scratch of land()

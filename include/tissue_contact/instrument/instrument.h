@@ -49,6 +49,8 @@ class Instrument {
 
   /// Independent joint meant by a recorded name (through the map, or the URDF's own name); -1 when it means none.
   int jointOfRecordedName(const std::string& recorded) const;
+  /// Of names from outside those of joints that joint_names gives another name, and which: for messages. Empty: none is.
+  std::string mappedText(const std::vector<std::string>& names) const;
 
   /// Poses of all links in the world frame; `X_WL` is resized to model().links().size().
   void linkPoses(const VectorX& positions, std::vector<Pose>& X_WL) const;

@@ -18,16 +18,18 @@ struct IndependentJoint {
   double upper = 0.0;
   /// Continuous, and so are those that follow it, at whole multiples: whole turns more or less are the same pose, and drivers leave them out.
   bool turns_on = false;
-  /// Turns with limits, and so do those that follow it, at whole multiples: a driver that gives its angle between -pi and pi jumps by a whole
-  /// turn all the same, and one that is off by a turn of its encoder.
+  /// Revolute, with limits a turn or more apart or none that say anything (0 and 0), and so are those that follow it, at whole multiples: a driver that
+  /// gives its angle between -pi and pi leaves out whole turns of this one, too.
   bool wraps = false;
 
-  /// Of the positions that are the same pose as `position`, that nearest to `to`; of other joints `position`. Of one that wraps only where it
-  /// would turn faster than kFastest_rad_per_s.
-  /// @param interval_s from `to` to `position`.
-  double nearest(double position, double to, double interval_s) const;
+  /// Of the positions that are the same pose as `position`, that nearest to `to`; of joints that do not turn on `position`.
+  double nearest(double position, double to) const;
 
-  /// Four turns a second: more than twice what the wrists of surgical arms reach; half a turn within 100 ms.
+  /// Of a joint that wraps: what a driver has left out between two positions, rad: whole turns where it would turn by more than half of one, faster than
+  /// kFastest_rad_per_s. Else 0.
+  double turnsLeftOut(double before, double now, double interval_s) const;
+
+  /// Four turns a second, more than twice what the wrists of surgical arms reach: half a turn within an eighth of one.
   static constexpr double kFastest_rad_per_s = 25.0;
 };
 

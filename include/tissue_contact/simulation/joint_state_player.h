@@ -70,8 +70,8 @@ struct PlayedSample {
 /// than its topic's last one, by at most max_gap_s, but later than all that named one of its joints, makes no moment: its joints are taken
 /// with the topic's next sample, and it counts as merged. So the order of arrival on that topic counts, and nothing waits for a publisher.
 ///
-/// Continuous joints go the shorter way from one sample to the next: drivers give their angle between -pi and pi. So do revolute ones that would turn by more
-/// than half a turn faster than any arm does (IndependentJoint::nearest).
+/// Continuous joints go the shorter way from one sample to the next: drivers give their angle between -pi and pi. Revolute ones
+/// go on over the whole turns that drivers leave out (IndependentJoint::turnsLeftOut).
 ///
 /// Waiting. A moment waits until every other topic has delivered its stamp or a later one, so that what arrives first
 /// does not matter. A topic is waited for only while its newest stamp is less than max_gap_s behind the newest of all
@@ -253,6 +253,7 @@ class JointStatePlayer {
   void play(const Moment& moment, PlayedSample& played);
   void take(const Moment& moment, int topic, PlayedSample& played);
   void takeJoints(const Queued& queued, const Topic& topic);
+  double goneOnTo(double position, std::int64_t stamp_ns, std::size_t instrument, int joint) const;
   void headForNext(const Moment& moment, const Topic& topic);
   void placeNewJoints();
   void carry(StateArchive& archive);
@@ -278,6 +279,13 @@ class JointStatePlayer {
   std::map<int, std::int64_t> resumptions_;
   std::size_t waiting_ = 0;       ///< samples in all queues
   std::vector<VectorX> targets_;  ///< joint positions at the moment played last, per instrument
+  /// What the newest sample says of a joint.
+  struct Said {
+    double position = 0.0;  ///< rad or m
+    double turns = 0.0;     ///< that drivers have left out up to then, rad
+    std::int64_t stamp_ns = 0;
+  };
+  std::vector<std::vector<Said>> said_;  ///< per instrument and joint, of those that are heard
   enum class Heard { kNever, kNow, kBefore };
   std::vector<std::vector<Heard>> heard_;  ///< per instrument and joint: since the last reset; kNow: to be placed
   std::vector<bool> owes_;                 ///< per instrument: has a triggering sample without a wrench

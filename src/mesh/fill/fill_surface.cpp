@@ -196,7 +196,9 @@ Filled fill(const MeshDescription& description, const std::string& version) {
                            " % of the surface's vertices are farther than a cell from that mesh, most " +
                            roundedText(1e3 * missing.farthest) + " mm, at (" + roundedText(missing.p.x(), 3) + ", " +
                            roundedText(missing.p.y(), 3) + ", " + roundedText(missing.p.z(), 3) +
-                           ") m: what is thinner than cells is not in it; a smaller cell_size_m keeps more of it");
+                           ") m: what is thinner than cells" +
+                           std::string(crossings.count > 0 ? ", or cut off where it passes through itself," : "") +
+                           " is not in it; a smaller cell_size_m keeps more of it");
   }
   return filled;
 }

@@ -172,7 +172,7 @@ void Health::warnOfResult(const PlayedSample& played) {
   if (simulator_.report().implausible_load.found && implausible_loads_.pass()) {
     ROS_WARN_STREAM(toTime(played.stamp_ns) << " s: " << implausibleLoadText(simulator_));
   }
-  if (law_alarm_.leaves(simulator_.report().law_error.relative) && law_errors_.pass()) {
+  if (law_alarm_.leaves(simulator_.report().law_error.relative)) {
     ROS_WARN_STREAM(toTime(played.stamp_ns) << " s: " << lawErrorText(simulator_));
   }
   if (simulator_.report().coarse_cells.tissue >= 0 && !std::exchange(told_of_cells_, true)) {
@@ -292,6 +292,7 @@ void Health::noteReset() {
   told_of_cells_ = false;
   const std::lock_guard<std::mutex> lock(mutex_);
   figures_.broken = false;
+  figures_.ahead.clear();
   figures_.resets = player_.resets();
 }
 
@@ -390,7 +391,8 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   } else {
     status.summary(Level::OK, now.accepted > 0 ? "running" : "no joint state yet");
   }
-  const std::string troubles = is_troubled ? "joint states refused or dropped, or motion cut short" : "";
+  const std::string troubles =
+      is_troubled && status.level != Level::ERROR ? "joint states refused or dropped, or motion cut short" : "";
   for (const std::string& also : {troubles, now.ahead, silence_.summary()}) {
     if (!now.failed && !now.paused && !also.empty()) status.mergeSummary(Level::WARN, also);
   }

@@ -71,7 +71,7 @@ class Health {
 
   /// Summary and counts. ERROR when a step gave no finite answer since the last reset, or when since the last call
   /// the lag was far over its bound or joint states came by two clocks; WARN when it was over it, forces were such as no tissue bears, refined cells
-  /// were longer than asked for, steps were lengthened to hold the lag, a topic has fallen silent, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their
+  /// were longer than asked for, steps were lengthened to hold the lag, a topic that only updates is ahead of the others, one has fallen silent, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their
   /// iterations are counted but are no alarm: a fixed budget per step is how the solver keeps real time. The log says
   /// once what to change when the machine does not keep up.
   /// @param missing see Receiver::missing().
@@ -113,7 +113,6 @@ class Health {
   Throttle resumptions_;
   Throttle jumps_;
   Throttle implausible_loads_;
-  Throttle law_errors_;
   Throttle not_converged_{5};
   std::optional<Clock::time_point> looked_at_force_errors_;
   std::int64_t looked_at_stamp_ns_ = 0;

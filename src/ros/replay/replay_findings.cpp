@@ -122,7 +122,7 @@ void ReplayFindings::summarizeCells() const {
 }
 
 /// Whether at least `share` of the intervals, and more than single ones, ended so: some are cut short wherever contact begins.
-bool ReplayFindings::Solved::mostly(double share) const {
+bool ReplayFindings::Solved::atLeast(double share) const {
   constexpr long kFew = 10;
   return not_converged >= kFew && static_cast<double>(not_converged) >= share * static_cast<double>(all);
 }
@@ -134,8 +134,10 @@ void ReplayFindings::summarizeUnsolved() const {
   constexpr double kLargeShare =
       0.2;  // of all: sweeps go on in the next step, so forces of compact tissue are met within a per cent
   const SolverOptions& solver = simulator_.scene().solver;
-  const bool grips = sticking_.mostly(kSmallShare);
-  if (solver.iterations == kMaxIterations || !(grips || touching_.mostly(kLargeShare))) return;
+  const bool grips = sticking_.atLeast(kSmallShare);
+  const bool may_iterate = solver.iterations < kMaxIterations;
+  const bool may_factorize = solver.relaxation != RelaxationKind::kCholesky;
+  if (!(may_iterate || may_factorize) || !(grips || touching_.atLeast(kLargeShare))) return;
   if (grips) {
     log_ << prefix_ << "static friction held in " << sticking_.all << " intervals, of which " << sticking_.not_converged
          << " ended before the solver's tolerance: what is held there may slip when solved to the end";
@@ -144,10 +146,12 @@ void ReplayFindings::summarizeUnsolved() const {
          << " ended before the solver's tolerance: slender or nearly incompressible tissue may lag behind, most in "
             "long steps";
   }
-  log_ << ". See whether it does with --set solver.iterations=" << std::min(10 * solver.iterations, kMaxIterations)
-       << " (now " << solver.iterations << ")";
-  if (solver.relaxation != RelaxationKind::kCholesky) log_ << " or --set solver.relaxation=cholesky";
-  log_ << "\n";
+  log_ << ". See whether it does with --set ";
+  if (may_iterate) {
+    log_ << "solver.iterations=" << std::min(10 * solver.iterations, kMaxIterations) << " (now " << solver.iterations
+         << ")" << (may_factorize ? " or --set " : "");
+  }
+  log_ << (may_factorize ? "solver.relaxation=cholesky\n" : "\n");
 }
 
 }  // namespace tissue_contact

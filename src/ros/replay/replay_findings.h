@@ -64,7 +64,7 @@ class ReplayFindings {
       ++all;
       not_converged += static_cast<long>(report.stop == StopReason::kIterations);
     }
-    bool mostly(double share) const;
+    bool atLeast(double share) const;
   };
   Solved touching_;  ///< with a contact that carries force
   Solved sticking_;  ///< in which static friction held something

@@ -257,7 +257,7 @@ TEST(ParseUrdf, RotationsThatWouldBeOthersAreRefused) {
                  {"<origin> has rpy=\"0 90", "radians, not degrees"});
   expectContains(refusal([&] { parse(hinge("\n<origin\nxyz = \"0 0 0\"\nrpy =\n\"0 0 -45\"/>")); }),
                  {"test.urdf:2: <origin>", "-45"});
-  EXPECT_EQ(parse(shape("<origin rpy=\"6.2831 0 -6.2831\"/>")).links().size(), 1u);
+  EXPECT_EQ(parse(shape("<origin rpy=\"9.4248 0 -6.2832\"/>")).links().size(), 1u) << "sums of quarters";
   EXPECT_EQ(parse("<link name=\"a\"><inertial><origin rpy=\"0 90 0\"/><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" "
                   "ixz=\"0\" "
                   "iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>")

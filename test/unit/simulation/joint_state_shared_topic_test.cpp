@@ -110,13 +110,16 @@ TEST_F(OneProbe, OfASharedTopicTheNewestStateHasAllJoints) {
 }
 
 /// A ball on an arm that a joint turns, 30 mm from its axis, and one that follows it at a multiple.
-Simulator crank(const std::string& multiplier, const std::string& type = "continuous") {
+Simulator crank(const std::string& multiplier, const std::string& type = "continuous",
+                const std::string& limit_rad = "4") {
   const std::string urdf =
       "<robot name='crank'><link name='base'/><link name='tip'><collision><origin xyz='0.03 0 0'/><geometry><sphere "
       "radius='0.005'/></geometry></collision></link><link name='geared'/><joint name='turn' type='" +
       type +
       "'><parent "
-      "link='base'/><child link='tip'/><axis xyz='0 0 1'/><limit lower='-4' upper='4' effort='1' "
+      "link='base'/><child link='tip'/><axis xyz='0 0 1'/><limit lower='-" +
+      limit_rad + "' upper='" + limit_rad +
+      "' effort='1' "
       "velocity='1'/></joint><joint name='gear' type='revolute'><parent "
       "link='base'/><child link='geared'/><axis xyz='0 0 1'/><limit lower='-9' upper='9' effort='1' "
       "velocity='1'/><mimic joint='turn' multiplier='" +
@@ -140,19 +143,37 @@ TEST(JointStateSharedTopic, AContinuousJointGoesTheShorterWay) {
   EXPECT_FALSE(simulator.report().jumped);
 }
 
-// Some give those of all joints so, and a wrist that turns by more than half a turn to either side jumped.
-TEST(JointStateSharedTopic, ARevoluteJointGoesTheShorterWayWhereNoArmTurnsSoFast) {
-  for (const auto& [apart, expected] : {std::pair{10 * kMillisecond, 2.0 * M_PI - 3.1},
-                                        {200 * kMillisecond, 2.0 * M_PI - 3.1},
-                                        {400 * kMillisecond, -3.1}}) {
-    Simulator simulator = crank("1", "revolute");
-    JointStatePlayer player(simulator);
-    for (const auto& [stamp, angle] : {std::pair{kSecond, 3.1}, {kSecond + apart, -3.1}}) {
-      player.push(0, {stamp, {"turn"}, {angle}});
-      drain(player);
-    }
-    EXPECT_NEAR(simulator.jointPositions(0)[0], expected, 1e-12) << apart;
+/// Where a joint is that is said to be at 3.1 rad, and then at these angles so many milliseconds later each.
+std::vector<double> turned(const std::string& limit_rad, const std::vector<std::pair<int, double>>& said) {
+  Simulator simulator = crank("1", "revolute", limit_rad);
+  JointStatePlayer player(simulator);
+  std::int64_t stamp = kSecond;
+  player.push(0, {stamp, {"turn"}, {3.1}});
+  drain(player);
+  std::vector<double> found;
+  for (const auto& [later_ms, angle] : said) {
+    stamp += later_ms * kMillisecond;
+    player.push(0, {stamp, {"turn"}, {angle}});
+    drain(player);
+    found.push_back(simulator.jointPositions(0)[0]);
   }
+  return found;
+}
+
+// Some give those of all joints so: a wrist turned all the way round, and again at the next pause.
+TEST(JointStateSharedTopic, ARevoluteJointGoesOnOverTurnsThatItsDriverLeavesOut) {
+  const double over = 2.0 * M_PI;
+  const auto expect_near = [](const std::vector<double>& found, const std::vector<double>& expected) {
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-12) << i;
+  };
+  for (const char* const limit : {"3.14", "0", "6.5"}) {
+    SCOPED_TRACE(limit);
+    expect_near(turned(limit, {{10, -3.1}, {10, -3.0}, {30, -3.0}, {300, -3.0}, {5000, -3.0}, {10, 3.1}, {10, 3.0}}),
+                {over - 3.1, over - 3.0, over - 3.0, over - 3.0, over - 3.0, 3.1, 3.0});
+    expect_near(turned(limit, {{45, 1.0}, {45, -2.0}, {45, 0.5}}), {1.0, -2.0, 0.5});  // no half turn at once
+  }
+  expect_near(turned("2.9", {{10, -3.1}}), {-3.1});  // never all the way round
 }
 
 TEST(JointStateSharedTopic, AWholeTurnOfAGearedJointIsNoneOfItsGear) {

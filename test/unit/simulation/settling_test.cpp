@@ -65,12 +65,25 @@ TEST(Settling, ASavedStateGoesOnSettling) {
     nodes = now;
   }
   ASSERT_LT(k, 400);
+  ASSERT_GT(simulator.residuals().penetration, 1e-4) << "nothing settles";
   Simulator restored = drag("600");
   restored.restoreState(simulator.saveState());
   for (int i = 1; i <= 5; ++i) {
     step(simulator, k + i);
     step(restored, k + i);
     EXPECT_EQ(restored.wrench(0).force, simulator.wrench(0).force) << i;
+  }
+}
+
+TEST(Settling, NothingIsLeftOfItAfterAReset) {
+  Simulator simulator = drag("600");
+  for (int k = 1; k <= 370; ++k) step(simulator, k);
+  simulator.reset();
+  Simulator fresh = drag("600");
+  for (int k = 1; k <= 150; ++k) {
+    step(simulator, k);
+    step(fresh, k);
+    ASSERT_EQ(simulator.wrench(0).force, fresh.wrench(0).force) << k;
   }
 }
 
