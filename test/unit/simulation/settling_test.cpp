@@ -65,7 +65,7 @@ TEST(Settling, ASavedStateGoesOnSettling) {
     nodes = now;
   }
   ASSERT_LT(k, 400);
-  ASSERT_GT(simulator.residuals().penetration, 1e-4) << "nothing settles";
+  ASSERT_GT(simulator.residuals().penetration_m, 1e-4) << "nothing settles";
   Simulator restored = drag("600");
   restored.restoreState(simulator.saveState());
   for (int i = 1; i <= 5; ++i) {
