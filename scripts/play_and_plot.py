@@ -72,10 +72,19 @@ class Graph:
         return any(not name.startswith("/open_rviz_") for name in listeners)
 
 
+    def hears(self, topics):
+        """Whether the node is connected with a publisher of each."""
+        try:
+            _, _, connections = ServerProxy(self._master.lookupNode(self._node)).getBusInfo(rospy.get_name())
+        except (OSError, Error, rosgraph.MasterException):
+            return False
+        return set(topics) <= {topic for _, _, direction, _, topic, *_ in connections if direction == "i"}
+
+
 class Recorder:
     """Collects what the node publishes; all times are of the messages."""
 
-    def __init__(self, node, graph, joint_topics):
+    def __init__(self, node, graph):
         self.lock = threading.Lock()
         self.forces = Forces()
         self.last_joint_state = None
@@ -85,8 +94,6 @@ class Recorder:
         self.open = True  # until the first pass is over
         self._rest = {}
         self._meshes = {}
-        for topic in joint_topics:
-            rospy.Subscriber(topic, JointState, self._take_joint_state, tcp_nodelay=True)
         for topic in graph.published():
             name = topic[len(node) + 1:]
             if name.endswith("/wrench"):
@@ -98,6 +105,10 @@ class Recorder:
         rospy.Subscriber(node + "/status", Status, self._take_status)
         rospy.Subscriber("/diagnostics", DiagnosticArray, self._take_diagnostics, node)
         rospy.Subscriber(node + "/contacts", ContactArray, self._take_contacts, tcp_nodelay=True)
+
+    def hear(self, joint_topics):
+        for topic in joint_topics:
+            rospy.Subscriber(topic, JointState, self._take_joint_state, tcp_nodelay=True)
 
     def _take_joint_state(self, message):
         with self.lock:
@@ -261,8 +272,11 @@ def main():
         fail("%s has no message on %s; its topics are: %s" %
              (arguments.bag, ", ".join(heard), ", ".join(sorted(in_bag))))
     shown = arguments.show == "true" and shutil.which("rviz") is not None and wait_quietly(graph.is_shown, RVIZ_START_S)
-    recorder = Recorder(arguments.node, graph, topics)
+    recorder = Recorder(arguments.node, graph)
     child = start_player(arguments, topics, loop=False)
+    # It begins with the first subscriber of each topic. Were that we, on a busy machine the node would miss what comes till it is connected as well.
+    watch(recorder, lambda: graph.hears(topics) or child.poll() is not None, talk=not shown)
+    recorder.hear(topics)
     watch(recorder, lambda: child.poll() is not None, talk=not shown)
     if not rospy.is_shutdown() and child.returncode != 0:
         fail("rosbag play ended with exit code %s" % child.returncode)
