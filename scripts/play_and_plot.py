@@ -14,7 +14,7 @@ import subprocess
 import sys
 import threading
 import time
-from xmlrpc.client import Error, ServerProxy
+from xmlrpc.client import Error, ServerProxy, Transport
 
 import numpy
 import rosbag
@@ -75,10 +75,19 @@ class Graph:
     def hears(self, topics):
         """Whether the node is connected with a publisher of each."""
         try:
-            _, _, connections = ServerProxy(self._master.lookupNode(self._node)).getBusInfo(rospy.get_name())
+            _, _, connections = ServerProxy(self._master.lookupNode(self._node), ShortTransport()).getBusInfo(rospy.get_name())
         except (OSError, Error, rosgraph.MasterException):
             return False
         return set(topics) <= {topic for _, _, direction, _, topic, *_ in connections if direction == "i"}
+
+
+class ShortTransport(Transport):
+    """A node that does not answer must not hold up the end."""
+
+    def make_connection(self, host):
+        connection = super().make_connection(host)
+        connection.timeout = 2.0  # s
+        return connection
 
 
 class Recorder:

@@ -4,7 +4,9 @@ import filecmp
 import os
 import re
 import shutil
+import signal
 import subprocess
+import time
 import unittest
 
 import rosbag
@@ -55,6 +57,23 @@ class Demo(harness.TestCase):
         scene = shutil.copy(harness.SCENE, self.path("my scene.yaml"))
         code, output = harness.launch("scene.launch", "bag:=" + bag, "scene:=" + scene, "output:=" + self.plots)
         self.assertEqual(code, 0, output)
+        self.assert_pictures()
+
+    def test_a_node_that_connects_late_misses_nothing(self):
+        """On a busy machine: the player's own script was connected first, and the recording began for it."""
+        bag = self.bag_of("late.bag", harness.press(50))
+        with harness.node(harness.SCENE) as node:
+            harness.diagnostics().wait(len, "the node")
+            node.send_signal(signal.SIGSTOP)
+            try:
+                command = [harness.program("play_and_plot.py"), "--bag", bag, "--output", self.plots]
+                with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True) as player:
+                    time.sleep(4.0)
+                    node.send_signal(signal.SIGCONT)
+                    output, _ = player.communicate(timeout=harness.DEADLINE_S)
+            finally:
+                node.send_signal(signal.SIGCONT)
+        self.assertEqual(player.returncode, 0, output)
         self.assert_pictures()
 
     def scene_without_urdf(self):
