@@ -220,7 +220,7 @@ std::string Instrument::mappedText(const std::vector<std::string>& names) const 
   for (const auto& [recorded, joint] : joint_of_recorded_name_) {
     const std::string& own = model_.joints()[static_cast<std::size_t>(joint)].name;
     if (recorded != own && given.count(own) > 0 && jointOfRecordedName(own) < 0)
-      mapped.push_back(own + " as " + recorded);
+      mapped.push_back(std::string(own).append(" as ").append(recorded));
   }
   return mapped.empty() ? std::string()
                         : "joints that joint_names expects under another name: " + listOf(mapped) +
