@@ -184,6 +184,7 @@ void Simulator::Implementation::changeMesh(int tissue, ComingMesh& coming) {
 void Simulator::Implementation::takeMesh(int tissue, ComingMesh& coming, const std::vector<int>& to_new) {
   if (!coming.elastic_state) makeStateAt(x[tissue], coming);
   const double edge_m = coming.edges.mean;
+  if (!to_new.empty()) contacts.noteCells(tissue);
   std::swap(tissues[tissue], *coming.tissue);
   friction.swapSurface(tissue, coming.friction_triangles);
   edges.swapSurface(tissue, coming.edges);
@@ -191,7 +192,6 @@ void Simulator::Implementation::takeMesh(int tissue, ComingMesh& coming, const s
   detector.swapSurface(*coming.surface);
   folds.swapMesh(tissue, coming.fold);
   contacts.renumber(tissue, to_new, coming.pressure_triangles);
-  if (!to_new.empty() && followers[tissue]->coarsening() > 1.0) contacts.settle(tissue);
   moving[tissue].changeMesh(coming.elastic_state, edge_m);
 }
 

@@ -18,6 +18,8 @@ constexpr double kRecoveryTime_s = 0.01;
 constexpr double kSettlingTime_s = 0.02;
 constexpr double kShallowest = 0.01;
 constexpr double kDeepest = 0.25;
+/// Of an edge: one more bisection or one less makes it some 1.3 times as long.
+constexpr double kGrown = 1.2;
 
 /// More of a static contact's slip than this share of an edge is no error of the solver any more and is let go.
 constexpr double kMostSlipPerEdge = 0.01;
@@ -241,17 +243,36 @@ void StepContacts::placeRow(std::size_t index, double dt, ContactRow& row) const
   row.required_u_n = std::min(depth / dt, half_extent / kRecoveryTime_s + compliance * force / dt);
 }
 
-/// After cells of a tissue have grown. Between tissues a gap may be what squeezes a sheet.
-void StepContacts::beginSettling(const std::vector<Contact>& found) {
-  for (const Contact& contact : found) {
-    Settling& one = settling_[contact.key.tissue];
-    if (!one.begins || contact.key.instrument < 0) continue;
-    const double share = -contact.gap_m / edges_.finer(contact);
-    if (!(share > kShallowest && share < kDeepest && -contact.gap_m > one.depth_m)) continue;
-    one.depth_m = -contact.gap_m;
-    one.speed_m_per_s = one.depth_m / kSettlingTime_s;
+void StepContacts::noteCells(int tissue) {
+  double finest_m = std::numeric_limits<double>::infinity();
+  for (const SolvedContact& solved : contacts_) {
+    const ContactKey& key = solved.contact.key;
+    if (key.tissue != tissue || key.instrument < 0 || solved.state == ContactState::kOpen) continue;
+    finest_m = std::min(finest_m, edges_.finer(solved.contact));
   }
-  for (Settling& one : settling_) one.begins = false;
+  settling_[tissue].cell_m = std::isfinite(finest_m) ? finest_m : 0.0;
+}
+
+/// Where cells have grown under instruments. Between tissues a gap may be what squeezes a sheet.
+void StepContacts::beginSettling(const std::vector<Contact>& found) {
+  for (Settling& one : settling_) {
+    if (one.cell_m == 0.0) continue;
+    const auto tissue = static_cast<int>(&one - settling_.data());
+    double finest_m = std::numeric_limits<double>::infinity();
+    double deepest_m = 0.0;
+    for (const Contact& contact : found) {
+      if (contact.key.tissue != tissue || contact.key.instrument < 0) continue;
+      const double edge_m = edges_.finer(contact);
+      finest_m = std::min(finest_m, edge_m);
+      const double share = -contact.gap_m / edge_m;
+      if (share > kShallowest && share < kDeepest) deepest_m = std::max(deepest_m, -contact.gap_m);
+    }
+    if (finest_m > kGrown * one.cell_m && deepest_m > one.depth_m) {
+      one.depth_m = deepest_m;
+      one.speed_m_per_s = deepest_m / kSettlingTime_s;
+    }
+    one.cell_m = 0.0;
+  }
 }
 
 /// m, of a contact.
@@ -323,7 +344,6 @@ void StepContacts::carry(StateArchive& archive, const std::vector<Instrument>& i
     if (archive.isReading()) requireContact(archive, solved, instruments);
   });
   for (Settling& one : settling_) {
-    archive.carry(one.begins);
     archive.carry(one.depth_m);
     archive.carry(one.speed_m_per_s);
     archive.check(one.depth_m >= 0.0 && std::isfinite(one.depth_m) && one.speed_m_per_s >= 0.0 &&

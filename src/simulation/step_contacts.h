@@ -75,8 +75,8 @@ class StepContacts {
   /// @param to_new per node before; -1: it is no more. A contact of such nodes is continued by the nearest one of its shape.
   /// @param triangles trianglesOfNodes() of it if friction depends on pressure; they are exchanged for those before.
   void renumber(int tissue, const std::vector<int>& to_new, TrianglesOfNodes& triangles);
-  /// The mesh that the tissue has now, and was renumbered for, is coarser in places.
-  void settle(int tissue) { settling_[tissue].begins = true; }
+  /// The mesh of a tissue is about to change: notes how fine it is under instruments, to see whether cells grow there.
+  void noteCells(int tissue);
   /// To be called once all meshes that change have been renumbered.
   void finishRenumbering();
 
@@ -118,7 +118,7 @@ class StepContacts {
   /// How deep a tissue's surface may be in instruments, since its cells have grown under them: larger triangles cut into what smaller ones fitted, and
   /// pushed out within a step they met it with 1.7 times its force.
   struct Settling {
-    bool begins = false;   ///< with the contacts of the next step
+    double cell_m = 0.0;   ///< finest edge under instruments before the mesh changed in this step; 0: it has not
     double depth_m = 0.0;  ///< that is left
     double speed_m_per_s = 0.0;
   };
