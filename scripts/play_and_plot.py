@@ -71,7 +71,6 @@ class Graph:
         listeners = dict(self._master.getSystemState()[1]).get(self._node + "/markers", [])
         return any(not name.startswith("/open_rviz_") for name in listeners)
 
-
     def hears(self, topics):
         """Whether the node is connected with a publisher of each."""
         try:

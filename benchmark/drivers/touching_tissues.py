@@ -1,9 +1,11 @@
 #!/usr/bin/python3
 """Prints the forces of doc/notes/method.md ("Crossing edges of two tissues", "Sheets that are squeezed"): a ball held on a layer that lies on a bed, boxes
-that close on a sheet, and on a gut, jaws of a PSM on flaps. Mean and RMS about it of what the last .2 s hold, N. Two or three minutes.
+that close on a sheet, and on a gut, an open ring pressed onto itself, jaws of a PSM on flaps. Mean and RMS about it of what the last .2 s hold, N. Two or
+three minutes.
 
-usage, after `source scripts/env.bash`: benchmark/drivers/touching_tissues.py
+usage, after `source scripts/env.bash`: benchmark/drivers/touching_tissues.py [--only WORD] [--step S] [--iterations N] [--tolerance T] [--relaxation R]
 """
+import argparse
 import math
 import os
 import tempfile
@@ -17,6 +19,7 @@ JOINT = ("<joint name='%s_joint' type='prismatic'><parent link='base'/><child li
          "<limit lower='-1' upper='1' effort='1' velocity='1'/></joint>")
 PROBE = "<robot name='r'><link name='base'/>" + BALL + JOINT % ("tip", "tip", 0, "0 0 1") + "</robot>"
 STEP_S = 0.001
+SETTINGS = {}  # of the solver, in place of its defaults
 DATA = os.environ.get("TISSUE_CONTACT_SHARED_DATA") or os.path.join(os.path.dirname(os.path.realpath(__file__)), "../../../shared/data")
 PSM = os.path.join(DATA, "dvrk_psm", "psm2_caudier.urdf")
 TOOL = "PSM2_tool_wrist_caudier"
@@ -33,16 +36,24 @@ def material(young_pa, nu=0.4, mass_per_s=20):
             "    damping: {stiffness_s: 0.003, mass_per_s: %g}\n" % (young_pa, nu, mass_per_s))
 
 
-def simulator(tissues, urdf, links, tissue, base_m, more="", friction=""):
+def build(text, urdf=""):
+    scene = tc.parse_scene(text, set={"step.max_step_s": STEP_S, **{"solver." + key: value for key, value in SETTINGS.items()}})
+    return tc.Simulator(scene, urdf=urdf) if urdf else tc.Simulator(scene)
+
+
+def simulator(tissues, urdf, links, tissue, base_m, more="", friction="", pair="", x_m=0.0):
     instrument = ("  - {name: tool, robot_description: tool, tip_link: base, contact_links: [%s], joint_state_topics: [/js], "
-                  "base_pose: {position_m: [0, 0, %g]}%s}\n" % (links, base_m, more))
-    pairs = "tissue_pairs: [{tissue: bed, other: layer}]\n" if "name: bed" in tissues else "tissue_pairs: [{tissue: gut, other: gut}]\n" if "gut" in tissues else ""
+                  "base_pose: {position_m: [%g, 0, %g]}%s}\n" % (links, x_m, base_m, more))
+    if "name: bed" in tissues:
+        pairs = "tissue_pairs: [{tissue: bed, other: layer}]\n"
+    else:
+        pairs = "tissue_pairs: [{tissue: %s, other: %s}]\n" % (pair, pair) if pair else ""
     text = ("gravity_m_per_s2: [0, 0, %g]\ntissues:\n" % (-9.81 if "name: bed" in tissues else 0) + tissues + "instruments:\n" + instrument + pairs +
             "friction:\n" + friction + "  - {instrument: tool, tissue: %s, static: 0.5, kinetic: 0.4}\n" % tissue)
     with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
         file.write(urdf)
         file.flush()
-        return tc.Simulator(tc.parse_scene(text), urdf=file.name)
+        return build(text, file.name)
 
 
 def held(model, start, end, move_s, rest_s, force):
@@ -101,7 +112,7 @@ def tube(file, radius_m=0.006, length_m=0.05, around=24, along=30):
 def on_gut(file, distance_m, more=""):
     tissues = ("  - name: gut\n    shell: {file: %s, thickness_m: 0.0015}\n" % file + material(5e4, 0.45) +
                "    fixed: [{plane: {point_m: [-0.0249, 0, 0], normal: [1, 0, 0]}}, {plane: {point_m: [0.0249, 0, 0], normal: [-1, 0, 0]}}]\n")
-    return held(simulator(tissues, jaws(0.006, 0.02), "a, b", "gut", 0.0, more), [0.008] * 2, [0.5 * distance_m] * 2, 0.6, 0.6, squeeze)
+    return held(simulator(tissues, jaws(0.006, 0.02), "a, b", "gut", 0.0, more, pair="gut"), [0.008] * 2, [0.5 * distance_m] * 2, 0.6, 0.6, squeeze)
 
 
 def on_flaps(model, law, count, half_angle_rad, limit_n_m=0.0):
@@ -120,14 +131,46 @@ def on_flaps(model, law, count, half_angle_rad, limit_n_m=0.0):
     text += "friction:\n" + "".join("  - {instrument: tool, tissue: %s, static: 0.6, kinetic: 0.4}\n" % name for name in names)
     text += "  - {tissue: a, other_tissue: b, static: 0.4, kinetic: 0.3}\n" if count == 2 else ""
     joints = [[0, 0, 0.15, 0, 0, 0, 2.0 * half_rad] for half_rad in (0.25, half_angle_rad)]
-    return held(tc.Simulator(tc.parse_scene(text)), *joints, 0.5, 0.5, pressed)
+    return held(build(text), *joints, 0.5, 0.5, pressed)
+
+
+def open_ring(file, outer_m=0.012, wall_m=0.004, width_m=0.008, opening_rad=0.35, cells=(36, 3, 4)):
+    """A ring of hexahedra about the y axis, open towards +x."""
+    around, across, wide = cells
+    number = lambda i, r, j: (i * (across + 1) + r) * (wide + 1) + j + 1
+    with open(file, "w", encoding="utf-8") as stream:
+        stream.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n" % ((around + 1) * (across + 1) * (wide + 1)))
+        for i in range(around + 1):
+            angle = opening_rad + 2.0 * (math.pi - opening_rad) * i / around
+            for r in range(across + 1):
+                radius = outer_m - wall_m * (1.0 - r / across)
+                for j in range(wide + 1):
+                    stream.write("%d %.17g %.17g %.17g\n" % (number(i, r, j), radius * math.cos(angle), width_m * (j / wide - 0.5), radius * math.sin(angle)))
+        stream.write("$EndNodes\n$Elements\n%d\n" % (around * across * wide))
+        for i in range(around):
+            for r in range(across):
+                for j in range(wide):
+                    face = [(i, r), (i, r + 1), (i + 1, r + 1), (i + 1, r)]
+                    corners = [number(a, b, j + 1) for a, b in face] + [number(a, b, j) for a, b in face]
+                    stream.write("%d 5 2 1 1 %s\n" % ((i * across + r) * wide + j + 1, " ".join(map(str, corners))))
+        stream.write("$EndElements\n")
+
+
+def on_ring(file, down_m):
+    """A ball bends the upper end of the ring onto the lower one, N."""
+    tissues = ("  - name: ring\n    mesh: {file: %s}\n" % file + material(1e4, 0.45, mass_per_s=5) +
+               "    fixed: [{plane: {point_m: [0, 0, -0.0105], normal: [0, 0, 1]}}]\n")
+    start = [0.0175]
+    return held(simulator(tissues, PROBE, "tip", "ring", 0.0, pair="ring", x_m=0.004), start, [start[0] - 0.0005 - down_m], 0.4, 0.4,
+                lambda model: model.wrench("tool", frame="world")[2])
 
 
 def compliant(limit_n):
     return ", compliant_joints: [%s]" % ", ".join("{joint: %s_joint, stiffness_n_per_m: 1000, force_limit_n: %g}" % (name, limit_n) for name in "ab")
 
 
-def main():
+def rows():
+    """Name and what gives its line, of each scene."""
     sheet = "sheet: {size_m: [0.03, 0.03], cells: [%d, %d], thickness_m: %g}\n    pose: {position_m: [0, 0, 0.0202]}\n"
     block = "block: {size_m: [0.03, 0.03, 0.003], cells: [%d, %d, %d]}\n    pose: {position_m: [0, 0, 0.02]}\n"
     stuck = "  - {tissue: bed, other_tissue: layer, static: 0.4, kinetic: 0.3}\n"
@@ -139,17 +182,21 @@ def main():
                       ("8 x 8 x 1, stuck, on 5 kPa", (block % (8, 8, 1), 0.023, 5e3, 5e3, 4e-3, "[8, 8, 5]", stuck)),
                       ("8 x 8 x 1, stuck, on 50 kPa", (block % (8, 8, 1), 0.023, 5e3, 5e4, 4e-3, "[8, 8, 5]", stuck)),
                       ("8 x 8 x 2, on 50 kPa", (block % (8, 8, 2), 0.023, 5e3, 5e4, 4e-3))]:
-        print("%-40s %s" % (name, on_layer(*row)), flush=True)
+        yield name, lambda row=row: on_layer(*row)
     for cells, distance in [(8, 9e-4), (8, 7e-4), (8, 5e-4), (20, 7e-4)]:
-        print("%-40s %s" % ("boxes on a sheet, %d cells, to %g mm" % (cells, 1e3 * distance), on_sheet(cells, distance)), flush=True)
+        yield "boxes on a sheet, %d cells, to %g mm" % (cells, 1e3 * distance), lambda cells=cells, distance=distance: on_sheet(cells, distance)
     for young, distance in [(5e4, -0.001), (1e6, 0.0)]:
-        print("%-40s %s" % ("compliant, %g kPa, limit .5 N" % (young / 1e3), on_sheet(8, distance, young, compliant(0.5))), flush=True)
+        yield "compliant, %g kPa, limit .5 N" % (young / 1e3), lambda young=young, distance=distance: on_sheet(8, distance, young, compliant(0.5))
     with tempfile.TemporaryDirectory() as folder:
         file = os.path.join(folder, "gut.obj")
         tube(file)
         for distance in (0.0035, 0.0028, 0.002):
-            print("%-40s %s" % ("boxes on a gut, to %g mm" % (1e3 * distance), on_gut(file, distance)), flush=True)
-        print("%-40s %s" % ("compliant, limit .5 N", on_gut(file, 0.0, compliant(0.5))), flush=True)
+            yield "boxes on a gut, to %g mm" % (1e3 * distance), lambda distance=distance: on_gut(file, distance)
+        yield "compliant, limit .5 N", lambda: on_gut(file, 0.0, compliant(0.5))
+        ring = os.path.join(folder, "ring.msh")
+        open_ring(ring)
+        for down in (0.007, 0.009):
+            yield "open ring, pressed by %g mm" % (1e3 * down), lambda down=down: on_ring(ring, down)
     if not os.path.isfile(PSM):
         print("no %s: its jaws are left out (TISSUE_CONTACT_SHARED_DATA)" % PSM)
         return
@@ -157,7 +204,23 @@ def main():
         for count in (1, 2):
             for half_angle_rad, limit_n_m in [(0.05, 0.0), (0.04, 0.0), (0.03, 0.0), (-0.2, 0.008)]:
                 closed = "limit %g N m" % limit_n_m if limit_n_m else "to %g rad" % half_angle_rad
-                print("%-40s %s" % ("jaws, %d flap(s), %s, %s" % (count, law, closed), on_flaps(PSM, law, count, half_angle_rad, limit_n_m)), flush=True)
+                yield ("jaws, %d flap(s), %s, %s" % (count, law, closed),
+                       lambda law=law, count=count, half=half_angle_rad, limit=limit_n_m: on_flaps(PSM, law, count, half, limit))
+
+
+def main():
+    global STEP_S
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n", maxsplit=1)[0], formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default="", help="scenes whose name has this in it")
+    parser.add_argument("--step", type=float, default=0.001, help="s")
+    for key in ("iterations", "tolerance", "relaxation"):
+        parser.add_argument("--" + key, help="solver." + key + " of the scenes")
+    arguments = vars(parser.parse_args())
+    STEP_S = arguments["step"]
+    SETTINGS.update({key: arguments[key] for key in ("iterations", "tolerance", "relaxation") if arguments[key]})
+    for name, line in rows():
+        if arguments["only"] in name:
+            print("%-40s %s" % (name, line()), flush=True)
 
 
 if __name__ == "__main__":

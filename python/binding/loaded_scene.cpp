@@ -60,8 +60,7 @@ LoadedScene loadScene(const std::string& file, const py::object& set, std::optio
 }
 
 SceneEnvironment environmentOf(const Scene& scene, const std::string& urdf_file, const py::object& frames) {
-  const auto takes_it = [](const InstrumentDescription& one) { return !one.robot_description_parameter.empty(); };
-  if (!urdf_file.empty() && std::none_of(scene.instruments.begin(), scene.instruments.end(), takes_it)) {
+  if (!urdf_file.empty() && !takesUrdfFromParameter(scene)) {
     throw std::invalid_argument(
         "urdf='" + urdf_file + "' would change nothing: no instrument of scene '" + scene.file +
         "' takes its URDF from a parameter; leave it out, or have the scene say robot_description in place of urdf");

@@ -8,7 +8,6 @@
 #include <tf2/buffer_core.h>
 #include <tf2_msgs/TFMessage.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -49,8 +48,7 @@ std::string urdfParameter(const ros::NodeHandle& private_node, const std::string
 }
 
 void requireUrdfParameter(const Scene& scene) {
-  const auto wants = [](const InstrumentDescription& one) { return !one.robot_description_parameter.empty(); };
-  if (std::any_of(scene.instruments.begin(), scene.instruments.end(), wants)) return;
+  if (takesUrdfFromParameter(scene)) return;
   throw UnusedUrdf("--urdf would change nothing: no instrument of scene '" + scene.file +
                    "' takes its URDF from a parameter; leave --urdf out, or have the scene say robot_description in "
                    "place of urdf");

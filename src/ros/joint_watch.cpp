@@ -133,12 +133,12 @@ std::string JointWatch::namesText(std::size_t instrument) const {
     if (seen.joints.count(static_cast<int>(j)) == 0) still.push_back(joints[j].name);
   }
   if (still.empty() || seen.foreign.empty()) return {};
-  std::string mimics = model.mimicsText(seen.foreign);
-  if (mimics.empty()) mimics = simulator_.instruments()[instrument].mappedText(seen.foreign);
+  std::string why = model.mimicsText(seen.foreign);
+  if (why.empty()) why = simulator_.instruments()[instrument].mappedText(seen.foreign);
   return "no joint state names these joints of '" + simulator_.instruments()[instrument].name() +
          "', which stay where the scene puts them: " + listOf(still) +
          "; those that come name others, which are none of its independent joints: " + listOf(seen.foreign) +
-         (mimics.empty() ? ". If they are the same, map them by joint_names" : ". Of these are " + mimics);
+         (why.empty() ? ". If they are the same, map them by joint_names" : ". Of these are " + why);
 }
 
 /// Empty where no message names a joint more than once.

@@ -95,14 +95,14 @@ Verdict JointStatePlayer::judgeJoints(const JointStateSample& sample, const Topi
   }
   if (any_known) return Verdict::kAccepted;
   detail = "none of its joints (" + listOf(sample.names) + ") is a joint of an instrument on this topic; ";
-  std::string mimics;
+  std::string why;
   for (const Listener& listener : topic.listeners) {
-    if (!mimics.empty()) break;
+    if (!why.empty()) break;
     const Instrument& instrument = simulator_.instruments()[static_cast<std::size_t>(listener.instrument)];
-    mimics = instrument.model().mimicsText(sample.names);
-    if (mimics.empty()) mimics = instrument.mappedText(sample.names);
+    why = instrument.model().mimicsText(sample.names);
+    if (why.empty()) why = instrument.mappedText(sample.names);
   }
-  detail += mimics.empty() ? "map them by joint_names" : "of these are " + mimics;
+  detail += why.empty() ? "map them by joint_names" : "of these are " + why;
   for (const Listener& listener : topic.listeners) {
     const Instrument& instrument = simulator_.instruments()[static_cast<std::size_t>(listener.instrument)];
     std::vector<std::string> own;

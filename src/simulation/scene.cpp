@@ -1,8 +1,15 @@
 #include "tissue_contact/simulation/scene.h"
 
+#include <algorithm>
+
 #include "tissue_contact/core/entry_error.h"
 
 namespace tissue_contact {
+
+bool takesUrdfFromParameter(const Scene& scene) {
+  const auto takes_it = [](const InstrumentDescription& one) { return !one.robot_description_parameter.empty(); };
+  return std::any_of(scene.instruments.begin(), scene.instruments.end(), takes_it);
+}
 
 std::string placeOf(const Scene& scene, const std::string& entry) {
   std::string place = scene.file;

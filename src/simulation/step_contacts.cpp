@@ -13,14 +13,6 @@ namespace {
 /// inside the tissue is then freed over some steps instead of by an explosion, and as fast at any step.
 constexpr double kRecoveryTime_s = 0.01;
 
-/// Time over which a surface leaves what its new triangles cut into; and, of an edge, how deep that is: less is what solves leave, more was there
-/// before.
-constexpr double kSettlingTime_s = 0.02;
-constexpr double kShallowest = 0.01;
-constexpr double kDeepest = 0.25;
-/// Of an edge: one more bisection or one less makes it some 1.3 times as long.
-constexpr double kGrown = 1.2;
-
 /// More of a static contact's slip than this share of an edge is no error of the solver any more and is let go.
 constexpr double kMostSlipPerEdge = 0.01;
 
@@ -95,16 +87,15 @@ void sumImpulsesOn(int tissue, const std::vector<SolvedContact>& contacts, const
 
 StepContacts::StepContacts(const std::vector<Tissue>& tissues, const InstrumentMotion& motion,
                            const FrictionTable& friction, const SurfaceEdges& edges)
-    : tissues_(tissues), motion_(motion), friction_(friction), edges_(edges), thickness_(tissues) {
+    : tissues_(tissues), motion_(motion), friction_(friction), edges_(edges), thickness_(tissues), settling_(tissues.size(), edges) {
   if (friction.dependsOnPressure()) pressure_.emplace(tissues);
-  settling_.resize(tissues.size());
 }
 
 void StepContacts::clear() {
   memory_.clear();
   if (pressure_) pressure_->clear();
   contacts_.clear();
-  settling_.assign(settling_.size(), {});
+  settling_.clear();
 }
 
 void StepContacts::begin(const ContactDetector& detector, const std::vector<NodalVectors>& x,
@@ -117,7 +108,7 @@ void StepContacts::begin(const ContactDetector& detector, const std::vector<Noda
   reaches_m_.resize(found.size());
   for (std::size_t c = 0; c < found.size(); ++c) reaches_m_[c] = motion_.longestTravel() + edges_.finer(found[c]);
   memory_.recall(found, reaches_m_, contacts_);
-  beginSettling(found);
+  settling_.begin(found);
 }
 
 void StepContacts::slideOn(const ContactDetector& detector, const std::vector<NodalVectors>& v, double dt) {
@@ -169,7 +160,7 @@ void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, doubl
     solution.states[c] = before.state;
   }
   land(solution.v, dt, rows);
-  for (Settling& one : settling_) one.depth_m = std::max(one.depth_m - one.speed_m_per_s * dt, 0.0);
+  settling_.advance(dt);
 }
 
 ContactBefore StepContacts::beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x,
@@ -239,45 +230,8 @@ void StepContacts::placeRow(std::size_t index, double dt, ContactRow& row) const
   row.normal_compliance = compliance / (dt * dt);
   // A sheet that is squeezed is no deeper than its force makes it.
   const double force = std::max(contact.R_WC.col(0).dot(contacts_[index].force_on_tissue_n), 0.0);
-  const double depth = row.gap_m < 0.0 ? std::max(-row.gap_m - settlingDepth(key), 0.0) : -row.gap_m;
+  const double depth = row.gap_m < 0.0 ? std::max(-row.gap_m - settling_.depth(key), 0.0) : -row.gap_m;
   row.required_u_n = std::min(depth / dt, half_extent / kRecoveryTime_s + compliance * force / dt);
-}
-
-void StepContacts::noteCells(int tissue) {
-  double finest_m = std::numeric_limits<double>::infinity();
-  for (const SolvedContact& solved : contacts_) {
-    const ContactKey& key = solved.contact.key;
-    if (key.tissue != tissue || key.instrument < 0 || solved.state == ContactState::kOpen) continue;
-    finest_m = std::min(finest_m, edges_.finer(solved.contact));
-  }
-  settling_[tissue].cell_m = std::isfinite(finest_m) ? finest_m : 0.0;
-}
-
-/// Where cells have grown under instruments. Between tissues a gap may be what squeezes a sheet.
-void StepContacts::beginSettling(const std::vector<Contact>& found) {
-  for (Settling& one : settling_) {
-    if (one.cell_m == 0.0) continue;
-    const auto tissue = static_cast<int>(&one - settling_.data());
-    double finest_m = std::numeric_limits<double>::infinity();
-    double deepest_m = 0.0;
-    for (const Contact& contact : found) {
-      if (contact.key.tissue != tissue || contact.key.instrument < 0) continue;
-      const double edge_m = edges_.finer(contact);
-      finest_m = std::min(finest_m, edge_m);
-      const double share = -contact.gap_m / edge_m;
-      if (share > kShallowest && share < kDeepest) deepest_m = std::max(deepest_m, -contact.gap_m);
-    }
-    if (finest_m > kGrown * one.cell_m && deepest_m > one.depth_m) {
-      one.depth_m = deepest_m;
-      one.speed_m_per_s = deepest_m / kSettlingTime_s;
-    }
-    one.cell_m = 0.0;
-  }
-}
-
-/// m, of a contact.
-double StepContacts::settlingDepth(const ContactKey& key) const {
-  return key.instrument < 0 ? 0.0 : settling_[key.tissue].depth_m;
 }
 
 std::optional<double> StepContacts::weakestNetForce(int tissue, const std::vector<Vector3>& impulses, double dt) {
@@ -343,13 +297,7 @@ void StepContacts::carry(StateArchive& archive, const std::vector<Instrument>& i
     carryContact(archive, solved);
     if (archive.isReading()) requireContact(archive, solved, instruments);
   });
-  for (Settling& one : settling_) {
-    archive.carry(one.depth_m);
-    archive.carry(one.speed_m_per_s);
-    archive.check(one.depth_m >= 0.0 && std::isfinite(one.depth_m) && one.speed_m_per_s >= 0.0 &&
-                      std::isfinite(one.speed_m_per_s),
-                  "a depth that no surface settles from");
-  }
+  settling_.carry(archive);
   if (!archive.isReading()) return;
   const auto ordered = [](const SolvedContact& a, const SolvedContact& b) { return a.contact.key < b.contact.key; };
   archive.check(std::is_sorted(contacts_.begin(), contacts_.end(), ordered), "contacts out of their order");

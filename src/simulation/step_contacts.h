@@ -13,6 +13,7 @@
 #include "simulation/friction_table.h"
 #include "simulation/instrument_motion.h"
 #include "simulation/sheet_thickness.h"
+#include "simulation/surface_settling.h"
 #include "tissue_contact/contact/contact_detector.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/simulation/solved_contact.h"
@@ -76,7 +77,7 @@ class StepContacts {
   /// @param triangles trianglesOfNodes() of it if friction depends on pressure; they are exchanged for those before.
   void renumber(int tissue, const std::vector<int>& to_new, TrianglesOfNodes& triangles);
   /// The mesh of a tissue is about to change: notes how fine it is under instruments, to see whether cells grow there.
-  void noteCells(int tissue);
+  void noteCells(int tissue) { settling_.noteCells(tissue, contacts_); }
   /// To be called once all meshes that change have been renumbered.
   void finishRenumbering();
 
@@ -97,8 +98,6 @@ class StepContacts {
   ContactBefore beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x, double last_dt) const;
   void land(const std::vector<NodalVectors>& v, double dt, std::vector<ContactRow>& rows);
   double& firstTouch(const ContactKey& key);
-  void beginSettling(const std::vector<Contact>& found);
-  double settlingDepth(const ContactKey& key) const;
   void requireContact(const StateArchive& archive, const SolvedContact& solved,
                       const std::vector<Instrument>& instruments) const;
   Vector3 slipOf(std::size_t contact, const ContactProblem& problem, const ContactSolution& solution) const;
@@ -115,14 +114,7 @@ class StepContacts {
   /// held contact, or what a contact without a history slid before it touched; each contact has one of them or none.
   std::vector<Vector2> u_besides_;
   double back_time_s_ = 0.0;  ///< over which slips are taken back
-  /// How deep a tissue's surface may be in instruments, since its cells have grown under them: larger triangles cut into what smaller ones fitted, and
-  /// pushed out within a step they met it with 1.7 times its force.
-  struct Settling {
-    double cell_m = 0.0;   ///< finest edge under instruments before the mesh changed in this step; 0: it has not
-    double depth_m = 0.0;  ///< that is left
-    double speed_m_per_s = 0.0;
-  };
-  std::vector<Settling> settling_;    ///< per tissue
+  SurfaceSettling settling_;
   std::vector<Patch> patches_;        ///< scratch of land()
   std::vector<double> touch_shares_;  ///< per contact, the same
   std::vector<NetImpulse> net_;       ///< scratch

@@ -71,6 +71,9 @@ struct Scene {
   AdvisorDescription advisor;
 };
 
+/// Whether an instrument of it takes its URDF from a parameter.
+bool takesUrdfFromParameter(const Scene& scene);
+
 /// "file:line: entry" for messages, the line being that of the nearest entry around it that the file has; without what
 /// the scene does not know.
 std::string placeOf(const Scene& scene, const std::string& entry);

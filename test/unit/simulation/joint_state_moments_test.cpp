@@ -119,6 +119,22 @@ TEST(JointStateMoments, TellsHowFarAJawIsAheadAndForHowLongItSaidNothing) {
   EXPECT_FALSE(player.idle_s(1));
 }
 
+TEST(JointStateMoments, APauseOfAllTopicsIsNoSilenceOfAJaw) {
+  const auto simulator = armAndJaw();
+  JointStatePlayer player(*simulator);
+  const auto both = [&](std::int64_t stamp_ns) {
+    player.push(1, jaw(stamp_ns, 0.001));
+    player.push(0, arm(stamp_ns, 0.0));
+  };
+  both(kSecond);
+  both(kSecond + 10 * kMillisecond);
+  player.push(0, arm(10 * kSecond, 0.0));  // the jaw's comes a little later
+  player.finish();
+  drain(player);
+  EXPECT_EQ(player.gaps(), 1);
+  EXPECT_EQ(player.idle_s(1), 0.0);
+}
+
 TEST(JointStateMoments, AJawThatTriggersGivesWrenchesOfItsOwn) {
   const auto simulator = blockTouchedBy(probe("a", "/a/measured_js, {topic: /a/jaw/measured_js, triggers: true}", 0.0));
   JointStatePlayer player(*simulator);

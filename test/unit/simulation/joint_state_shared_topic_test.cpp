@@ -176,6 +176,22 @@ TEST(JointStateSharedTopic, ARevoluteJointGoesOnOverTurnsThatItsDriverLeavesOut)
   expect_near(turned("2.9", {{10, -3.1}}), {-3.1});  // never all the way round
 }
 
+TEST(JointStateSharedTopic, ASavedStateKnowsTheTurnsThatWereLeftOut) {
+  Simulator simulator = crank("1", "revolute", "3.14");
+  JointStatePlayer player(simulator);
+  std::int64_t stamp = kSecond;
+  const auto said = [&](JointStatePlayer& to, double angle) {
+    to.push(0, {stamp += 10 * kMillisecond, {"turn"}, {angle}});
+    drain(to);
+  };
+  for (const double angle : {3.1, -3.1}) said(player, angle);
+  Simulator other = crank("1", "revolute", "3.14");
+  JointStatePlayer restored(other);
+  restored.restoreState(player.saveState());
+  said(restored, -3.0);
+  EXPECT_NEAR(other.jointPositions(0)[0], 2.0 * M_PI - 3.0, 1e-12);
+}
+
 TEST(JointStateSharedTopic, AWholeTurnOfAGearedJointIsNoneOfItsGear) {
   Simulator simulator = crank("0.1");
   JointStatePlayer player(simulator);
