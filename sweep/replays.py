@@ -139,7 +139,7 @@ def read_results(file):
     try:
         stream = open(file, encoding="utf-8")
     except FileNotFoundError:  # a job whose sweep was killed has ended meanwhile
-        stream = open(file.removesuffix(".part"), encoding="utf-8")
+        stream = open(file[:-len(".part")], encoding="utf-8")
     with stream:
         for line in stream:
             if not line.endswith("\n"):

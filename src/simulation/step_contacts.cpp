@@ -87,7 +87,12 @@ void sumImpulsesOn(int tissue, const std::vector<SolvedContact>& contacts, const
 
 StepContacts::StepContacts(const std::vector<Tissue>& tissues, const InstrumentMotion& motion,
                            const FrictionTable& friction, const SurfaceEdges& edges)
-    : tissues_(tissues), motion_(motion), friction_(friction), edges_(edges), thickness_(tissues), settling_(tissues.size(), edges) {
+    : tissues_(tissues),
+      motion_(motion),
+      friction_(friction),
+      edges_(edges),
+      thickness_(tissues),
+      settling_(tissues.size(), edges) {
   if (friction.dependsOnPressure()) pressure_.emplace(tissues);
 }
 
