@@ -139,6 +139,8 @@ def read_results(file):
     try:
         stream = open(file, encoding="utf-8")
     except FileNotFoundError:  # a job whose sweep was killed has ended meanwhile
+        if not file.endswith(".part"):
+            raise
         stream = open(file[:-len(".part")], encoding="utf-8")
     with stream:
         for line in stream:
