@@ -22,7 +22,7 @@ Numbers toNumbers(const py::handle& value, const std::string& what) {
   const std::string kinds = "biuf";
   if (!any || (any.size() > 0 && kinds.find(any.dtype().kind()) == std::string::npos)) {
     throw py::type_error(what + " must be real numbers (a list of them, or an array), not " +
-                         std::string(py::str(py::type::of(value))));
+                         std::string(py::str(value.attr("__class__"))));
   }
   if (any.size() > kMostNumbers) {
     throw std::invalid_argument(what + " has " + std::to_string(any.size()) + " numbers; up to " +

@@ -18,7 +18,7 @@ namespace {
 
 /// Text, or what os.fspath() makes of another thing.
 std::string pathOf(const py::object& path) {
-  return py::module_::import("os").attr("fspath")(path).cast<std::string>();
+  return py::module::import("os").attr("fspath")(path).cast<std::string>();
 }
 
 const char* stopText(StopReason stop) {
@@ -34,7 +34,7 @@ const char* stopText(StopReason stop) {
 }
 
 /// Of a class that Python cannot make: what its __new__() alone would make has no value.
-void refuseNew(const py::module_& module, const char* name) {
+void refuseNew(const py::module& module, const char* name) {
   const py::cpp_function refuse([text = std::string(name)](const py::args&, const py::kwargs&) -> py::object {
     throw py::type_error("a " + text + " is made by the functions of tissue_contact alone");
   });
@@ -42,11 +42,11 @@ void refuseNew(const py::module_& module, const char* name) {
 }
 
 py::object refusePickle(const py::object& self, int /*protocol*/) {
-  throw py::type_error("cannot pickle " + std::string(py::str(py::type::of(self))) + ": send Simulator.save_state()");
+  throw py::type_error("cannot pickle " + std::string(py::str(self.attr("__class__"))) + ": send Simulator.save_state()");
 }
 
 py::object remake(const LoadedScene& loaded) {
-  const py::module_ helpers = py::module_::import("tissue_contact._helpers");  // pickle knows Python's functions alone
+  const py::module helpers = py::module::import("tissue_contact._helpers");  // pickle knows Python's functions alone
   if (loaded.yaml)
     return py::make_tuple(helpers.attr("parse_scene_again"),
                           py::make_tuple(*loaded.yaml, loaded.file, loaded.settings));
@@ -67,7 +67,7 @@ auto bound(Result (PythonSimulator::*function)(Arguments...) const) {
   };
 }
 
-void bindScene(py::module_& module) {
+void bindScene(py::module& module) {
   const auto names = [](const auto& all) {
     std::vector<std::string> found;
     found.reserve(all.size());
@@ -108,7 +108,7 @@ void bindScene(py::module_& module) {
       "As load_scene, from text. file: its name in messages, and where relative paths in it begin.");
 }
 
-void bindReport(py::module_& module) {
+void bindReport(py::module& module) {
   py::class_<StepReport>(module, "StepReport", "How the last advance went.")
       .def_readonly("substeps", &StepReport::substeps, "Implicit steps it took.")
       .def_readonly("advanced_s", &StepReport::advanced_s, "Its duration, s.")
@@ -148,7 +148,7 @@ void bindReport(py::module_& module) {
   refuseNew(module, "StepReport");
 }
 
-void bindMemory(py::module_& module) {
+void bindMemory(py::module& module) {
   // NOLINTNEXTLINE(bugprone-unused-raii): what is left is in the module
   py::class_<NodalView, std::shared_ptr<NodalView>>(module, "_Memory", "Keeps alive what an array shows.");
   const auto rows = [](const auto& all, const std::shared_ptr<Topology>& self) {
@@ -176,7 +176,7 @@ void bindMemory(py::module_& module) {
   refuseNew(module, "Topology");
 }
 
-void bindSimulator(py::module_& module) {
+void bindSimulator(py::module& module) {
   const auto make = [](const LoadedScene& loaded, const py::object& urdf, const py::object& frames) {
     const SceneEnvironment environment = environmentOf(loaded.scene, urdf.is_none() ? "" : pathOf(urdf), frames);
     const py::gil_scoped_release no_gil;
@@ -190,7 +190,7 @@ void bindSimulator(py::module_& module) {
                                           "they were taken at: positions() and velocities() show the simulator's "
                                           "memory without a copy, and it leaves that to them\n"
                                           "when it moves on. Names that are not in the scene raise ValueError.")
-      .def(py::init(make), py::arg("scene"), py::kw_only(), py::arg("urdf") = py::none(),
+      .def(py::init(make), py::arg("scene"), py::arg("urdf") = py::none(),
            py::arg("frames") = py::none(),
            "urdf: file for scenes that take their URDF from a parameter. frames: {tf frame: 4 x 4 pose in the world}.")
       .def_property_readonly("instruments", bound(&Self::instruments), "Names, in the order of the scene.")

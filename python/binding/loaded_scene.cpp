@@ -23,7 +23,7 @@ namespace py = pybind11;
 template <typename Result, typename... Arguments>
 Result helper(const char* name, const Arguments&... arguments) {
   const py::gil_scoped_acquire gil;
-  return py::module_::import("tissue_contact._helpers").attr(name)(arguments...).template cast<Result>();
+  return py::module::import("tissue_contact._helpers").attr(name)(arguments...).template cast<Result>();
 }
 
 std::string packageDirectory(const std::string& package) { return helper<std::string>("package_directory", package); }
