@@ -25,7 +25,11 @@ constexpr std::size_t kFrictionBytes = sizeof(CoulombLaw) + sizeof(bool)  // law
                                        + 2 * sizeof(ContactState);        // state in the solution and kept
 static_assert(kFrictionBytes <= 256, "friction may take 256 bytes per contact");
 
+#if __GLIBC_PREREQ(2, 33)
 std::size_t heapBytes() { return mallinfo2().uordblks + mallinfo2().hblkhd; }
+#else  // Ubuntu 20.04; up to 2 GiB
+std::size_t heapBytes() { return static_cast<std::size_t>(mallinfo().uordblks) + mallinfo().hblkhd; }
+#endif
 
 std::string sceneText(int cells, const char* relaxation) {
   const std::string across = std::to_string(cells);

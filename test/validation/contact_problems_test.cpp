@@ -42,7 +42,7 @@ VectorX storedVector(const std::string& problem, const std::string& name, Eigen:
   std::string line;
   while (std::getline(file, line) && line != name) continue;
   VectorX values(size);
-  for (double& value : values) file >> value;
+  for (Eigen::Index i = 0; i < size; ++i) file >> values[i];
   EXPECT_TRUE(file) << problem << ": no answer, or " << name << " is cut short";
   return values;
 }
