@@ -14,6 +14,7 @@
 #include "ros/conversions.h"
 #include "ros/publish/mesh_messages.h"
 #include "ros/publish/scene_snapshot.h"
+#include "serialized.h"
 #include "support/text_scene.h"
 
 namespace tissue_contact {
@@ -70,7 +71,7 @@ struct Subscriber {
     EXPECT_EQ(message.tissue, topology.tissue);
     EXPECT_EQ(message.header.frame_id, topology.header.frame_id);
     EXPECT_LE(topology.header.stamp, message.header.stamp);
-    EXPECT_EQ(message.positions, topology.rest_positions);
+    EXPECT_EQ(serialized(message.positions), serialized(topology.rest_positions));
   }
 
   std::vector<std::string> told;
@@ -158,7 +159,7 @@ TEST(Conversions, TopologyAndMeshCarryTheirRevision) {
   TissueMesh message;
   fillMesh(*snapshotOf({7}, kSecond), 0, message);
   EXPECT_EQ(message.revision, 7U);
-  EXPECT_EQ(message.positions, topology.rest_positions);
+  EXPECT_EQ(serialized(message.positions), serialized(topology.rest_positions));
 }
 
 TEST(MeshMessages, TopologyOfAMeshLeavesBeforeItAndOnce) {

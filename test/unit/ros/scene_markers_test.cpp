@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "ros/conversions.h"
+#include "serialized.h"
 #include "support/text_scene.h"
 
 namespace tissue_contact {
@@ -165,7 +166,7 @@ TEST(SceneMarkers, TheForceStandsAtTheTipInTheColorOfItsState) {
     if (contact.state == ContactState::kKinetic) slides_n += contact.force_on_tissue_n.norm();
   }
   ASSERT_NE(held_n, slides_n);
-  EXPECT_EQ(text.color, slides_n > held_n ? kineticColor() : staticColor());
+  EXPECT_EQ(serialized(text.color), serialized(slides_n > held_n ? kineticColor() : staticColor()));
   const Vector3 tip =
       simulator.linkPoses(0)[static_cast<std::size_t>(simulator.instruments()[0].tipLink())].translation();
   const double away = (Vector3(text.pose.position.x, text.pose.position.y, text.pose.position.z) - tip).norm();
