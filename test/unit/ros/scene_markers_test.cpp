@@ -356,9 +356,9 @@ TEST(ScaleColor, FallsInLightnessAndStaysInRange) {
     last = lightness;
     EXPECT_EQ(c.a, 1.0F);
   }
-  EXPECT_EQ(scaleColor(7.0), scaleColor(1.0));
-  EXPECT_EQ(scaleColor(-1.0), scaleColor(0.0));
-  EXPECT_EQ(scaleColor(std::numeric_limits<double>::quiet_NaN()), scaleColor(0.0));
+  EXPECT_EQ(serialized(scaleColor(7.0)), serialized(scaleColor(1.0)));
+  EXPECT_EQ(serialized(scaleColor(-1.0)), serialized(scaleColor(0.0)));
+  EXPECT_EQ(serialized(scaleColor(std::numeric_limits<double>::quiet_NaN())), serialized(scaleColor(0.0)));
 }
 
 TEST(Conversions, StampsKeepEveryNanosecond) {
