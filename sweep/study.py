@@ -176,8 +176,10 @@ class LatinHypercube:
 
     def settings(self):
         """[[(key, value text)]], one list for each sample."""
-        from scipy.stats import qmc  # takes a second, which only who wants it waits for
-        points = qmc.LatinHypercube(len(self.ranges), seed=self.seed).random(self.samples)
+        import numpy  # only who wants it waits for it
+        random = numpy.random.default_rng(self.seed)  # scipy.stats.qmc is of SciPy 1.7, and Ubuntu 20.04 has 1.3
+        strata = numpy.array([random.permutation(self.samples) for _ in self.ranges])
+        points = ((strata + random.random(strata.shape)) / self.samples).T
         return [[(key, repr(float(spaced(low, high, float(part), spacing)))) for part, (key, low, high, spacing) in zip(point, self.ranges)]
                 for point in points]
 

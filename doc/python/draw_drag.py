@@ -18,7 +18,7 @@ import matplotlib.pyplot as plt  # noqa: E402: after the choice of what draws
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # noqa: E402
 
 NEAR_M = 0.022  # what the close view shows around the tip
-COLOURS = plt.get_cmap("turbo")
+COLOURS = plt.get_cmap("turbo" if "turbo" in plt.colormaps() else "jet")  # Matplotlib 3.1 of Ubuntu 20.04
 
 
 def mesh_at(scene_file, bag_file, seconds):

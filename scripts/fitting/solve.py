@@ -4,7 +4,7 @@ import dataclasses
 import time
 
 import numpy
-from scipy import optimize, stats
+from scipy import optimize
 
 from fitting import FitError
 
@@ -99,8 +99,9 @@ def set_scales(problem, point):
 def starts(problem, count, seed):
     """The scene's own point, then a Latin hypercube."""
     own = [parameter.part(parameter.start) for parameter in problem.parameters]
-    cube = stats.qmc.LatinHypercube(len(own), seed=seed).random(count) if count else []
-    return [numpy.clip(own, 0.0, 1.0)] + list(cube)
+    random = numpy.random.default_rng(seed)  # scipy.stats.qmc is of SciPy 1.7, and Ubuntu 20.04 has 1.3
+    strata = numpy.array([random.permutation(count) for _ in own]).reshape(len(own), count)
+    return [numpy.clip(own, 0.0, 1.0)] + list(((strata + random.random(strata.shape)) / max(count, 1)).T)
 
 
 def _require_contact(problem, point):

@@ -86,7 +86,8 @@ def test_closing_jaws(tmp_path):
     squeeze, most, lift = [float(word) for word in limited.replace(",", "").split() if word.replace(".", "", 1).isdigit()][-3:]
     assert 0.11 < squeeze < most < 1.1 * squeeze  # never more on the way
     assert 0.028 < lift < 0.035
-    assert float(recorded.split()[-2]) < 0.005  # lost
+    # Crushed on the way; whether it is lost then (as with GCC 12) or not (GCC 9) is a matter of round-off.
+    assert float(recorded.replace(",", "").split(" N at most")[0].split()[-1]) > 10.0 * squeeze
     assert (tmp_path / "jaws.png").stat().st_size > 10000
 
 

@@ -32,6 +32,18 @@ constexpr double kGrowth = 0.5;  // length that cells gain per length away from 
       "or fill the surface elsewhere and name the .msh or .vtk file");
 }
 
+/// gmsh 4.4, of Ubuntu 20.04, does not know what the script asks for, and crashes where it is told so in its own words.
+void refuseOld(const std::string& version) {
+  std::istringstream numbers(version);
+  int major = 0;
+  int minor = 0;
+  char dot = 0;
+  if (!(numbers >> major >> dot >> minor) || std::make_pair(major, minor) >= std::make_pair(4, 7)) return;
+  throw std::invalid_argument("gmsh " + version +
+                              " is too old to fill a surface with tetrahedra; 4.7 or later does (pip3 install gmsh, or "
+                              "gmsh.info), or fill the surface elsewhere and name the .msh or .vtk file");
+}
+
 /// The same surface, each triangle in three around its centroid.
 TriangleMesh inThirds(const TriangleMesh& surface) {
   TriangleMesh parts;
@@ -119,6 +131,7 @@ std::string gmshVersion() {
   if (!end.well || version.empty() || version.size() > 64) {
     throw std::invalid_argument("the program gmsh does not run: `gmsh --version` says " + inQuotes(version));
   }
+  refuseOld(version);
   return version;
 }
 

@@ -7,12 +7,15 @@
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
+#include <stdexcept>
+#include <string>
 
 #include "mesh/fill/crossing_triangles.h"
 #include "mesh/fill/mesh_quality.h"
 #include "mesh/fill/run_program.h"
 #include "support/refusal.h"
 #include "support/temporary_directory.h"
+#include "tissue_contact/mesh/gmsh_version.h"
 #include "tissue_contact/mesh/triangle_mesh.h"
 
 namespace tissue_contact {
@@ -97,6 +100,12 @@ class FillSurface : public testing::Test {
   void SetUp() override {
     if (!runProgram({"gmsh", "--version"}, directory_.path().string(), {60, std::size_t{8} << 30U}).found) {
       GTEST_SKIP() << "the program gmsh is not installed";
+    }
+    try {
+      gmshVersion();
+    } catch (const std::invalid_argument& error) {
+      if (std::string(error.what()).find("too old") != std::string::npos) GTEST_SKIP() << error.what();
+      throw;
     }
   }
 
@@ -333,6 +342,18 @@ TEST_F(FillSurface, WithoutGmshSaysHowToGetIt) {
   const PathOfPrograms path(directory_.path().string());
   const std::string message = refusalOf(ball(20.0));
   expectContains(message, {"gmsh", "not installed", "apt-get install gmsh"});
+}
+
+TEST_F(FillSurface, AnOldGmshIsRefusedAndWhereToGetAnotherTold) {
+  const auto refusal = [&](const std::string& version) {
+    const std::string program = directory_.write("gmsh", "#!/bin/sh\necho " + version + "\n");
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    const PathOfPrograms path(directory_.path().string() + ":/usr/bin:/bin");
+    return refusalOf(ball(20.0));
+  };
+  expectContains(refusal("4.4.1"), {"gmsh 4.4.1 is too old", "4.7 or later", "pip3 install gmsh"});
+  expectContains(refusal("3.0.6"), {"gmsh 3.0.6 is too old"});
+  EXPECT_EQ(refusal("4.13.1").find("too old"), std::string::npos);
 }
 
 // A program that exports once more while gmsh runs: neither version may be kept as the other.
