@@ -30,9 +30,10 @@ TEST(RandomProblems, PredictorCorrectorReachesTheResidual) {
       DelassusSolution solution;
       const DelassusReport report = solveDelassus(problem, solver(SolverMethod::kPredictorCorrector, 1e-8), solution);
       solved += report.converged ? 1 : 0;
-      // Converged or not, every impulse lies in its cone.
-      EXPECT_LE(report.residuals.cone_violation_n_s, 1e-12 * solution.r.norm());
-      EXPECT_EQ(report.residuals.adhesion_n_s, 0.0);
+      // Converged or not, every impulse lies in its cone: right at sticking to a billionth (SlidingSearch), which compilers
+      // differ in, else to round-off.
+      EXPECT_LE(report.residuals.cone_violation_n_s, 1e-9 * solution.r.norm());
+      EXPECT_LE(report.residuals.adhesion_n_s, 1e-15 * solution.r.norm());
     }
     // Near mu = 1.5 a few small problems have no answer that sweeps are attracted by.
     EXPECT_GE(solved, size.problems - size.problems / 50) << size.contacts << " contacts";
