@@ -280,7 +280,7 @@ class SweepTest(unittest.TestCase):
         self.assertIn("1 variants, 1 of them done before", self.sweep())
         os.mkdir(self.path("bin"))
         with open(self.path("bin", "gmsh"), "w", encoding="utf-8") as stream:
-            stream.write('#!/bin/sh\n[ "$1" = --version ] && echo 0.0.1 || exec %s "$@"\n' % shutil.which("gmsh"))
+            stream.write('#!/bin/sh\n[ "$1" = --version ] && echo 99.0.1 || exec %s "$@"\n' % shutil.which("gmsh"))
         os.chmod(self.path("bin", "gmsh"), 0o755)
         with mock.patch.dict(os.environ, PATH=self.path("bin") + os.pathsep + os.environ["PATH"]):
             self.assertIn("1 variants, 0 of them done before", self.sweep())
