@@ -73,7 +73,8 @@ def draw_mesh(axes, triangles, moved, most_m, tip, ball_m, force, arrow_m, azimu
     corners = np.concatenate([triangles.reshape(-1, 3), [tip, end]])
     low, high = corners.min(axis=0), corners.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(high - low, zoom=1.3)
+    if hasattr(axes, "set_box_aspect"):  # from Matplotlib 3.3 on
+        axes.set_box_aspect(high - low, zoom=1.3)
     axes.view_init(elev=18.0, azim=azimuth)
     axes.set_axis_off()
 

@@ -17,9 +17,7 @@ namespace tissue_contact::python {
 namespace {
 
 /// Text, or what os.fspath() makes of another thing.
-std::string pathOf(const py::object& path) {
-  return py::module::import("os").attr("fspath")(path).cast<std::string>();
-}
+std::string pathOf(const py::object& path) { return py::module::import("os").attr("fspath")(path).cast<std::string>(); }
 
 const char* stopText(StopReason stop) {
   switch (stop) {
@@ -42,7 +40,8 @@ void refuseNew(const py::module& module, const char* name) {
 }
 
 py::object refusePickle(const py::object& self, int /*protocol*/) {
-  throw py::type_error("cannot pickle " + std::string(py::str(self.attr("__class__"))) + ": send Simulator.save_state()");
+  throw py::type_error("cannot pickle " + std::string(py::str(self.attr("__class__"))) +
+                       ": send Simulator.save_state()");
 }
 
 py::object remake(const LoadedScene& loaded) {
@@ -190,8 +189,7 @@ void bindSimulator(py::module& module) {
                                           "they were taken at: positions() and velocities() show the simulator's "
                                           "memory without a copy, and it leaves that to them\n"
                                           "when it moves on. Names that are not in the scene raise ValueError.")
-      .def(py::init(make), py::arg("scene"), py::arg("urdf") = py::none(),
-           py::arg("frames") = py::none(),
+      .def(py::init(make), py::arg("scene"), py::arg("urdf") = py::none(), py::arg("frames") = py::none(),
            "urdf: file for scenes that take their URDF from a parameter. frames: {tf frame: 4 x 4 pose in the world}.")
       .def_property_readonly("instruments", bound(&Self::instruments), "Names, in the order of the scene.")
       .def_property_readonly("tissues", bound(&Self::tissues), "Names, in the order of the scene.")
