@@ -6,8 +6,11 @@ import json
 import math
 import os
 import re
+import sys
 
 import yaml
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.realpath(__file__))), "scripts"))
 
 MOST_BYTES = 1 << 20
 MOST_VARIANTS = 1000000
@@ -176,10 +179,8 @@ class LatinHypercube:
 
     def settings(self):
         """[[(key, value text)]], one list for each sample."""
-        import numpy  # only who wants it waits for it
-        random = numpy.random.default_rng(self.seed)  # scipy.stats.qmc is of SciPy 1.7, and Ubuntu 20.04 has 1.3
-        strata = numpy.array([random.permutation(self.samples) for _ in self.ranges])
-        points = ((strata + random.random(strata.shape)) / self.samples).T
+        from fitting.latin_hypercube import latin_hypercube  # loads NumPy, which only who wants it waits for
+        points = latin_hypercube(self.samples, len(self.ranges), self.seed)
         return [[(key, repr(float(spaced(low, high, float(part), spacing)))) for part, (key, low, high, spacing) in zip(point, self.ranges)]
                 for point in points]
 

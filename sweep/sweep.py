@@ -6,6 +6,7 @@ import argparse
 import contextlib
 import fcntl
 import hashlib
+import importlib.metadata
 import json
 import math
 import os
@@ -224,16 +225,12 @@ class Progress:
             sys.stderr.flush()
 
 
-def snakemake_version():
-    said = subprocess.run(["/usr/bin/python3", "-m", "snakemake", "--version"], stdout=subprocess.PIPE, universal_newlines=True, check=False).stdout
-    return tuple(int(number) for number in re.findall(r"\d+", said)[:2])
-
-
 def snakemake(folder, jobs, profile):
     """Runs the planned jobs; ends with all of them when it is told to."""
     command = ["/usr/bin/python3", "-m", "snakemake", "--snakefile", os.path.join(HERE, "Snakefile"), "--directory", folder.path, "--nolock",
                "--keep-going"]
-    if snakemake_version() >= (7, 8):  # older ones go by times alone, and know no such options
+    version = tuple(map(int, re.findall(r"\d+", importlib.metadata.version("snakemake"))[:2]))
+    if version >= (7, 8):  # older ones go by times alone, and know no such options
         command += ["--rerun-triggers", "mtime", "--scheduler", "greedy"]
     command += ["--profile", profile] if profile else ["--cores", str(jobs)]
     with open(folder.file(LOG), "w", encoding="utf-8") as log:

@@ -3,7 +3,7 @@
 that close on a sheet, and on a gut, an open ring pressed onto itself, jaws of a PSM on flaps. Mean and RMS about it of what the last .2 s hold, N. Two or
 three minutes.
 
-usage, after `source scripts/env.bash`: benchmark/drivers/touching_tissues.py [--only WORD] [--step S] [--iterations N] [--tolerance T] [--relaxation R]
+usage, after `source scripts/env.bash`: benchmark/drivers/touching_tissues.py [--only WORD] [--step S] [--iterations N] [--tolerance T] [--relaxation R] [--compare]
 """
 import argparse
 import math
@@ -18,8 +18,8 @@ BOX = "<link name='%s'><collision><geometry><box size='%g 0.002 %g'/></geometry>
 JOINT = ("<joint name='%s_joint' type='prismatic'><parent link='base'/><child link='%s'/><origin xyz='0 %g 0'/><axis xyz='%s'/>"
          "<limit lower='-1' upper='1' effort='1' velocity='1'/></joint>")
 PROBE = "<robot name='r'><link name='base'/>" + BALL + JOINT % ("tip", "tip", 0, "0 0 1") + "</robot>"
-STEP_S = 0.001
-SETTINGS = {}  # of the solver, in place of its defaults
+SETTINGS = {"step.max_step_s": 0.001}  # of all scenes
+EXACT = {"solver.relaxation": "cholesky", "solver.tolerance": 1e-7, "solver.iterations": 500}
 DATA = os.environ.get("TISSUE_CONTACT_SHARED_DATA") or os.path.join(os.path.dirname(os.path.realpath(__file__)), "../../../shared/data")
 PSM = os.path.join(DATA, "dvrk_psm", "psm2_caudier.urdf")
 TOOL = "PSM2_tool_wrist_caudier"
@@ -36,18 +36,14 @@ def material(young_pa, nu=0.4, mass_per_s=20):
             "    damping: {stiffness_s: 0.003, mass_per_s: %g}\n" % (young_pa, nu, mass_per_s))
 
 
-def build(text, urdf=""):
-    scene = tc.parse_scene(text, set={"step.max_step_s": STEP_S, **{"solver." + key: value for key, value in SETTINGS.items()}})
-    return tc.Simulator(scene, urdf=urdf) if urdf else tc.Simulator(scene)
+def build(text, urdf=None):
+    return tc.Simulator(tc.parse_scene(text, set=SETTINGS), urdf=urdf)
 
 
-def simulator(tissues, urdf, links, tissue, base_m, more="", friction="", pair="", x_m=0.0):
+def simulator(tissues, urdf, links, tissue, base_m, more="", friction="", pair=(), x_m=0.0):
     instrument = ("  - {name: tool, robot_description: tool, tip_link: base, contact_links: [%s], joint_state_topics: [/js], "
                   "base_pose: {position_m: [%g, 0, %g]}%s}\n" % (links, x_m, base_m, more))
-    if "name: bed" in tissues:
-        pairs = "tissue_pairs: [{tissue: bed, other: layer}]\n"
-    else:
-        pairs = "tissue_pairs: [{tissue: %s, other: %s}]\n" % (pair, pair) if pair else ""
+    pairs = "tissue_pairs: [{tissue: %s, other: %s}]\n" % pair if pair else ""
     text = ("gravity_m_per_s2: [0, 0, %g]\ntissues:\n" % (-9.81 if "name: bed" in tissues else 0) + tissues + "instruments:\n" + instrument + pairs +
             "friction:\n" + friction + "  - {instrument: tool, tissue: %s, static: 0.5, kinetic: 0.4}\n" % tissue)
     with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
@@ -57,23 +53,23 @@ def simulator(tissues, urdf, links, tissue, base_m, more="", friction="", pair="
 
 
 def held(model, start, end, move_s, rest_s, force):
-    """`force` in each of the last .2 s; the joints go from start to end in move_s."""
+    """`force` at the end of each step, and how many of them were not converged; the joints go from start to end in move_s."""
+    step_s = SETTINGS["step.max_step_s"]
     model.place("tool", start)
     found, missed = [], 0
-    for k in range(1, round((move_s + rest_s) / STEP_S) + 1):
-        share = min(k * STEP_S / move_s, 1.0)
-        model.advance(STEP_S, {"tool": [a + (b - a) * share for a, b in zip(start, end)]})
+    for k in range(1, round((move_s + rest_s) / step_s) + 1):
+        share = min(k * step_s / move_s, 1.0)
+        model.advance(step_s, {"tool": [a + (b - a) * share for a, b in zip(start, end)]})
         missed += not model.report().converged
         found.append(force(model))
-    last = np.array(found[-round(0.2 / STEP_S):])
-    return "%9.4f +- %.4f   %4d steps of %d not converged" % (last.mean(), last.std(), missed, len(found))
+    return np.array(found), missed
 
 
 def on_layer(shape, top_m, young_pa, bed_pa, depth_m, bed_cells="[8, 8, 5]", friction=""):
     tissues = ("  - name: bed\n    block: {size_m: [0.04, 0.04, 0.02], cells: %s}\n" % bed_cells + material(bed_pa, mass_per_s=5) +
                "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n  - name: layer\n    " + shape + material(young_pa, mass_per_s=5))
     start = [top_m + 0.005 - 0.03]
-    return held(simulator(tissues, PROBE, "tip", "layer", 0.03, friction=friction), start, [start[0] - depth_m], 0.2, 0.4,
+    return held(simulator(tissues, PROBE, "tip", "layer", 0.03, friction=friction, pair=("bed", "layer")), start, [start[0] - depth_m], 0.2, 0.4,
                 lambda model: model.wrench("tool", frame="world")[2])
 
 
@@ -112,7 +108,7 @@ def tube(file, radius_m=0.006, length_m=0.05, around=24, along=30):
 def on_gut(file, distance_m, more=""):
     tissues = ("  - name: gut\n    shell: {file: %s, thickness_m: 0.0015}\n" % file + material(5e4, 0.45) +
                "    fixed: [{plane: {point_m: [-0.0249, 0, 0], normal: [1, 0, 0]}}, {plane: {point_m: [0.0249, 0, 0], normal: [-1, 0, 0]}}]\n")
-    return held(simulator(tissues, jaws(0.006, 0.02), "a, b", "gut", 0.0, more, pair="gut"), [0.008] * 2, [0.5 * distance_m] * 2, 0.6, 0.6, squeeze)
+    return held(simulator(tissues, jaws(0.006, 0.02), "a, b", "gut", 0.0, more, pair=("gut", "gut")), [0.008] * 2, [0.5 * distance_m] * 2, 0.6, 0.6, squeeze)
 
 
 def on_flaps(model, law, count, half_angle_rad, limit_n_m=0.0):
@@ -161,7 +157,7 @@ def on_ring(file, down_m):
     tissues = ("  - name: ring\n    mesh: {file: %s}\n" % file + material(1e4, 0.45, mass_per_s=5) +
                "    fixed: [{plane: {point_m: [0, 0, -0.0105], normal: [0, 0, 1]}}]\n")
     start = [0.0175]
-    return held(simulator(tissues, PROBE, "tip", "ring", 0.0, pair="ring", x_m=0.004), start, [start[0] - 0.0005 - down_m], 0.4, 0.4,
+    return held(simulator(tissues, PROBE, "tip", "ring", 0.0, pair=("ring", "ring"), x_m=0.004), start, [start[0] - 0.0005 - down_m], 0.4, 0.4,
                 lambda model: model.wrench("tool", frame="world")[2])
 
 
@@ -170,7 +166,7 @@ def compliant(limit_n):
 
 
 def rows():
-    """Name and what gives its line, of each scene."""
+    """Name, and what held() gives, of each scene."""
     sheet = "sheet: {size_m: [0.03, 0.03], cells: [%d, %d], thickness_m: %g}\n    pose: {position_m: [0, 0, 0.0202]}\n"
     block = "block: {size_m: [0.03, 0.03, 0.003], cells: [%d, %d, %d]}\n    pose: {position_m: [0, 0, 0.02]}\n"
     stuck = "  - {tissue: bed, other_tissue: layer, static: 0.4, kinetic: 0.3}\n"
@@ -208,19 +204,34 @@ def rows():
                        lambda law=law, count=count, half=half_angle_rad, limit=limit_n_m: on_flaps(PSM, law, count, half, limit))
 
 
+def line(scene, compare):
+    found, missed = scene()
+    last = found[-round(0.2 / SETTINGS["step.max_step_s"]):]
+    text = "%9.4f +- %.4f   %4d steps of %d not converged" % (last.mean(), last.std(), missed, len(found))
+    if not compare:
+        return text
+    own = dict(SETTINGS)
+    SETTINGS.update(EXACT)
+    exact, left = scene()
+    SETTINGS.clear()
+    SETTINGS.update(own)
+    return text + "   off by %.2g %% (%d)" % (100.0 * np.linalg.norm(found - exact) / np.linalg.norm(exact), left)
+
+
 def main():
-    global STEP_S
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n", maxsplit=1)[0], formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="scenes whose name has this in it")
+    parser.add_argument("--compare", action="store_true", help="how far off forces are in all steps, RMS over RMS, from those of steps solved to 1e-7 "
+                        "by Cholesky (how many of these were not)")
     parser.add_argument("--step", type=float, default=0.001, help="s")
     for key in ("iterations", "tolerance", "relaxation"):
         parser.add_argument("--" + key, help="solver." + key + " of the scenes")
-    arguments = vars(parser.parse_args())
-    STEP_S = arguments["step"]
-    SETTINGS.update({key: arguments[key] for key in ("iterations", "tolerance", "relaxation") if arguments[key]})
-    for name, line in rows():
-        if arguments["only"] in name:
-            print("%-40s %s" % (name, line()), flush=True)
+    arguments = parser.parse_args()
+    SETTINGS["step.max_step_s"] = arguments.step
+    SETTINGS.update({"solver." + key: vars(arguments)[key] for key in ("iterations", "tolerance", "relaxation") if vars(arguments)[key]})
+    for name, scene in rows():
+        if arguments.only in name:
+            print("%-40s %s" % (name, line(scene, arguments.compare)), flush=True)
 
 
 if __name__ == "__main__":

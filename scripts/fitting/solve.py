@@ -7,6 +7,7 @@ import numpy
 from scipy import optimize
 
 from fitting import FitError
+from fitting.latin_hypercube import latin_hypercube
 
 FIRST_SCALE = 0.05  # of the peak force, until residuals give it
 LEAST_SCALE = 1e-4  # of the peak force: what a run's solver leaves, see SOLVER in forward.py
@@ -99,9 +100,7 @@ def set_scales(problem, point):
 def starts(problem, count, seed):
     """The scene's own point, then a Latin hypercube."""
     own = [parameter.part(parameter.start) for parameter in problem.parameters]
-    random = numpy.random.default_rng(seed)  # scipy.stats.qmc is of SciPy 1.7, and Ubuntu 20.04 has 1.3
-    strata = numpy.array([random.permutation(count) for _ in own]).reshape(len(own), count)
-    return [numpy.clip(own, 0.0, 1.0)] + list(((strata + random.random(strata.shape)) / max(count, 1)).T)
+    return [numpy.clip(own, 0.0, 1.0)] + list(latin_hypercube(count, len(own), seed))
 
 
 def _require_contact(problem, point):

@@ -128,7 +128,7 @@ bool ReplayFindings::Solved::atLeast(double share) const {
 }
 
 // A step that is cut short leaves contacts static that would slip if it were solved to the end (config/two_psm.yaml held a flap so with a coefficient of
-// friction with which it slips), and slender tissue behind: an open ring that is bent onto itself erred by 6 % in steps of 5 ms, by 30 % in 20 ms.
+// friction with which it slips), and slender tissue behind (doc/notes/method.md, "A C-shape").
 void ReplayFindings::summarizeUnsolved() const {
   constexpr double kSmallShare = 0.05;  // of grips: one that slips is lost
   constexpr double kLargeShare =

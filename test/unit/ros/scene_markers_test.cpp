@@ -128,8 +128,8 @@ TEST(SceneMarkers, FollowTheMeshOfTheSnapshot) {
     ASSERT_EQ(triangles.colors.size(), triangles.points.size());
     EXPECT_EQ(shown.markers[1].points.size(), 2 * mesh.surface.size() * 3 / 2);  // closed: two triangles share an edge
     for (std::size_t i = 0; i < triangles.points.size(); ++i) {
-      const Vector3 corner(triangles.points[i].x, triangles.points[i].y, triangles.points[i].z);
-      EXPECT_EQ(corner, mesh.rest_positions.col(mesh.surface[i / 3][i % 3]));
+      const geometry_msgs::Point corner = toPoint(mesh.rest_positions.col(mesh.surface[i / 3][i % 3]));
+      EXPECT_EQ(serialized(triangles.points[i]), serialized(corner));
       EXPECT_GT(triangles.colors[i].r, 0.5F);  // not displaced: light, whatever the mesh before
     }
   }
