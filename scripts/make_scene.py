@@ -2,7 +2,7 @@
 """Makes a scene of an organ from its surface or its tetrahedra: a probe presses the highest point and drags over it.
 
 Writes a folder with
-  scene.yaml  the organ, a surface filled with tetrahedra when the scene is first run, held at its lowest part; every choice explained
+  scene.yaml  the organ, a surface filled with tetrahedra when the scene is first run, held at as much of its lowest part as it stands on; every choice explained
   probe.bag   joint states of urdf/probe.urdf: press, drag, lift
 and prints the command that turns both into forces. Edit the scene, or record your own robot over it.
 """
@@ -26,7 +26,7 @@ BALL_M = 0.005  # radius of the probe's ball, urdf/probe.urdf
 CLEARANCE_M = 0.005
 SPEED_M_PER_S = 0.02
 HOLD_S = 0.2
-HELD = 0.15  # of the height
+HELD = numpy.arange(0.15, 0.61, 0.05)  # of the height: the first that the organ stands on
 SURFACES, TETRAHEDRA = (".stl", ".obj", ".ply"), (".msh", ".vtk")
 LONGEST_M, SHORTEST_M = 2.0, 0.002  # of an organ
 
@@ -42,7 +42,7 @@ tissues:
 {cells}
     material: {{preset: {material}, model: neo_hookean}}  # doc/organ.md; or youngs_modulus_pa, poissons_ratio, density_kg_per_m3
     fixed:
-      - plane: {{point_m: [0, 0, {held:.4f}], normal: [0, 0, 1]}}  # the lowest {part:.0f} % of its height
+      - plane: {{point_m: [0, 0, {held:.4f}], normal: [0, 0, 1]}}  # the lowest {part:.0f} % of its height: it then stands and does not swing
 
 instruments:
   - name: probe
@@ -91,6 +91,30 @@ def height_over(corners, x, y):
         hit = (v >= -1e-9) & (w >= -1e-9) & (v + w <= 1.0 + 1e-9)
         heights = (a[:, 2] + v * (b[:, 2] - a[:, 2]) + w * (c[:, 2] - a[:, 2]))[hit]
     return heights.max() if len(heights) else math.nan
+
+
+def is_between(place, places):
+    """Whether a place of the plane lies within the convex hull of others: seen from it, no half of the plane is free of them."""
+    away = places - place
+    directions = numpy.sort(numpy.arctan2(away[:, 1], away[:, 0]))
+    return numpy.diff(directions, append=directions[:1] + 2.0 * math.pi).max() < math.pi
+
+
+def held_height(corners):
+    """z (m) up to which the organ is held, and what part of its height that is: so that it stands on what is held, its middle over it.
+
+    Held by less, an organ on a stalk swings away from the probe and comes back: its force then is that of a blow, and hangs on all that
+    was before.
+    """
+    vertices = corners.reshape(-1, 3)
+    areas = numpy.linalg.norm(numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    middle = (areas[:, None] * corners.mean(axis=1)).sum(axis=0)[:2] / areas.sum()
+    low, height = vertices[:, 2].min(), numpy.ptp(vertices[:, 2])
+    for part in HELD:
+        held = low + part * height
+        if is_between(middle, vertices[vertices[:, 2] <= held][:, :2]):
+            break
+    return held, part
 
 
 def drag_path(corners, depth_m, length_m):
@@ -225,6 +249,7 @@ def main():
     low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
     size = high - low
     require_organ_size(size, arguments.scale)
+    held, part = held_height(corners)
     depth = arguments.depth or min(0.005, 0.1 * size[2])
     path = drag_path(corners, depth, min(0.02, 0.2 * size[:2].max()))
     rows = timed(path)
@@ -235,7 +260,7 @@ def main():
     text = SCENE.format(
         name=name if name[0].isalpha() else "organ_" + name, file=quoted(os.path.basename(arguments.organ)),
         quoted=quoted(os.path.abspath(arguments.organ)), scale=arguments.scale, size=size, cells=cells,
-        material=arguments.material, held=low[2] + HELD * size[2], part=100 * HELD,
+        material=arguments.material, held=held, part=100 * part,
         start=path[0], clearance=1e3 * CLEARANCE_M, topic=TOPIC)
     try:
         os.makedirs(folder, exist_ok=True)

@@ -102,7 +102,8 @@ std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const st
                                                     const std::vector<NodalVectors>& x,
                                                     const std::vector<SolvedContact>& contacts,
                                                     const TouchedPlaces& shapes, std::size_t instruments,
-                                                    const std::vector<double>& step_defects_n, double unbalanced_n) {
+                                                    const std::vector<MomentumRate>& momentum_rates,
+                                                    double unbalanced_n) {
   std::vector<ForceErrorEstimate> errors(instruments);
   std::vector<double> pressed_n(instruments, 0.0);
   std::vector<double> borne_n(tissues.size(), 0.0);
@@ -142,8 +143,9 @@ std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const st
     pressed_n[static_cast<std::size_t>(key.instrument)] += sum_n;
     error.mesh_n += force_n.norm() * mesh / sum_n;
     // Not more than all it presses with: of a body that swings beside it, most is not its.
-    const double of_swing_n = std::min(step_defects_n[t] * (sum_n / borne_n[t]), sum_n);
-    error.step_n += std::hypot(force_n.norm() * step / sum_n, of_swing_n);
+    const auto ofInstrument = [&](double of_tissue_n) { return std::min(of_tissue_n * (sum_n / borne_n[t]), sum_n); };
+    error.step_n += std::hypot(force_n.norm() * step / sum_n, ofInstrument(momentum_rates[t].defect()));
+    error.inertia_n += ofInstrument(momentum_rates[t].size());
     error.knows_mesh = error.knows_mesh && judges_mesh;
   }
   const double all_n = std::accumulate(pressed_n.begin(), pressed_n.end(), 0.0);

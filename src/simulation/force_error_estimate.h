@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "simulation/momentum_rate.h"
 #include "simulation/touched_places.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/simulation/force_error.h"
@@ -17,13 +18,14 @@ namespace tissue_contact {
 /// @param x per tissue: positions, m.
 /// @param contacts of the step, sorted by key.
 /// @param shapes of the instruments.
-/// @param step_defects_n per tissue: MovingTissue::stepDefect().
+/// @param momentum_rates per tissue.
 /// @param unbalanced_n what the step's answer leaves, N: of all nodes of a body together.
 /// @return one per instrument. Allocates.
 std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const std::vector<Tissue>& tissues,
                                                     const std::vector<NodalVectors>& x,
                                                     const std::vector<SolvedContact>& contacts,
                                                     const TouchedPlaces& shapes, std::size_t instruments,
-                                                    const std::vector<double>& step_defects_n, double unbalanced_n);
+                                                    const std::vector<MomentumRate>& momentum_rates,
+                                                    double unbalanced_n);
 
 }  // namespace tissue_contact

@@ -25,7 +25,8 @@ class MomentumRate {
     if (known_ < 2) ++known_;
   }
 
-  double defect() const { return defect_n_; }  ///< N; 0: not known
+  double defect() const { return defect_n_; }                       ///< N; 0: not known
+  double size() const { return known_ >= 2 ? rate_.norm() : 0.0; }  ///< of the rate itself, N; 0: not known
 
   void carry(StateArchive& archive) {
     archive.carry(momentum_);

@@ -75,8 +75,7 @@ class MovingTissue {
   /// @param contact_work_j, was_cut see EnergyDebt::finish().
   void move(double dt, double contact_work_j, bool was_cut);
 
-  /// What the last step left out of the forces on the tissue, N (MomentumRate).
-  double stepDefect() const { return momentum_rate_.defect(); }
+  const MomentumRate& momentumRate() const { return momentum_rate_; }  ///< of the last step
 
   bool canSleep() const { return sleep_.has_value(); }
   int sleepers() const { return sleep_ ? sleep_->sleepers() : 0; }

@@ -166,10 +166,10 @@ const std::vector<ForceErrorEstimate>& Simulator::forceErrors() const {
   if (all.force_errors) return *all.force_errors;
   const double defect_n_s = residuals().net_defect_n_s;
   const double unbalanced_n = defect_n_s == 0.0 ? 0.0 : defect_n_s / all.problem.dt_s;  // no step yet: no length of it
-  std::vector<double> step_defects_n;
-  for (const MovingTissue& tissue : all.moving) step_defects_n.push_back(tissue.stepDefect());
+  std::vector<MomentumRate> momentum_rates;
+  for (const MovingTissue& tissue : all.moving) momentum_rates.push_back(tissue.momentumRate());
   all.force_errors = estimateForceErrors(all.scene, all.tissues, all.x, all.contacts.solved(), all.touched_places,
-                                         all.instruments.size(), step_defects_n, unbalanced_n);
+                                         all.instruments.size(), momentum_rates, unbalanced_n);
   return *all.force_errors;
 }
 int Simulator::meshRevision(int tissue) const {

@@ -20,6 +20,9 @@ struct ForceErrorEstimate {
   double step_n = 0.0;
   /// .7 of what the step leaves unbalanced in all tissues that something touches, by the instrument's share of all pressing; at most all it presses with.
   double solver_n = 0.0;
+  /// No error: the rate of the momentum of the tissue, by the instrument's share of what instruments press on it with; at most all it presses with. Where
+  /// that is most of the force the tissue swings, and errors of earlier steps, which are in none of these, add up in where it has swung to.
+  double inertia_n = 0.0;
   double total_n() const;  ///< root of the sum of squares: the parts have nothing to do with each other
 };
 

@@ -7,7 +7,12 @@ namespace tissue_contact {
 namespace force_error_summary_test {
 
 ForceErrorEstimate estimate(double mesh_n, double step_n, double solver_n, bool knows_mesh = true) {
-  return {knows_mesh, mesh_n, step_n, solver_n};
+  ForceErrorEstimate error;
+  error.knows_mesh = knows_mesh;
+  error.mesh_n = mesh_n;
+  error.step_n = step_n;
+  error.solver_n = solver_n;
+  return error;
 }
 
 TEST(ForceErrorSummary, SaysNothingOfNoForce) {
@@ -35,6 +40,20 @@ TEST(ForceErrorSummary, NamesTheKeyThatLowersTheLargestPart) {
   EXPECT_NE(text(estimate(0.1, 0.1, 0.5)).find("solver.tolerance"), std::string::npos);
   EXPECT_NE(text(estimate(1.64, 0.1, 0.1)).find("wrong by 160 % (RMS; mesh 160 %,"), std::string::npos);
   EXPECT_NE(text(estimate(0.0, 0.1, 0.1, false)).find("the mesh's part is not known, step 10 %"), std::string::npos);
+}
+
+// An organ on a stalk: what it errs by hangs on where it has swung to.
+TEST(ForceErrorSummary, SaysThatSwingingTissueErrsByMore) {
+  const auto text = [](double inertia_n) {
+    ForceErrorSummary summary;
+    ForceErrorEstimate error = estimate(0.02, 0.0, 0.0);
+    error.inertia_n = inertia_n;
+    summary.add(1.0, error);
+    return summary.text();
+  };
+  EXPECT_EQ(text(0.3), "likely wrong by 2 % (RMS; mesh 2 %, step 0 %, solver 0 %)");
+  EXPECT_NE(text(0.54).find("; and by what went wrong in earlier steps, since the tissue swings: its inertia is 54 %"),
+            std::string::npos);
 }
 
 // Of the mesh of one sample nothing is known: what is known of the others is no advice.

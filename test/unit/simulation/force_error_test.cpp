@@ -218,6 +218,26 @@ TEST(ForceError, TissueThatSwingsHasMoreInLongSteps) {
   EXPECT_LT(std::abs(std::log(expected / found)), 2.0 * std::log(2.0));
 }
 
+// By Newton's second law: what pushes a loose block is all the rate of its momentum, in each step.
+TEST(ForceError, OfTissueThatNothingHoldsAllOfTheForceIsInertia) {
+  const std::string block = blockScene("[0.06, 0.06, 0.04]", "[8, 8, 5]", "poissons_ratio: 0.45");
+  const std::string held = "    fixed: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n";
+  Simulator loose = simulatorOf(
+      scene("gravity_m_per_s2: [0, 0, 0]\nsolver: {tolerance: 1.0e-6, iterations: 300}\n", replaced(block, held, "")));
+  double most_n = 0.0;
+  for (int k = 1; k <= 100; ++k) {
+    loose.advance(0.001, {Vector3(0.0, 0.0, -5e-5 * k)});
+    const double force_n = loose.wrench(0).force.norm();
+    if (k <= 2) continue;  // not known yet
+    EXPECT_NEAR(loose.forceErrors()[0].inertia_n, force_n, 0.005 * force_n + 1e-6) << k;
+    most_n = std::max(most_n, force_n);
+  }
+  EXPECT_GT(most_n, 0.01);
+  Simulator pressed_slowly = simulatorOf(scene("", block));
+  const double inertia_n = pressed(pressed_slowly, 0.001).inertia_n;
+  EXPECT_LT(inertia_n, 0.05 * pressed_slowly.wrench(0).force.norm());
+}
+
 // Patches of a sheet bend as well as stretch; what the recovery of strain tells of them has not been compared with anything.
 TEST(ForceError, TellsWhereTheMeshIsNotJudged) {
   const std::string sheet =

@@ -46,9 +46,11 @@ TEST(MomentumRate, IsNotKnownBeforeTheThirdStep) {
   }
   rate.step(Vector3(4.0, 0.0, 0.0), 0.001);
   EXPECT_NEAR(rate.defect(), 500.0, 1e-9);  // rates 2000 and 1000 N
+  EXPECT_NEAR(rate.size(), 1000.0, 1e-9);
   rate.clear();
   rate.step(Vector3(9.0, 0.0, 0.0), 0.001);
   EXPECT_EQ(rate.defect(), 0.0);
+  EXPECT_EQ(rate.size(), 0.0);
 }
 
 }  // namespace momentum_rate_test
