@@ -30,14 +30,14 @@ TISSUE_CONTACT_INLINE void add(const LaneDefects& some, LaneDefects& all) {
   for (std::size_t r = 0; r < 3; ++r) all.defects[r] += some.defects[r];
 }
 
-/// Gauss-Seidel step of a slice's rows.
+/// b + J'lambda - A v of a slice's rows, and v there.
 template <bool kDamped>
-TISSUE_CONTACT_INLINE void relax(const Work& all, int slice, LaneDefects& met) {
+TISSUE_CONTACT_INLINE void defectsOf(const Work& all, int slice, LaneVectors& defect, LaneVectors& v) {
   const BlockMatrix& K = *all.body.K;
   const int* const rows = rowsOf(*K.pattern, slice);
   LaneVectors elastic{};
   addUpperProduct(K, slice, all.v, elastic);
-  LaneVectors defect, lower, v;
+  LaneVectors lower;
   load(all.right[slice], defect);
   gather(all.lower, rows, lower);
   gather(all.v, rows, v);
@@ -58,8 +58,15 @@ TISSUE_CONTACT_INLINE void relax(const Work& all, int slice, LaneDefects& met) {
   defect[0] -= own[0];
   defect[1] -= own[1];
   defect[2] -= own[2];
+}
+
+/// Gauss-Seidel step of a slice's rows.
+template <bool kDamped>
+TISSUE_CONTACT_INLINE void relax(const Work& all, int slice, LaneDefects& met) {
+  LaneVectors defect, v;
+  defectsOf<kDamped>(all, slice, defect, v);
   addProduct(all.inverse[slice], defect, v);
-  scatter(v, rows, all.v);  // a slice with fewer rows repeats the first, unmoved
+  scatter(v, rowsOf(*all.body.K->pattern, slice), all.v);  // a slice with fewer rows repeats the first, unmoved
   Lanes free;
   load(all.free[slice].data(), free);
   met.squares = free * (defect[0] * defect[0] + defect[1] * defect[1] + defect[2] * defect[2]);
@@ -150,6 +157,25 @@ TISSUE_CONTACT_INLINE double lowerProduct(const Work& all, const std::vector<uns
   return sum(total);
 }
 
+/// b + J'lambda - A v, 0 of rows that are not free. @param lower L v of them all.
+template <bool kDamped>
+TISSUE_CONTACT_INLINE void defects(const Work& all, const std::vector<unsigned char>& moves, PaddedVector* defect) {
+  for (int slice = 0; slice < all.body.K->pattern->slices(); ++slice) {
+    if (moves[slice] == 0) continue;
+    LaneVectors left, v;
+    defectsOf<kDamped>(all, slice, left, v);
+    Lanes free;
+    load(all.free[slice].data(), free);
+    for (std::size_t r = 0; r < 3; ++r) left[r] *= free;
+    scatter(left, rowsOf(*all.body.K->pattern, slice), defect);
+  }
+}
+
+TISSUE_CONTACT_CLONES
+void runDefects(const Work& all, const std::vector<unsigned char>& moves, PaddedVector* defect) {
+  all.body.D != nullptr ? defects<true>(all, moves, defect) : defects<false>(all, moves, defect);
+}
+
 TISSUE_CONTACT_CLONES
 double runLowerProduct(const Work& all, const std::vector<unsigned char>& moves) {
   return all.body.D != nullptr ? lowerProduct<true>(all, moves) : lowerProduct<false>(all, moves);
@@ -193,6 +219,7 @@ void BodySweep::prepare(const BodySystem& body) {
   prepareSlices();
   deflation_.beginStep(v_.size());
   rigid_motions_.none();
+  coarse_motions_.none();
   invertAll(diagonal_, free_, inverse_);
 }
 
@@ -279,7 +306,25 @@ void BodySweep::deflate(NodalVectors& v) {
   rigid_motions_.correct(deflation_.begun(), v_, lower_,
                          [this](int j, const Vector3& changed) { deflation_.follow(j, changed); });
   deflation_.correct(v_, lower_);
-  if (deflation_.hasAlong() || rigid_motions_.any()) unpad(v_, v);
+  if (coarse_motions_.any()) correctCoarsely();
+  if (deflation_.hasAlong() || rigid_motions_.any() || coarse_motions_.any()) unpad(v_, v);
+}
+
+/// Moves v_ along the coarse motions' direction to where the energy is least, and lower_ with it.
+void BodySweep::correctCoarsely() {
+  for (PaddedVectors* all : {&defect_, &along_, &along_lower_}) all->assign(v_.size(), PaddedVector{});
+  runDefects({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, moves_, defect_.data());
+  coarse_motions_.direction(defect_, along_);
+  const Deflation::Products found = measure(along_, along_lower_);
+  if (!(found.energy >= Deflation::kLeastEnergy * found.inertia) || found.inertia == 0.0) return;
+  double work = 0.0;
+  for (std::size_t i = 0; i < v_.size(); ++i) work += vectorOf(defect_[i]).dot(vectorOf(along_[i]));
+  const double share = work / found.energy;
+  for (std::size_t i = 0; i < v_.size(); ++i) {
+    vectorOf(v_[i]) += share * vectorOf(along_[i]);
+    vectorOf(lower_[i]) += share * vectorOf(along_lower_[i]);
+  }
+  deflation_.correctedElsewhere(v_);
 }
 
 void BodySweep::finish(bool forth, const NodalVectors& v, NodalVectors& u) {

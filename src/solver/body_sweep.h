@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/slice_product.h"
+#include "solver/coarse_motions.h"
 #include "solver/deflation.h"
 #include "solver/rigid_motions.h"
 #include "tissue_contact/solver/contact_problem.h"
@@ -53,10 +54,13 @@ class BodySweep {
   /// may move, ascending.
   void beginRigidMotions(const std::vector<int>& excluded);
 
+  /// From now on deflate() moves the body along its coarse motions as well. @param excluded nodes that contacts may move, ascending.
+  void beginCoarseMotions(const std::vector<int>& excluded) { coarse_motions_.begin(*body_, excluded); }
+
   /// A contact has moved a node by `change` (m/s) since the sweep forth.
   void follow(int node, const Vector3& change);
 
-  /// Between a sweep forth and the sweep back, with what contacts moved followed (Deflation, RigidMotions). @param v m/s.
+  /// Between a sweep forth and the sweep back, with what contacts moved followed (Deflation, RigidMotions, CoarseMotions). @param v m/s.
   void deflate(NodalVectors& v);
 
   /// Ends a step. @param forth the last sweep was one forth; what contacts moved since counts as found by it.
@@ -111,6 +115,7 @@ class BodySweep {
 
   const BlockPattern& pattern() const { return *body_->K->pattern; }
   void prepareSlices();
+  void correctCoarsely();
   Deflation::Products measure(PaddedVectors& u, PaddedVectors& lower) const;
   DefectsMet forth(int begin, int end);
   DefectsMet back(int begin, int end);
@@ -126,6 +131,9 @@ class BodySweep {
   PaddedVectors lower_;                           ///< sum_{j<i} A_ij v_j after the sweep forth, N s
   Deflation deflation_;
   RigidMotions rigid_motions_;
+  CoarseMotions coarse_motions_;
+  PaddedVectors defect_, along_,
+      along_lower_;  ///< scratch of those: b + J'lambda - A v, N s; a direction, m/s, and L times it, N s
   PaddedVectors v_;  ///< scratch: what a sweep works on, m/s
 };
 

@@ -8,6 +8,7 @@
 /// Comput. 28 (2006) 1651-1674. Figures, and what was tried: doc/notes/method.md.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/padded_vectors.h"
@@ -61,16 +62,19 @@ class Deflation {
   bool isFirst() const { return forths_ == 1; }  ///< sweep forth of this step
   bool hasAlong() const { return along_; }
 
+  /// What else has moved v before the sweep back is found as well, m/s.
+  void correctedElsewhere(const PaddedVectors& v) { std::copy(v.begin(), v.end(), begun_.begin()); }
+
   /// Ends a step of several sweeps forth. @param u becomes what was found since the first of them, m/s.
   /// @param v as the last sweep forth and what followed it left it, before any sweep back.
   void finish(const PaddedVectors& v, NodalVectors& u) const;
   /// The same where a sweep back came last.
   void finish(NodalVectors& u) const { finish(begun_, u); }
 
- private:
   /// Of what mass alone has of it; all of it where K has no negative eigenvalues.
   static constexpr double kLeastEnergy = 0.5;
 
+ private:
   bool along_ = false;     ///< there is a u
   PaddedVectors u_;        ///< m/s; 0 at nodes that are excluded or do not move
   PaddedVectors lower_;    ///< L u, N s

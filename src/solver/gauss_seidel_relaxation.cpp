@@ -18,6 +18,9 @@ static_assert(kPlainIterations % 2 == 0, "pairs of sweeps are mixed: forth and b
 constexpr int kFirstRigidMotion = 3;
 static_assert(kFirstRigidMotion % 2 == 1, "between a sweep forth and the sweep back");
 
+/// So many iterations must be to come: coarse motions cost some ten to find, and each pair of sweeps with them as much as two.
+constexpr double kWorthCoarseMotions = 20.0;
+
 /// Pairs of sweeps mixed. With 3 a grasp keeps twice the momentum defect, with 7 no scene gets faster.
 constexpr int kMixedPairs = 5;
 
@@ -42,6 +45,9 @@ class GaussSeidelRelaxation : public Relaxation {
   const MomentumDefect& relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                               ContactSolution& solution) override;
   void contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
+  void foresee(double iterations) override {
+    wants_coarse_motions_ = !has_coarse_motions_ && iterations > kWorthCoarseMotions;
+  }
   void finish(const ContactProblem& problem, ContactSolution& solution) override;
 
  private:
@@ -51,6 +57,7 @@ class GaussSeidelRelaxation : public Relaxation {
   void findTouched(const ContactProblem& problem);
   void beginDeflation(const ContactProblem& problem, ContactSolution& solution);
   void beginRigidMotions(const ContactProblem& problem);
+  void beginCoarseMotions(const ContactProblem& problem);
   template <class Begin>
   void forEachAwake(const ContactProblem& problem, const Begin& begin);
   void deflate(const ContactProblem& problem, std::vector<NodalVectors>& v);
@@ -67,6 +74,8 @@ class GaussSeidelRelaxation : public Relaxation {
 
   std::vector<BodySweep> bodies_;
   bool forward_ = false;  ///< the last sweep was one forth
+  bool wants_coarse_motions_ = false;
+  bool has_coarse_motions_ = false;
   struct Touched {
     int body;
     int node;
@@ -88,6 +97,7 @@ void GaussSeidelRelaxation::prepare(const ContactProblem& problem, ContactSoluti
   prepareContacts(problem, solution);
   findNodeContacts(problem);
   findTouched(problem);
+  wants_coarse_motions_ = has_coarse_motions_ = false;
 }
 
 void GaussSeidelRelaxation::prepareBodies(const ContactProblem& problem) {
@@ -181,6 +191,12 @@ void GaussSeidelRelaxation::beginRigidMotions(const ContactProblem& problem) {
   forEachAwake(problem, [&](std::size_t k) { bodies_[k].beginRigidMotions(excluded_); });
 }
 
+void GaussSeidelRelaxation::beginCoarseMotions(const ContactProblem& problem) {
+  wants_coarse_motions_ = false;
+  has_coarse_motions_ = true;
+  forEachAwake(problem, [&](std::size_t k) { bodies_[k].beginCoarseMotions(excluded_); });
+}
+
 /// @param begin called with each body that is awake; excluded_ has its nodes that contacts may move.
 template <class Begin>
 void GaussSeidelRelaxation::forEachAwake(const ContactProblem& problem, const Begin& begin) {
@@ -240,6 +256,7 @@ const MomentumDefect& GaussSeidelRelaxation::relax(const ContactProblem& problem
   if (forward && iteration > kPlainIterations) mix(solution.v);
   if (iteration == 1) beginDeflation(problem, solution);
   if (iteration == kFirstRigidMotion) beginRigidMotions(problem);
+  if (!forward && wants_coarse_motions_) beginCoarseMotions(problem);
   if (!forward) {
     followTouched(problem, solution.v);
     deflate(problem, solution.v);

@@ -108,6 +108,13 @@ bool IterativePredictorCorrector::balanced(const ContactProblem& problem, const 
          looseBodiesBalanced(problem, met.net_n_s, solution);
 }
 
+/// What momentum lacks over what it may lack, bodies that nothing holds aside.
+double IterativePredictorCorrector::excess(const MomentumDefect& met, const ContactSolution& solution) const {
+  const double net = std::accumulate(met.net_n_s.begin(), met.net_n_s.end(), 0.0);
+  return std::max(met.norm_n_s / (options_.tolerance * (load_scale_ + impulseNorm(solution.impulses))),
+                  net / (kNetShare * options_.tolerance * (load_scale_ + impulseSum(solution.impulses))));
+}
+
 /// Likewise of each body that nothing holds, against what moves it in all: the jaws' squeeze, which cancels, may be a hundred times that.
 bool IterativePredictorCorrector::looseBodiesBalanced(const ContactProblem& problem, const std::vector<double>& net_n_s,
                                                       const ContactSolution& solution) {
@@ -155,6 +162,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
   load_scale_ = changeScale(problem);
   relaxation_->prepare(problem, solution);
   momentum_.prepare(problem);
+  forecast_.begin();
   corrector_.prepare(problem.contacts.size(), [&](std::size_t c) -> Vector2 {
     return relativeVelocity(problem.contacts[c], solution.v).tail<2>();
   });
@@ -174,6 +182,8 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
       report.stop = StopReason::kTimeBudget;
     } else {
       stop = false;
+      forecast_.add(excess(met, solution));
+      relaxation_->foresee(forecast_.iterationsLeft());
     }
   }
   relaxation_->finish(problem, solution);

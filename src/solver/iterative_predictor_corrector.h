@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "solver/contact_momentum.h"
+#include "solver/convergence_forecast.h"
 #include "solver/relaxation.h"
 #include "tissue_contact/solver/contact_solver.h"
 #include "tissue_contact/solver/solver_options.h"
@@ -52,6 +53,7 @@ class IterativePredictorCorrector : public ContactSolver {
   bool settled(const ContactProblem& problem, const ContactSolution& solution, double change, double before,
                double share);
   bool balanced(const ContactProblem& problem, const MomentumDefect& met, const ContactSolution& solution);
+  double excess(const MomentumDefect& met, const ContactSolution& solution) const;
   bool looseBodiesBalanced(const ContactProblem& problem, const std::vector<double>& net_n_s,
                            const ContactSolution& solution);
 
@@ -60,6 +62,7 @@ class IterativePredictorCorrector : public ContactSolver {
   std::unique_ptr<Relaxation> relaxation_;
   ContactCorrector corrector_;
   ContactMomentum momentum_;
+  ConvergenceForecast forecast_;
   std::vector<Vector3> before_;  ///< impulses before the last pass, per contact, contact frame, N s
   /// What contacts bring a body.
   struct Brought {

@@ -29,6 +29,9 @@ class Relaxation {
   virtual const MomentumDefect& relax(const ContactProblem& problem, int iteration, ContactCorrector& corrector,
                                       ContactSolution& solution) = 0;
 
+  /// Called after an iteration. @param iterations that are likely to come.
+  virtual void foresee(double /*iterations*/) {}
+
   /// Called before the passes of an iteration, with v relaxed.
   virtual void beginPasses(const ContactSolution& /*solution*/) {}
 

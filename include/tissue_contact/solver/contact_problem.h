@@ -29,11 +29,12 @@ struct BodySystem {
   /// Nodes of each part that is far stiffer than most of the body, ascending, none in two parts; null: there is none. For solvers that look
   /// for the rigid motions of such parts; answers do not depend on it beyond their tolerance.
   const std::vector<std::vector<int>>* stiff_parts = nullptr;
-  const NodalVectors* x = nullptr;  ///< where the nodes are, m; needed with stiff_parts alone
-  double stiffness_scale = 0.0;     ///< s^2
-  double damping_scale = 0.0;       ///< s: dt where there is a D
-  VectorX mass;                     ///< kg, per node
-  NodalVectors b;                   ///< N s; finite, of fixed nodes too
+  const NodalVectors* x =
+      nullptr;  ///< where the nodes are, m; needed with stiff_parts; null: no solver looks for rigid motions
+  double stiffness_scale = 0.0;  ///< s^2
+  double damping_scale = 0.0;    ///< s: dt where there is a D
+  VectorX mass;                  ///< kg, per node
+  NodalVectors b;                ///< N s; finite, of fixed nodes too
   /// |b - M v0|, N s: what changes velocities in the step, which a solver's tolerance is a part of. Negative: |b|.
   double change_n_s = -1.0;
   /// Of a body that neither fixed nodes nor springs hold: |sum of b - M v0 over its nodes|, N s. What such a body lacks in all moves it, so a

@@ -1,0 +1,66 @@
+/// @file
+/// Room `solver`, private: a coarse level for the sweeps over one body, of rigid motions of a few large parts that overlap and blend into each
+/// other. Sweeps pass a motion on from node to node, and are slow where it has far to go: in what is slender, stiff beside its mass, stepped
+/// in long steps or nearly incompressible.
+///
+/// Sarkis, "Partition of Unity Coarse Spaces: Enhanced Versions, Discontinuous Coefficients and Applications to Elasticity", Domain
+/// Decomposition Methods in Science and Engineering XIV (2003) 149-158. Figures: doc/notes/method.md.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "core/padded_vectors.h"
+#include "tissue_contact/solver/contact_problem.h"
+
+namespace tissue_contact {
+
+/// With Z, the rigid motions of all parts, each times the part's weight at the node: of a defect r the direction Z (Z'A Z)^-1 Z'r.
+///
+/// Nodes that contacts may move have no part in it (Deflation).
+class CoarseMotions {
+ public:
+  static constexpr std::size_t kMostParts = 16;
+
+  /// A node's share in a part.
+  struct Share {
+    std::size_t part;
+    double weight;
+  };
+
+  /// Of a step. Allocates only for a body of another pattern than before.
+  /// @param body without x: has none. @param excluded nodes that contacts may move, ascending.
+  void begin(const BodySystem& body, const std::vector<int>& excluded);
+  void none() { any_ = false; }
+  bool any() const { return any_; }
+
+  /// @param defect N s, per node. @param along m/s; 0 at nodes that are fixed or excluded.
+  void direction(const PaddedVectors& defect, PaddedVectors& along);
+
+ private:
+  static constexpr std::size_t kLeastNodes = 20;  ///< of a part, or there are fewer parts
+
+  void findParts(const BlockPattern& pattern);
+  void blend(const BlockPattern& pattern, const std::vector<int>& middles, int end);
+  void place(const NodalVectors& x);
+  bool factor(const BodySystem& body);
+
+  bool any_ = false;
+  std::shared_ptr<const BlockPattern> pattern_;  ///< of which the parts are
+  std::size_t parts_ = 0;
+  std::vector<std::size_t> first_;  ///< nodes + 1 offsets into shares_
+  std::vector<Share> shares_;
+  std::vector<unsigned char> takes_part_;  ///< per node, in this step
+  PaddedVectors place_;                    ///< from the middle of the body, over its size
+  /// Of a part: motions about its middle, over its radius, as motions about that of the body.
+  std::vector<Eigen::Matrix<double, 6, 6>> about_middle_;
+  std::vector<std::array<double, 36>> sums_;  ///< scratch, of pairs of parts
+  Eigen::MatrixXd energy_;                    ///< Z'A Z, J, below the diagonal
+  Eigen::LLT<Eigen::MatrixXd> factor_;        ///< of it
+  VectorX motion_;                            ///< scratch: of all parts
+};
+
+}  // namespace tissue_contact
