@@ -110,7 +110,7 @@ struct BlockWithInclusion {
   }
 };
 
-/// Answers are the same; they take fewer iterations than without, and not many more than without an inclusion.
+/// Answers are the same; they take fewer iterations than with coarse motions (coarse_motions.h) alone.
 TEST(MixedSweeps, MoveAStiffInclusionAsOne) {
   const auto solve = [](bool as_one, BlockWithInclusion& scene) {
     scene.problem.bodies[0].stiff_parts = as_one ? &scene.parts : nullptr;
@@ -120,7 +120,7 @@ TEST(MixedSweeps, MoveAStiffInclusionAsOne) {
   BlockWithInclusion plain, as_one;
   const int without = solve(false, plain);
   const int with = solve(true, as_one);
-  EXPECT_LT(with, 0.6 * without) << with << " of " << without;
+  EXPECT_LT(with, 0.8 * without) << with << " of " << without;
   EXPECT_LE((as_one.solution.v[0] - plain.solution.v[0]).norm(), 1e-7 * plain.solution.v[0].norm());
 }
 

@@ -1,0 +1,205 @@
+/// A coarse level of rigid motions for the sweeps: what it finds at once, that its correction is the best it has, and what it is for.
+#include "solver/coarse_motions.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "solver/convergence_forecast.h"
+#include "solver/iterative_predictor_corrector.h"
+#include "solver/momentum_defect.h"
+#include "support/pressed_block.h"
+
+namespace tissue_contact {
+namespace coarse_motions_test {
+
+/// A bar of 80 x 8 x 8 mm along x, 20 x 2 x 2 cells, held at its left end or loose; D is no multiple of K.
+struct Bar {
+  TetMesh mesh = makeBlockMesh({Vector3(0.08, 0.008, 0.008), {20, 2, 2}, {}});
+  std::vector<bool> fixed;
+  std::unique_ptr<Elasticity::State> state, viscous;
+  ContactProblem problem;
+  ContactSolution solution;
+
+  explicit Bar(bool held, bool damped = false, double dt = 0.02) {
+    for (auto i = 0; i < mesh.positions.cols(); ++i) fixed.push_back(held && mesh.positions(0, i) < 1e-6);
+    const auto stiffnessOf = [&](double nu) {
+      const MaterialDescription material{ElasticModel::kLinear, 5e3, nu, 1000.0};
+      return TetElasticity(mesh.positions, mesh.tetrahedra, fixed, material).makeState();
+    };
+    state = stiffnessOf(0.45);
+    viscous = stiffnessOf(0.2);
+    BodySystem body;
+    body.K = &state->stiffness;
+    body.D = damped ? &viscous->stiffness : nullptr;
+    body.fixed = &fixed;
+    body.x = &mesh.positions;
+    body.stiffness_scale = dt * dt;
+    body.damping_scale = damped ? 0.003 * dt : 0.0;
+    body.mass = VectorX::Constant(nodes(), 1000.0 * 0.08 * 0.008 * 0.008 / static_cast<double>(nodes()));
+    body.b = NodalVectors::Zero(3, nodes());
+    problem.dt_s = dt;
+    problem.bodies = {body};
+    solution.v = {body.b};
+  }
+
+  Eigen::Index nodes() const { return mesh.positions.cols(); }
+  const BodySystem& body() const { return problem.bodies[0]; }
+  /// r - A v, padded; 0 at fixed nodes.
+  PaddedVectors defect(const NodalVectors& r, const NodalVectors& v) const {
+    BodySystem loaded = body();
+    loaded.b.setZero();
+    NodalVectors left(3, nodes());
+    bodyDefect(loaded, v, r, left);
+    PaddedVectors padded;
+    pad(left, padded);
+    return padded;
+  }
+  NodalVectors randomVectors() const {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    NodalVectors result(3, nodes());
+    for (Eigen::Index i = 0; i < nodes(); ++i)
+      result.col(i) = Vector3(uniform(random), uniform(random), uniform(random));
+    for (std::size_t i = 0; i < fixed.size(); ++i) {
+      if (fixed[i]) result.col(static_cast<Eigen::Index>(i)).setZero();
+    }
+    return result;
+  }
+};
+
+NodalVectors along(CoarseMotions& coarse, const PaddedVectors& defect) {
+  PaddedVectors padded(defect.size());
+  coarse.direction(defect, padded);
+  NodalVectors result(3, static_cast<Eigen::Index>(defect.size()));
+  unpad(padded, result);
+  return result;
+}
+
+// Parts that all move alike are the body moving as one, since their weights sum up to one at each node.
+TEST(CoarseMotions, FindTheRigidMotionOfALooseBodyAtOnce) {
+  for (const bool damped : {false, true}) {
+    const Bar bar(false, damped);
+    NodalVectors v(3, bar.nodes());
+    for (Eigen::Index i = 0; i < bar.nodes(); ++i) {
+      v.col(i) = Vector3(0.1, -0.2, 0.3) + Vector3(1.0, 2.0, -3.0).cross(Vector3(bar.mesh.positions.col(i)));
+    }
+    PaddedVectors defect = bar.defect(NodalVectors::Zero(3, bar.nodes()), -v);  // A v
+    CoarseMotions coarse;
+    coarse.begin(bar.body(), {});
+    ASSERT_TRUE(coarse.any());
+    EXPECT_LE((along(coarse, defect) - v).norm(), 1e-6 * v.norm())
+        << damped;  // K's soft motions are round-off beside its stiff ones
+  }
+}
+
+// What Galerkin's condition asks for: nothing is left that any of the motions could take off. Through D, fixed nodes and nodes of contacts.
+TEST(CoarseMotions, LeaveNothingOfADefectThatTheyCouldTakeOff) {
+  const Bar bar(true, true);
+  const std::vector<int> excluded = {100, 101, 150};
+  CoarseMotions coarse;
+  coarse.begin(bar.body(), excluded);
+  ASSERT_TRUE(coarse.any());
+  const NodalVectors r = bar.randomVectors();
+  const NodalVectors found = along(coarse, bar.defect(r, NodalVectors::Zero(3, bar.nodes())));
+  EXPECT_GT(found.norm(), 0.0);
+  for (const int node : excluded) EXPECT_EQ(found.col(node).norm(), 0.0);
+  for (std::size_t i = 0; i < bar.fixed.size(); ++i) {
+    if (bar.fixed[i]) {
+      EXPECT_EQ(found.col(static_cast<Eigen::Index>(i)).norm(), 0.0);
+    }
+  }
+  const NodalVectors again = along(coarse, bar.defect(r, found));
+  EXPECT_LE(again.norm(), 1e-6 * found.norm());
+}
+
+TEST(CoarseMotions, ThereAreNoneWithoutPlacesOrOfFewNodes) {
+  Bar bar(true);
+  CoarseMotions coarse;
+  coarse.begin(bar.body(), {});
+  EXPECT_TRUE(coarse.any());
+  coarse.none();
+  EXPECT_FALSE(coarse.any());
+  bar.problem.bodies[0].x = nullptr;
+  coarse.begin(bar.body(), {});
+  EXPECT_FALSE(coarse.any());
+
+  const PressedBlock small(0.5, 0.01);
+  BodySystem body = small.problem.bodies[0];
+  body.x = &small.mesh.positions;
+  std::vector<bool> but_one(small.fixed.size(), true);
+  but_one.back() = false;
+  body.fixed = &but_one;  // turns about itself move nothing
+  coarse.begin(body, {});
+  PaddedVectors defect(small.fixed.size());
+  defect.back() = {{1.0, 2.0, 3.0, 0.0}};
+  const NodalVectors found = along(coarse, defect);
+  EXPECT_TRUE(found.array().isFinite().all());
+}
+
+/// Iterations until a bar that a load bends is solved, and its answer.
+int iterationsOfBending(bool coarsely, Bar& bar) {
+  for (Eigen::Index i = 0; i < bar.nodes(); ++i) {
+    if (!bar.fixed[static_cast<std::size_t>(i)]) bar.problem.bodies[0].b(2, i) = -1e-6;
+  }
+  if (!coarsely) bar.problem.bodies[0].x = nullptr;
+  return IterativePredictorCorrector(options(3000, 2, 1e-9)).solve(bar.problem, bar.solution).iterations;
+}
+
+TEST(CoarseMotions, BendASlenderBodySoonerToTheSameAnswer) {
+  for (const bool damped : {false, true}) {
+    Bar plain(true, damped), coarse(true, damped);
+    const int without = iterationsOfBending(false, plain);
+    const int with = iterationsOfBending(true, coarse);
+    EXPECT_LT(with, 0.4 * without) << with << " of " << without;
+    EXPECT_LE((coarse.solution.v[0] - plain.solution.v[0]).norm(), 1e-6 * plain.solution.v[0].norm());
+  }
+}
+
+// A step that ends soon is the same to the bit with and without.
+TEST(CoarseMotions, AreNotLookedForInEasySteps) {
+  const auto solved = [](bool may) {
+    PressedBlock scene(0.5, 0.001);
+    scene.problem.bodies[0].x = may ? &scene.mesh.positions : nullptr;
+    const SolverReport report =
+        IterativePredictorCorrector(options(100, 20, 1e-3)).solve(scene.problem, scene.solution);
+    EXPECT_EQ(report.stop, StopReason::kTolerance);
+    return scene.solution.v[0];
+  };
+  EXPECT_EQ(solved(true), solved(false));
+}
+
+TEST(ConvergenceForecast, GoesOnAtTheRateOfTheLastIterations) {
+  ConvergenceForecast forecast;
+  forecast.begin();
+  double excess = 1e4;
+  for (int k = 1; k <= 12; ++k) {
+    excess *= k % 2 == 0 ? 0.5 : 0.98;  // sweeps forth and back leave different defects
+    forecast.add(excess);
+    if (k < 8) {
+      EXPECT_EQ(forecast.iterationsLeft(), 0.0);
+    }
+  }
+  EXPECT_NEAR(forecast.iterationsLeft(), 2.0 * std::log(excess) / -std::log(0.5 * 0.98), 1e-9);
+}
+
+TEST(ConvergenceForecast, KnowsWhatIsDoneAndWhatNeverEnds) {
+  ConvergenceForecast forecast;
+  for (int k = 0; k < 9; ++k) forecast.add(2.0);
+  EXPECT_EQ(forecast.iterationsLeft(), std::numeric_limits<double>::infinity());
+  forecast.add(1.0);
+  EXPECT_EQ(forecast.iterationsLeft(), 0.0);
+  forecast.add(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(forecast.iterationsLeft(), 0.0);
+  forecast.begin();
+  forecast.add(2.0);
+  EXPECT_EQ(forecast.iterationsLeft(), 0.0);
+}
+
+}  // namespace coarse_motions_test
+}  // namespace tissue_contact
