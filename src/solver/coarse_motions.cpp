@@ -11,18 +11,10 @@ namespace {
 
 constexpr int kFar = std::numeric_limits<int>::max();
 
-/// Visits the nodes around one, nearest first. @param lower called with a node and its hops over the blocks of a pattern: whether to go on
-/// from there. @param front scratch.
-template <class Lower>
-void spread(const BlockPattern& pattern, int from, std::vector<std::pair<int, int>>& front, const Lower& lower) {
-  front.clear();
-  if (lower(from, 0)) front.emplace_back(from, 0);
-  for (std::size_t done = 0; done < front.size(); ++done) {
-    const auto [node, hops] = front[done];
-    pattern.forRow(node, [&, next = hops + 1](int j, int /*place*/) {
-      if (lower(j, next)) front.emplace_back(j, next);
-    });
-  }
+/// Room for more than that, so that another mesh of about as many nodes needs none.
+template <class Value>
+void makeRoom(std::size_t size, std::vector<Value>& values) {
+  if (values.capacity() < size) values.reserve(size + size / 2);
 }
 
 /// 3 x 6, column by column, and two more: what the motions of a node, three shifts and three turns, bring to a row, N s.
@@ -166,71 +158,94 @@ void CoarseMotions::begin(const BodySystem& body, const std::vector<int>& exclud
   any_ = factor(body);
 }
 
+/// Visits the nodes around one, nearest first.
+/// @param visit called with a node and its hops over the blocks of a pattern; whether to go on from there.
+template <class Visit>
+void CoarseMotions::spread(const BlockPattern& pattern, int from, const Visit& visit) {
+  front_.clear();
+  if (visit(from, 0)) front_.emplace_back(from, 0);
+  for (std::size_t done = 0; done < front_.size(); ++done) {
+    const auto [node, hops] = front_[done];
+    pattern.forRow(node, [&, next = hops + 1](int j, int /*place*/) {
+      if (visit(j, next)) front_.emplace_back(j, next);
+    });
+  }
+}
+
 /// As far from each other over the blocks as can be, one after the other; the first far from the first node. So they depend on the pattern
 /// alone, and a step on no step before.
 void CoarseMotions::findParts(const BlockPattern& pattern) {
-  std::vector<int> joined;  // nodes with blocks
+  const auto nodes = static_cast<std::size_t>(pattern.nodes);
+  makeRoom(nodes, front_);
+  makeRoom(nodes, joined_);
+  makeRoom(nodes, nearest_);
+  makeRoom(nodes, takes_part_);
+  makeRoom(nodes, place_);
+  joined_.clear();
   for (int i = 0; i < pattern.nodes; ++i) {
-    if (hasBlocks(pattern, i)) joined.push_back(i);
+    if (hasBlocks(pattern, i)) joined_.push_back(i);
   }
-  parts_ = std::min(kMostParts, joined.size() / kLeastNodes);
+  parts_ = std::min(kMostParts, joined_.size() / kLeastNodes);
   if (parts_ == 0) return;
-  std::vector<std::pair<int, int>> front;
-  std::vector<int> nearest;  // hops from the nearest of the parts' middles
-  const auto begin = [&] { nearest.assign(static_cast<std::size_t>(pattern.nodes), kFar); };
+  const auto begin = [&] { nearest_.assign(nodes, kFar); };
   const auto take = [&](int middle) {
-    spread(pattern, middle, front, [&](int node, int hops) {
-      int& at = nearest[static_cast<std::size_t>(node)];
+    spread(pattern, middle, [&](int node, int hops) {
+      int& at = nearest_[static_cast<std::size_t>(node)];
       if (at <= hops) return false;
       at = hops;
       return true;
     });
   };
   const auto farthest = [&] {
-    return *std::max_element(joined.begin(), joined.end(), [&](int a, int b) {
-      return nearest[static_cast<std::size_t>(a)] < nearest[static_cast<std::size_t>(b)];
+    return *std::max_element(joined_.begin(), joined_.end(), [&](int a, int b) {
+      return nearest_[static_cast<std::size_t>(a)] < nearest_[static_cast<std::size_t>(b)];
     });
   };
   begin();
-  take(joined.front());
-  std::vector<int> middles = {farthest()};
-  begin();
-  take(middles.front());
-  while (middles.size() < parts_) {
-    middles.push_back(farthest());
-    take(middles.back());
+  take(joined_.front());
+  std::array<int, kMostParts> middles{};
+  for (std::size_t p = 0; p < parts_; ++p) {
+    middles[p] = farthest();
+    if (p == 0) begin();
+    take(middles[p]);
   }
   int reach = 0;
-  for (const int node : joined) {
-    const int at = nearest[static_cast<std::size_t>(node)];
+  for (const int node : joined_) {
+    const int at = nearest_[static_cast<std::size_t>(node)];
     if (at != kFar) reach = std::max(reach, at);
   }
   blend(pattern, middles, reach + 1);
 }
 
 /// Weights that fall to 0 at `end` hops from a part's middle, and sum up to 1 at each node.
-void CoarseMotions::blend(const BlockPattern& pattern, const std::vector<int>& middles, int end) {
+void CoarseMotions::blend(const BlockPattern& pattern, const std::array<int, kMostParts>& middles, int end) {
   const auto nodes = static_cast<std::size_t>(pattern.nodes);
-  std::vector<std::vector<Share>> of_node(nodes);
-  std::vector<std::pair<int, int>> front;
-  std::vector<std::size_t> last(nodes, parts_);  // part that came last
+  met_.clear();
+  nearest_.assign(nodes, -1);  // the part that came last
+  makeRoom(nodes + 1, first_);
+  first_.assign(nodes + 1, 0);
   for (std::size_t p = 0; p < parts_; ++p) {
-    spread(pattern, middles[p], front, [&](int node, int hops) {
-      const auto i = static_cast<std::size_t>(node);
-      if (hops >= end || last[i] == p) return false;
-      last[i] = p;
+    spread(pattern, middles[p], [&](int node, int hops) {
+      int& last = nearest_[static_cast<std::size_t>(node)];
+      if (hops >= end || last == static_cast<int>(p)) return false;
+      last = static_cast<int>(p);
       const double near = 1.0 - hops / static_cast<double>(end);
-      of_node[i].push_back({p, near * near});
+      makeRoom(met_.size() + 1, met_);
+      met_.push_back({static_cast<std::size_t>(node), {p, near * near}});
+      ++first_[static_cast<std::size_t>(node) + 1];
       return true;
     });
   }
-  shares_.clear();
-  first_ = {0};
-  for (const std::vector<Share>& shares : of_node) {
+  for (std::size_t i = 0; i < nodes; ++i) first_[i + 1] += first_[i];
+  makeRoom(met_.size(), shares_);
+  shares_.resize(met_.size());
+  for (const auto& [node, share] : met_) shares_[first_[node]++] = share;  // first_ of the next one then
+  for (std::size_t i = nodes; i > 0; --i) first_[i] = first_[i - 1];
+  first_[0] = 0;
+  for (std::size_t i = 0; i < nodes; ++i) {
     double sum = 0.0;
-    for (const Share& share : shares) sum += share.weight;
-    for (const Share& share : shares) shares_.push_back({share.part, share.weight / sum});
-    first_.push_back(shares_.size());
+    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) sum += shares_[k].weight;
+    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) shares_[k].weight /= sum;
   }
 }
 

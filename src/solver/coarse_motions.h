@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/padded_vectors.h"
@@ -31,7 +32,7 @@ class CoarseMotions {
     double weight;
   };
 
-  /// Of a step. Allocates only for a body of another pattern than before.
+  /// Of a step. Allocates only for a body of more nodes than before.
   /// @param body without x: has none. @param excluded nodes that contacts may move, ascending.
   void begin(const BodySystem& body, const std::vector<int>& excluded);
   void none() { any_ = false; }
@@ -44,7 +45,9 @@ class CoarseMotions {
   static constexpr std::size_t kLeastNodes = 20;  ///< of a part, or there are fewer parts
 
   void findParts(const BlockPattern& pattern);
-  void blend(const BlockPattern& pattern, const std::vector<int>& middles, int end);
+  template <class Visit>
+  void spread(const BlockPattern& pattern, int from, const Visit& visit);
+  void blend(const BlockPattern& pattern, const std::array<int, kMostParts>& middles, int end);
   void place(const NodalVectors& x);
   bool factor(const BodySystem& body);
 
@@ -61,6 +64,11 @@ class CoarseMotions {
   Eigen::MatrixXd energy_;                    ///< Z'A Z, J, below the diagonal
   Eigen::LLT<Eigen::MatrixXd> factor_;        ///< of it
   VectorX motion_;                            ///< scratch: of all parts
+  // Scratch of findParts().
+  std::vector<std::pair<int, int>> front_;          ///< nodes and their hops
+  std::vector<int> joined_;                         ///< nodes with blocks
+  std::vector<int> nearest_;                        ///< per node
+  std::vector<std::pair<std::size_t, Share>> met_;  ///< nodes with their shares, part after part
 };
 
 }  // namespace tissue_contact
