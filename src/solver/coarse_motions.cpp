@@ -154,6 +154,8 @@ void CoarseMotions::begin(const BodySystem& body, const std::vector<int>& exclud
   takes_part_.resize(fixed.size());
   for (std::size_t i = 0; i < fixed.size(); ++i) takes_part_[i] = fixed[i] || first_[i] == first_[i + 1] ? 0 : 1;
   for (const int node : excluded) takes_part_[static_cast<std::size_t>(node)] = 0;
+  const auto taking_part = static_cast<std::size_t>(std::count(takes_part_.begin(), takes_part_.end(), 1));
+  if (taking_part < kLeastNodes) return;
   place(*body.x);
   any_ = factor(body);
 }
@@ -285,7 +287,8 @@ void CoarseMotions::place(const NodalVectors& x) {
     about_middle_[p].setIdentity();
     if (!(of.weight > 0.0)) continue;
     const Vector3 c = of.first / of.weight;
-    const double radius = std::sqrt(std::max(of.second / of.weight - c.squaredNorm(), 1e-12));
+    constexpr double kLeastRadius = 0.01;  // parts that little is left of: what is less turns on round-off
+    const double radius = std::max(std::sqrt(std::max(of.second / of.weight - c.squaredNorm(), 0.0)), kLeastRadius);
     Matrix3 cross;
     cross << 0.0, -c.z(), c.y(), c.z(), 0.0, -c.x(), -c.y(), c.x(), 0.0;
     about_middle_[p].topRightCorner<3, 3>() = cross / radius;

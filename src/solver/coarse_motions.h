@@ -42,7 +42,7 @@ class CoarseMotions {
   void direction(const PaddedVectors& defect, PaddedVectors& along);
 
  private:
-  static constexpr std::size_t kLeastNodes = 20;  ///< of a part, or there are fewer parts
+  static constexpr std::size_t kLeastNodes = 20;  ///< of a part, or there are fewer parts; of all that take part
 
   void findParts(const BlockPattern& pattern);
   template <class Visit>
