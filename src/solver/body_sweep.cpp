@@ -181,6 +181,11 @@ double runLowerProduct(const Work& all, const std::vector<unsigned char>& moves)
   return all.body.D != nullptr ? lowerProduct<true>(all, moves) : lowerProduct<false>(all, moves);
 }
 
+/// Four numbers a node, of which the last is 0.
+Eigen::Map<VectorX> allOf(PaddedVectors& vectors) {
+  return {vectors.front().at.data(), static_cast<Eigen::Index>(kLanes * vectors.size())};
+}
+
 /// In closed form: cofactors over the determinant.
 TISSUE_CONTACT_INLINE void invert(const SymmetricBlocks& blocks, const double* free, SymmetricBlocks& inverse) {
   Lanes m[6], by;
@@ -301,6 +306,13 @@ void BodySweep::beginRigidMotions(const std::vector<int>& excluded) {
   if (body_->stiff_parts != nullptr && !body_->stiff_parts->empty()) rigid_motions_.begin(*body_, excluded);
 }
 
+void BodySweep::beginCoarseMotions(const std::vector<int>& excluded) {
+  coarse_motions_.begin(*body_, excluded);
+  defect_.assign(v_.size(), PaddedVector{});  // stays 0 where slices do not move
+  along_.resize(v_.size());
+  along_lower_.resize(v_.size());
+}
+
 void BodySweep::deflate(NodalVectors& v) {
   pad(v, v_);
   rigid_motions_.correct(deflation_.begun(), v_, lower_,
@@ -312,18 +324,13 @@ void BodySweep::deflate(NodalVectors& v) {
 
 /// Moves v_ along the coarse motions' direction to where the energy is least, and lower_ with it.
 void BodySweep::correctCoarsely() {
-  for (PaddedVectors* all : {&defect_, &along_, &along_lower_}) all->assign(v_.size(), PaddedVector{});
   runDefects({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, moves_, defect_.data());
   coarse_motions_.direction(defect_, along_);
   const Deflation::Products found = measure(along_, along_lower_);
   if (!(found.energy >= Deflation::kLeastEnergy * found.inertia) || found.inertia == 0.0) return;
-  double work = 0.0;
-  for (std::size_t i = 0; i < v_.size(); ++i) work += vectorOf(defect_[i]).dot(vectorOf(along_[i]));
-  const double share = work / found.energy;
-  for (std::size_t i = 0; i < v_.size(); ++i) {
-    vectorOf(v_[i]) += share * vectorOf(along_[i]);
-    vectorOf(lower_[i]) += share * vectorOf(along_lower_[i]);
-  }
+  const double share = allOf(defect_).dot(allOf(along_)) / found.energy;
+  allOf(v_) += share * allOf(along_);
+  allOf(lower_) += share * allOf(along_lower_);
   deflation_.correctedElsewhere(v_);
 }
 

@@ -55,7 +55,7 @@ class BodySweep {
   void beginRigidMotions(const std::vector<int>& excluded);
 
   /// From now on deflate() moves the body along its coarse motions as well. @param excluded nodes that contacts may move, ascending.
-  void beginCoarseMotions(const std::vector<int>& excluded) { coarse_motions_.begin(*body_, excluded); }
+  void beginCoarseMotions(const std::vector<int>& excluded);
 
   /// A contact has moved a node by `change` (m/s) since the sweep forth.
   void follow(int node, const Vector3& change);
