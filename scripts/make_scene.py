@@ -26,7 +26,7 @@ BALL_M = 0.005  # radius of the probe's ball, urdf/probe.urdf
 CLEARANCE_M = 0.005
 SPEED_M_PER_S = 0.02
 HOLD_S = 0.2
-HELD = numpy.arange(0.15, 0.61, 0.05)  # of the height: the first that the organ stands on
+HELD_PERCENT = range(15, 65, 5)  # of the height: the first that the organ stands on
 SURFACES, TETRAHEDRA = (".stl", ".obj", ".ply"), (".msh", ".vtk")
 LONGEST_M, SHORTEST_M = 2.0, 0.002  # of an organ
 
@@ -42,7 +42,7 @@ tissues:
 {cells}
     material: {{preset: {material}, model: neo_hookean}}  # doc/organ.md; or youngs_modulus_pa, poissons_ratio, density_kg_per_m3
     fixed:
-      - plane: {{point_m: [0, 0, {held:.4f}], normal: [0, 0, 1]}}  # the lowest {part:.0f} % of its height: it then stands and does not swing
+      - plane: {{point_m: [0, 0, {held:.4f}], normal: [0, 0, 1]}}  # the lowest {percent} % of its height: {why}
 
 instruments:
   - name: probe
@@ -101,7 +101,7 @@ def is_between(place, places):
 
 
 def held_height(corners):
-    """z (m) up to which the organ is held, and what part of its height that is: so that it stands on what is held, its middle over it.
+    """z (m) up to which the organ is held, how much of its height that is (%), and whether it stands on it, its middle over what is held.
 
     Held by less, an organ on a stalk swings away from the probe and comes back: its force then is that of a blow, and hangs on all that
     was before.
@@ -110,11 +110,11 @@ def held_height(corners):
     areas = numpy.linalg.norm(numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     middle = (areas[:, None] * corners.mean(axis=1)).sum(axis=0)[:2] / areas.sum()
     low, height = vertices[:, 2].min(), numpy.ptp(vertices[:, 2])
-    for part in HELD:
-        held = low + part * height
+    for percent in HELD_PERCENT:
+        held = low + 0.01 * percent * height
         if is_between(middle, vertices[vertices[:, 2] <= held][:, :2]):
-            break
-    return held, part
+            return held, percent, True
+    return held, percent, False
 
 
 def drag_path(corners, depth_m, length_m):
@@ -249,7 +249,7 @@ def main():
     low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
     size = high - low
     require_organ_size(size, arguments.scale)
-    held, part = held_height(corners)
+    held, percent, stands = held_height(corners)
     depth = arguments.depth or min(0.005, 0.1 * size[2])
     path = drag_path(corners, depth, min(0.02, 0.2 * size[:2].max()))
     rows = timed(path)
@@ -260,7 +260,8 @@ def main():
     text = SCENE.format(
         name=name if name[0].isalpha() else "organ_" + name, file=quoted(os.path.basename(arguments.organ)),
         quoted=quoted(os.path.abspath(arguments.organ)), scale=arguments.scale, size=size, cells=cells,
-        material=arguments.material, held=held, part=100 * part,
+        material=arguments.material, held=held, percent=percent,
+        why="it then stands and does not swing" if stands else "it may swing: it does not stand on more either",
         start=path[0], clearance=1e3 * CLEARANCE_M, topic=TOPIC)
     try:
         os.makedirs(folder, exist_ok=True)

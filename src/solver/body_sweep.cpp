@@ -181,7 +181,7 @@ double runLowerProduct(const Work& all, const std::vector<unsigned char>& moves)
   return all.body.D != nullptr ? lowerProduct<true>(all, moves) : lowerProduct<false>(all, moves);
 }
 
-/// Four numbers a node, of which the last is 0.
+/// Four numbers a node, of which the last is anything.
 Eigen::Map<VectorX> allOf(PaddedVectors& vectors) {
   return {vectors.front().at.data(), static_cast<Eigen::Index>(kLanes * vectors.size())};
 }
@@ -308,6 +308,7 @@ void BodySweep::beginRigidMotions(const std::vector<int>& excluded) {
 
 void BodySweep::beginCoarseMotions(const std::vector<int>& excluded) {
   coarse_motions_.begin(*body_, excluded);
+  if (!coarse_motions_.any()) return;
   defect_.assign(v_.size(), PaddedVector{});  // stays 0 where slices do not move
   along_.resize(v_.size());
   along_lower_.resize(v_.size());
@@ -322,15 +323,14 @@ void BodySweep::deflate(NodalVectors& v) {
   if (deflation_.hasAlong() || rigid_motions_.any() || coarse_motions_.any()) unpad(v_, v);
 }
 
-/// Moves v_ along the coarse motions' direction to where the energy is least, and lower_ with it.
+/// Moves v_ along the coarse motions to where the energy is least, and lower_ with it.
 void BodySweep::correctCoarsely() {
   runDefects({*body_, diagonal_, inverse_, right_, free_, lower_.data(), v_.data()}, moves_, defect_.data());
   coarse_motions_.direction(defect_, along_);
   const Deflation::Products found = measure(along_, along_lower_);
   if (!(found.energy >= Deflation::kLeastEnergy * found.inertia) || found.inertia == 0.0) return;
-  const double share = allOf(defect_).dot(allOf(along_)) / found.energy;
-  allOf(v_) += share * allOf(along_);
-  allOf(lower_) += share * allOf(along_lower_);
+  allOf(v_) += allOf(along_);
+  allOf(lower_) += allOf(along_lower_);
   deflation_.correctedElsewhere(v_);
 }
 

@@ -132,9 +132,10 @@ class BodySweep {
   Deflation deflation_;
   RigidMotions rigid_motions_;
   CoarseMotions coarse_motions_;
-  PaddedVectors defect_, along_,
-      along_lower_;  ///< scratch of those: b + J'lambda - A v, N s; a direction, m/s, and L times it, N s
-  PaddedVectors v_;  ///< scratch: what a sweep works on, m/s
+  PaddedVectors defect_;       ///< scratch of coarse motions: b + J'lambda - A v, N s
+  PaddedVectors along_;        ///< scratch: what they move, m/s
+  PaddedVectors along_lower_;  ///< scratch: L times that, N s
+  PaddedVectors v_;            ///< scratch: what a sweep works on, m/s
 };
 
 }  // namespace tissue_contact

@@ -32,7 +32,7 @@ class CoarseMotions {
     double weight;
   };
 
-  /// Of a step. Allocates only for a body of more nodes than before.
+  /// Of a step. Allocates the first time, and for a body of more nodes or other parts than before.
   /// @param body without x: has none. @param excluded nodes that contacts may move, ascending.
   void begin(const BodySystem& body, const std::vector<int>& excluded);
   void none() { any_ = false; }

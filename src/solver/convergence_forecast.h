@@ -23,7 +23,7 @@ class ConvergenceForecast {
     if (count_ < kLeast) return 0.0;
     const double now = last_[(count_ - 1) % kKept];
     const double before = last_[(count_ - 1 - kSpan) % kKept];
-    if (!(now > 1.0)) return 0.0;
+    if (!(now > 1.0 && before > 0.0)) return 0.0;
     const double fall = std::log(before / now);
     return fall > 0.0 ? std::log(now) * kSpan / fall : std::numeric_limits<double>::infinity();
   }

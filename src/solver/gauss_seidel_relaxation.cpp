@@ -191,6 +191,7 @@ void GaussSeidelRelaxation::beginRigidMotions(const ContactProblem& problem) {
   forEachAwake(problem, [&](std::size_t k) { bodies_[k].beginRigidMotions(excluded_); });
 }
 
+/// All bodies awake get them. What is mixed goes on: to forget it, since pairs of sweeps are another map from now on, gained nothing.
 void GaussSeidelRelaxation::beginCoarseMotions(const ContactProblem& problem) {
   wants_coarse_motions_ = false;
   has_coarse_motions_ = true;

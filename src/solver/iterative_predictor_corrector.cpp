@@ -108,7 +108,7 @@ bool IterativePredictorCorrector::balanced(const ContactProblem& problem, const 
          looseBodiesBalanced(problem, met.net_n_s, solution);
 }
 
-/// What momentum lacks over what it may lack, bodies that nothing holds aside.
+/// What momentum lacks over what it may lack as balanced() has it, but for bodies that nothing holds.
 double IterativePredictorCorrector::excess(const MomentumDefect& met, const ContactSolution& solution) const {
   const double net = std::accumulate(met.net_n_s.begin(), met.net_n_s.end(), 0.0);
   return std::max(met.norm_n_s / (options_.tolerance * (load_scale_ + impulseNorm(solution.impulses))),

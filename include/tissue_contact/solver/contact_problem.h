@@ -29,8 +29,8 @@ struct BodySystem {
   /// Nodes of each part that is far stiffer than most of the body, ascending, none in two parts; null: there is none. For solvers that look
   /// for the rigid motions of such parts; answers do not depend on it beyond their tolerance.
   const std::vector<std::vector<int>>* stiff_parts = nullptr;
-  const NodalVectors* x =
-      nullptr;  ///< where the nodes are, m; needed with stiff_parts; null: no solver looks for rigid motions
+  /// Where the nodes are, m; needed with stiff_parts. Without it no solver looks for motions of parts that blend into each other either.
+  const NodalVectors* x = nullptr;
   double stiffness_scale = 0.0;  ///< s^2
   double damping_scale = 0.0;    ///< s: dt where there is a D
   VectorX mass;                  ///< kg, per node

@@ -34,7 +34,6 @@ std::string ForceErrorSummary::text() const {
   if (share(inertia_) > kOfSwing) {
     text << "; and by what went wrong in earlier steps, since the tissue swings: its inertia is " << percent(inertia_)
          << " of the force. Hold more of it (tissues[].fixed), or compare with shorter steps and smaller cells";
-    return text.str();
   }
   constexpr double kWorthAWord = 0.1;
   if (share(total_) < kWorthAWord) return text.str();

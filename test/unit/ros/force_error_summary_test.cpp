@@ -46,11 +46,12 @@ TEST(ForceErrorSummary, NamesTheKeyThatLowersTheLargestPart) {
 TEST(ForceErrorSummary, SaysThatSwingingTissueErrsByMore) {
   const auto text = [](double inertia_n) {
     ForceErrorSummary summary;
-    ForceErrorEstimate error = estimate(0.02, 0.0, 0.0);
+    ForceErrorEstimate error = estimate(inertia_n > 0.6 ? 0.2 : 0.02, 0.0, 0.0);
     error.inertia_n = inertia_n;
     summary.add(1.0, error);
     return summary.text();
   };
+  EXPECT_NE(text(0.7).find("cells; for less take smaller cells where it touches"), std::string::npos);
   EXPECT_EQ(text(0.3), "likely wrong by 2 % (RMS; mesh 2 %, step 0 %, solver 0 %)");
   EXPECT_NE(text(0.54).find("; and by what went wrong in earlier steps, since the tissue swings: its inertia is 54 %"),
             std::string::npos);
