@@ -319,6 +319,19 @@ bool CoarseMotions::factor(const BodySystem& body) {
   return factor_.info() == Eigen::Success;
 }
 
+/// motion_ becomes (Z'A Z)^-1 motion_. What factor_.solveInPlace() does, without the memory that it may ask for.
+void CoarseMotions::solve() {
+  const Eigen::MatrixXd& L = factor_.matrixLLT();
+  const Eigen::Index size = motion_.size();
+  for (Eigen::Index r = 0; r < size; ++r) {
+    motion_[r] = (motion_[r] - L.row(r).head(r).dot(motion_.head(r))) / L(r, r);
+  }
+  for (Eigen::Index r = size - 1; r >= 0; --r) {
+    const Eigen::Index later = size - 1 - r;
+    motion_[r] = (motion_[r] - L.col(r).tail(later).dot(motion_.tail(later))) / L(r, r);
+  }
+}
+
 void CoarseMotions::direction(const PaddedVectors& defect, PaddedVectors& along) {
   std::array<Vector6, kMostParts> of;
   of.fill(Vector6::Zero());
@@ -332,7 +345,7 @@ void CoarseMotions::direction(const PaddedVectors& defect, PaddedVectors& along)
   for (std::size_t p = 0; p < parts_; ++p) {
     motion_.segment<6>(static_cast<Eigen::Index>(6 * p)) = about_middle_[p].transpose() * of[p];
   }
-  factor_.solveInPlace(motion_);
+  solve();
   for (std::size_t p = 0; p < parts_; ++p)
     of[p] = about_middle_[p] * motion_.segment<6>(static_cast<Eigen::Index>(6 * p));
   for (std::size_t i = 0; i < place_.size(); ++i) {

@@ -50,6 +50,7 @@ class CoarseMotions {
   void blend(const BlockPattern& pattern, const std::array<int, kMostParts>& middles, int end);
   void place(const NodalVectors& x);
   bool factor(const BodySystem& body);
+  void solve();
 
   bool any_ = false;
   std::shared_ptr<const BlockPattern> pattern_;  ///< of which the parts are

@@ -182,7 +182,7 @@ TEST(CoarseMotions, OfPiecesThatNothingJoins) {
     NodalVectors x(3, nodes);
     for (int i = 0; i < nodes; ++i) {
       K.diagonal[static_cast<std::size_t>(i)] = 2.0 * Matrix3::Identity();
-      x.col(i) = Vector3(i % 40, i / 40, (i * i) % 5);
+      x.col(i) = Vector3(i % 40, i, (i * i) % 5);
     }
     BodySystem body;
     body.K = &K;
