@@ -10,7 +10,7 @@ fi
 _tissue_contact_nounset=; case $- in *u*) _tissue_contact_nounset=1; set +u ;; esac  # catkin's file fails under it
 unset PYTHONHOME PYTHONPATH CMAKE_PREFIX_PATH ROS_PACKAGE_PATH
 case ":$PATH:" in :/usr/bin:*) ;; *) export PATH="/usr/bin:$PATH" ;; esac  # the system's python3 has ROS, another has not
-. "$_tissue_contact_setup"
+. "$_tissue_contact_setup" ""  # without arguments it would take those of the script that sources this
 export ROS_MASTER_URI="${ROS_MASTER_URI:-http://localhost:11311}"
 [ -n "${ROS_IP:-}" ] || export ROS_HOSTNAME="${ROS_HOSTNAME:-localhost}"  # a host name that does not resolve stops every node
 export PYTHONUNBUFFERED=1 ROSCONSOLE_STDOUT_LINE_BUFFERED=1               # logs appear at once, tty or not

@@ -64,6 +64,17 @@ class HelpTest(unittest.TestCase):
                 self.assertIn("'" + bad + "'", first.stderr)
                 self.assertEqual((first.returncode, first.stderr), (second.returncode, second.stderr))
 
+    def test_the_environment_may_be_sourced_by_a_script_with_arguments(self):
+        build = subprocess.run([SOURCE + "/scripts/build", "--where"], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=True,
+                               timeout=60).stdout.strip()
+        if not os.path.isfile(os.path.join(build, "devel", "setup.bash")):
+            self.skipTest(build + " is not where this was built")
+        script = ". '%s/scripts/env.bash'; echo \"$*\"; command -v rospack" % SOURCE
+        done = subprocess.run(["/bin/bash", "-c", script, "script", "--help", "--extend"], stdin=subprocess.DEVNULL, capture_output=True,
+                              text=True, timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.stdout.splitlines()[0], "--help --extend")
+
     def test_node_names_what_it_needs(self):
         text = self.run_tool("node", "__name:=other", "--help", "_scene:=x.yaml").stdout
         for word in ["~scene", "~tf_timeout_s", "~robot_description", "/wrench", "/diagnostics", "_scene:="]:
