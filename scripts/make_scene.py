@@ -57,7 +57,7 @@ friction:  # wet tissue on metal: our choice, to be measured
   - {{instrument: probe, tissue: {name}, static: 0.3, kinetic: 0.2}}
 
 solver:
-  iterations: 100  # at most: 30, the default, leave every fourth step of a long and thin organ unfinished
+  iterations: 100  # at most: 30, the default, leave every fifth step of a long and thin organ unfinished
 
 step:
   max_step_s: 0.002  # one for each joint state of the recording,
@@ -261,7 +261,7 @@ def main():
         name=name if name[0].isalpha() else "organ_" + name, file=quoted(os.path.basename(arguments.organ)),
         quoted=quoted(os.path.abspath(arguments.organ)), scale=arguments.scale, size=size, cells=cells,
         material=arguments.material, held=held, percent=percent,
-        why="it then stands and does not swing" if stands else "it may swing: it does not stand on more either",
+        why="its middle is over that" if stands else "it may swing: its middle is over no more of it either",
         start=path[0], clearance=1e3 * CLEARANCE_M, topic=TOPIC)
     try:
         os.makedirs(folder, exist_ok=True)

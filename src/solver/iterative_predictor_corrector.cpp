@@ -44,6 +44,9 @@ double impulseSum(const std::vector<Vector3>& impulses) {
   return sum;
 }
 
+/// Of all bodies, N s.
+double netOf(const MomentumDefect& met) { return std::accumulate(met.net_n_s.begin(), met.net_n_s.end(), 0.0); }
+
 /// Of what changes velocities in the step and of all nodes at a nanometre per second, N s. A part of b itself would be a part of the momentum:
 /// with a tolerance of 0.01 falling bodies lost up to nine tenths of their weight, and a flap gained energy as it swung.
 double changeScale(const ContactProblem& problem) {
@@ -102,17 +105,21 @@ bool IterativePredictorCorrector::settled(const ContactProblem& problem, const C
 /// since the next touch is with what a body did before it.
 bool IterativePredictorCorrector::balanced(const ContactProblem& problem, const MomentumDefect& met,
                                            const ContactSolution& solution) {
-  const double net = std::accumulate(met.net_n_s.begin(), met.net_n_s.end(), 0.0);
-  return met.norm_n_s <= options_.tolerance * (load_scale_ + impulseNorm(solution.impulses)) &&
-         net <= kNetShare * options_.tolerance * (load_scale_ + impulseSum(solution.impulses)) &&
+  const Allowed allowed = allowedDefect(solution);
+  return met.norm_n_s <= allowed.norm_n_s && netOf(met) <= allowed.net_n_s &&
          looseBodiesBalanced(problem, met.net_n_s, solution);
 }
 
-/// What momentum lacks over what it may lack as balanced() has it, but for bodies that nothing holds.
+/// What momentum may lack, node by node and all together.
+IterativePredictorCorrector::Allowed IterativePredictorCorrector::allowedDefect(const ContactSolution& solution) const {
+  return {options_.tolerance * (load_scale_ + impulseNorm(solution.impulses)),
+          kNetShare * options_.tolerance * (load_scale_ + impulseSum(solution.impulses))};
+}
+
+/// What momentum lacks over what it may lack. What more bodies must meet that nothing holds has no say here.
 double IterativePredictorCorrector::excess(const MomentumDefect& met, const ContactSolution& solution) const {
-  const double net = std::accumulate(met.net_n_s.begin(), met.net_n_s.end(), 0.0);
-  return std::max(met.norm_n_s / (options_.tolerance * (load_scale_ + impulseNorm(solution.impulses))),
-                  net / (kNetShare * options_.tolerance * (load_scale_ + impulseSum(solution.impulses))));
+  const Allowed allowed = allowedDefect(solution);
+  return std::max(met.norm_n_s / allowed.norm_n_s, netOf(met) / allowed.net_n_s);
 }
 
 /// Likewise of each body that nothing holds, against what moves it in all: the jaws' squeeze, which cancels, may be a hundred times that.

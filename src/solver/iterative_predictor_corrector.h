@@ -53,6 +53,11 @@ class IterativePredictorCorrector : public ContactSolver {
   bool settled(const ContactProblem& problem, const ContactSolution& solution, double change, double before,
                double share);
   bool balanced(const ContactProblem& problem, const MomentumDefect& met, const ContactSolution& solution);
+  struct Allowed {
+    double norm_n_s;
+    double net_n_s;
+  };
+  Allowed allowedDefect(const ContactSolution& solution) const;
   double excess(const MomentumDefect& met, const ContactSolution& solution) const;
   bool looseBodiesBalanced(const ContactProblem& problem, const std::vector<double>& net_n_s,
                            const ContactSolution& solution);

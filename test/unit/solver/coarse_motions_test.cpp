@@ -99,24 +99,29 @@ TEST(CoarseMotions, FindTheRigidMotionOfALooseBodyAtOnce) {
   }
 }
 
-// What Galerkin's condition asks for: nothing is left that any of the motions could take off. Through D, fixed nodes and nodes of contacts.
-TEST(CoarseMotions, LeaveNothingOfADefectThatTheyCouldTakeOff) {
-  const Bar bar(true, true);
-  const std::vector<int> excluded = {100, 101, 150};
+/// What the motions make of a random defect. By Galerkin's condition nothing is left then that any of them could take off.
+NodalVectors correctionThatLeavesNothing(const Bar& bar, const std::vector<int>& excluded) {
   CoarseMotions coarse;
   coarse.begin(bar.body(), excluded);
-  ASSERT_TRUE(coarse.any());
+  EXPECT_TRUE(coarse.any());
   const NodalVectors r = bar.randomVectors();
   const NodalVectors found = along(coarse, bar.defect(r, NodalVectors::Zero(3, bar.nodes())));
   EXPECT_GT(found.norm(), 0.0);
+  EXPECT_LE(along(coarse, bar.defect(r, found)).norm(), 1e-6 * found.norm());
+  return found;
+}
+
+// Through D, fixed nodes and nodes of contacts.
+TEST(CoarseMotions, LeaveNothingOfADefectThatTheyCouldTakeOff) {
+  const Bar bar(true, true);
+  const std::vector<int> excluded = {100, 101, 150};
+  const NodalVectors found = correctionThatLeavesNothing(bar, excluded);
   for (const int node : excluded) EXPECT_EQ(found.col(node).norm(), 0.0);
   for (std::size_t i = 0; i < bar.fixed.size(); ++i) {
     if (bar.fixed[i]) {
       EXPECT_EQ(found.col(static_cast<Eigen::Index>(i)).norm(), 0.0);
     }
   }
-  const NodalVectors again = along(coarse, bar.defect(r, found));
-  EXPECT_LE(again.norm(), 1e-6 * found.norm());
 }
 
 TEST(CoarseMotions, ThereAreNoneWithoutPlacesOrOfFewNodes) {
@@ -143,13 +148,7 @@ TEST(CoarseMotions, OfNodesInALineAreThoseThatMoveThem) {
     if (bar.mesh.positions.col(i).tail<2>().norm() > 1e-6) excluded.push_back(i);
   }
   ASSERT_EQ(static_cast<std::size_t>(bar.nodes()) - excluded.size(), 21u);
-  CoarseMotions coarse;
-  coarse.begin(bar.body(), excluded);
-  ASSERT_TRUE(coarse.any());
-  const NodalVectors r = bar.randomVectors();
-  const NodalVectors found = along(coarse, bar.defect(r, NodalVectors::Zero(3, bar.nodes())));
-  EXPECT_GT(found.norm(), 0.0);
-  EXPECT_LE(along(coarse, bar.defect(r, found)).norm(), 1e-6 * found.norm());
+  correctionThatLeavesNothing(bar, excluded);
 }
 
 // Parts hang on the mesh alone: what another body, fixed otherwise, left behind changes no bit.
@@ -264,15 +263,16 @@ TEST(CoarseMotions, BendASlenderBodySoonerToTheSameAnswer) {
   }
 }
 
-// A step that ends within the first eight iterations, or soon after, is the same to the bit with and without.
+// A step of more iterations than a forecast takes, which foresees few, is the same to the bit with and without.
 TEST(CoarseMotions, AreNotLookedForInEasySteps) {
   const auto solved = [](bool may) {
-    PressedBlock scene(0.5, 0.001);
-    scene.problem.bodies[0].x = may ? &scene.mesh.positions : nullptr;
-    const SolverReport report =
-        IterativePredictorCorrector(options(100, 20, 1e-3)).solve(scene.problem, scene.solution);
+    Bar bar(true, false, 0.0005);
+    bar.problem.bodies[0].b = 1e-6 * bar.randomVectors();
+    if (!may) bar.problem.bodies[0].x = nullptr;
+    const SolverReport report = IterativePredictorCorrector(options(100, 2, 1e-9)).solve(bar.problem, bar.solution);
     EXPECT_EQ(report.stop, StopReason::kTolerance);
-    return scene.solution.v[0];
+    EXPECT_GT(report.iterations, 12);
+    return bar.solution.v[0];
   };
   EXPECT_EQ(solved(true), solved(false));
 }
