@@ -1,8 +1,10 @@
 #include "tissue_contact/core/resolve_path.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <stdexcept>
+#include <string>
 
 #include "tissue_contact/core/text.h"
 
@@ -13,6 +15,34 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void refuse(const std::string& uri, const std::string& problem) {
   throw std::invalid_argument("path \"" + uri + "\" " + problem);
+}
+
+int hexDigit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+/// `text` with the characters that each %XX of it stands for (RFC 3986, section 2.1); any other % stays.
+std::string percentDecoded(const std::string& text) {
+  std::string decoded;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const int high = text[i] == '%' && i + 2 < text.size() ? hexDigit(text[i + 1]) : -1;
+    const int low = high < 0 ? -1 : hexDigit(text[i + 2]);
+    if (low >= 0) i += 2;
+    decoded += low < 0 ? text[i] : static_cast<char>(16 * high + low);
+  }
+  return decoded;
+}
+
+/// The file that a URI's path names: as it stands if that is there, which is how most URDFs write spaces, else decoded, as RViz reads it.
+fs::path ofUri(const fs::path& path) {
+  const std::string decoded = percentDecoded(path.string());
+  std::error_code unreadable;
+  const bool is_decoded = decoded != path.string() && std::none_of(decoded.begin(), decoded.end(), isControl) &&
+                          !fs::exists(path, unreadable) && fs::exists(decoded, unreadable);
+  return is_decoded ? fs::path(decoded) : path;
 }
 
 fs::path inPackage(const std::string& uri, const std::string& rest, const PackagePath& package_path) {
@@ -26,7 +56,7 @@ fs::path inPackage(const std::string& uri, const std::string& rest, const Packag
                     "\", which is not known; install it, source its setup file, name the folder it lies in in "
                     "ROS_PACKAGE_PATH, or give a plain path");
   }
-  return fs::path(directory) / rest.substr(start);
+  return ofUri(fs::path(directory) / rest.substr(start));
 }
 
 }  // namespace
@@ -47,7 +77,7 @@ std::string resolvePath(const std::string& uri, const std::string& base_director
     path = inPackage(uri, rest, package_path);
   } else if (scheme == "file") {
     if (rest.empty() || rest.front() != '/') refuse(uri, "must read file:///<absolute path>");
-    path = rest;
+    path = ofUri(rest);
   } else {
     refuse(uri, "has the unknown scheme \"" + scheme + "\"; use package://, file:// or a plain path");
   }
@@ -56,6 +86,23 @@ std::string resolvePath(const std::string& uri, const std::string& base_director
   const fs::path absolute = fs::absolute(path, error);
   if (error) refuse(uri, "cannot be made absolute: " + error.message());
   return absolute.string();
+}
+
+std::string fileUri(const std::string& path) {
+  const std::string plain = "/-._~!$&'()*+,;=:@";  // what else a path in a URI may have, beside letters and digits
+  std::string uri = "file://";
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                          plain.find(c) != std::string::npos;
+    constexpr const char* kDigits = "0123456789ABCDEF";
+    if (is_plain) {
+      uri += c;
+    } else {
+      uri.append({'%', kDigits[byte / 16], kDigits[byte % 16]});
+    }
+  }
+  return uri;
 }
 
 }  // namespace tissue_contact

@@ -109,6 +109,10 @@ urdf::ModelInterfaceSharedPtr parseWithUrdfdom(const std::string& xml, const std
   if (model && !captured.lostSomething()) return model;
   if (!captured.errors().empty()) reason += (reason.empty() ? "" : "; ") + captured.errors();
   if (reason.empty()) reason = "no reason given";
+  if (reason.find("no known type") != std::string::npos) {
+    reason +=
+        "; a joint is fixed, revolute, continuous or prismatic here (one like a ball: three revolute joints in a row)";
+  }
   throw std::invalid_argument(source + ": urdfdom refuses this URDF: " + printable(reason, kMaxReasonLength) +
                               "; correct or delete what it names, which check_urdf finds as well");
 }

@@ -43,17 +43,21 @@ MeshFileContents readContents(const std::string& file, bool with_labels) {
   const bool gmsh = text.substr(0, 1) == "$";
   const bool vtk = text.substr(0, 6) == "# vtk ";
   const bool xml = text.substr(0, 1) == "<";
+  const bool surface = xml && text.substr(0, 4096).find("type=\"PolyData\"") != std::string_view::npos;
   const std::string start = excerpt(text.substr(0, text.find_first_of("\r\n")));
   MeshFileCursor in(file, std::move(bytes));
   in.seek(begin);
   if (gmsh) return readGmsh(in, with_labels);
   if (vtk) return readVtk(in, with_labels);
   if (in.atEnd()) in.fail("the file is empty; it must hold a Gmsh .msh or a legacy VTK mesh");
-  in.fail("the file starts with " + start +
-          ", which is neither Gmsh .msh ('$MeshFormat' or '$NOD') nor legacy VTK ('# vtk DataFile Version')" +
-          (xml ? "; XML is not read" : "") +
-          "; convert it, for instance: meshio convert FILE organ.vtk (GiD's .msh it does not read: export another "
-          "format there)");
+  in.fail(
+      "the file starts with " + start +
+      ", which is neither Gmsh .msh ('$MeshFormat' or '$NOD') nor legacy VTK ('# vtk DataFile Version')" +
+      (xml ? "; XML is not read" : "") +
+      (surface
+           ? "; save this surface as .stl, for instance with ParaView, which make_scene.py fills"
+           : "; convert it, for instance: meshio convert FILE organ.vtk (GiD's .msh it does not read: export another "
+             "format there)"));
 }
 
 void requireVolumes(const MeshFileContents& contents, const std::string& file) {

@@ -166,8 +166,10 @@ void VtkReader::readHeader() {
   if (dataset != "DATASET") in_.fail("expected DATASET, found " + excerpt(dataset) + "; export the file again");
   const std::string kind = upperCase(in_.word("the kind of data set"));
   if (kind != "UNSTRUCTURED_GRID") {
-    in_.fail("the data set is " + excerpt(kind) +
-             "; only UNSTRUCTURED_GRID holds tetrahedra: mesh the volume and save it as one");
+    in_.fail("the data set is " + excerpt(kind) + "; only UNSTRUCTURED_GRID holds tetrahedra: " +
+             (kind == "POLYDATA"
+                  ? "save the surface as .stl (gmsh FILE.vtk -save -o FILE.stl), which make_scene.py fills"
+                  : "mesh the volume and save it as one"));
   }
 }
 

@@ -132,7 +132,7 @@ void Health::warnOfResult(const PlayedSample& played) {
   if (simulator_.report().implausible_load.found && implausible_loads_.pass()) {
     ROS_WARN_STREAM(toTime(played.stamp_ns) << " s: " << implausibleLoadText(simulator_));
   }
-  if (law_alarm_.leaves(simulator_.report().law_error.relative)) {
+  if (law_alarm_.leaves(simulator_.report().law_error.relative) && laws_left_.pass()) {
     ROS_WARN_STREAM(toTime(played.stamp_ns) << " s: " << lawErrorText(simulator_));
   }
   if (simulator_.report().coarse_cells.tissue >= 0 && !std::exchange(told_of_cells_, true)) {

@@ -113,6 +113,7 @@ class Health {
   Throttle resumptions_;
   Throttle jumps_;
   Throttle implausible_loads_;
+  Throttle laws_left_;  // each press may leave it anew
   Throttle not_converged_{5};
   std::optional<Clock::time_point> looked_at_force_errors_;
   std::int64_t looked_at_stamp_ns_ = 0;

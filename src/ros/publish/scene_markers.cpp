@@ -12,6 +12,7 @@
 #include "mesh/edge_table.h"
 #include "ros/conversions.h"
 #include "simulation/nodal_fields.h"
+#include "tissue_contact/core/resolve_path.h"
 
 namespace tissue_contact {
 namespace {
@@ -48,7 +49,8 @@ void setGeometry(const ShapeGeometry& geometry, const TriangleMesh* mesh, Marker
   } else {
     const auto& file = std::get<MeshGeometry>(geometry);
     marker.type = Marker::MESH_RESOURCE;
-    marker.mesh_resource = "file://" + file.file;
+    // A path that could not be resolved here stands as it was written, and RViz's machine may know its package.
+    marker.mesh_resource = file.file.front() == '/' ? fileUri(file.file) : file.file;
     marker.scale = toVector(file.scale);
   }
 }

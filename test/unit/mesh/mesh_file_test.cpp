@@ -54,6 +54,8 @@ TEST(MeshFile, RefusesWhatIsNoMesh) {
   expectRefused("solid liver\nfacet normal\n", {":1: ", "'solid liver'", "neither Gmsh", "legacy VTK"});
   expectRefused("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\">",
                 {"XML is not read", "meshio convert FILE organ.vtk"});
+  expectRefused("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">",
+                {"XML is not read", "save this surface as .stl"});
   expectRefused(std::string("\0\xff\x7f garbage", 11), {"'???"});
   expectRefused("$", {"expected $MeshFormat"});
 }

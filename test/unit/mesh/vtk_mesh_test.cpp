@@ -88,7 +88,8 @@ TEST(VtkMesh, NamesTheHeaderThatIsWrong) {
   expectRefused(replaced(kText3, "ASCII", "BASE64"), {":3: expected ASCII or BINARY, found 'BASE64'"});
   expectRefused(replaced(kText3, "DATASET", "DATA"), {":4: expected DATASET"});
   expectRefused(replaced(kText3, "UNSTRUCTURED_GRID", "POLYDATA"),
-                {":4: the data set is 'POLYDATA'", "UNSTRUCTURED_GRID"});
+                {":4: the data set is 'POLYDATA'", "gmsh FILE.vtk -save -o FILE.stl", "make_scene.py"});
+  expectRefused(replaced(kText3, "UNSTRUCTURED_GRID", "STRUCTURED_POINTS"), {"'STRUCTURED_POINTS'", "mesh the volume"});
 }
 
 TEST(VtkMesh, NamesBlocksThatAreMissingOrRepeated) {

@@ -17,6 +17,7 @@
 
 #include "ros/conversions.h"
 #include "serialized.h"
+#include "support/replaced.h"
 #include "support/text_scene.h"
 
 namespace tissue_contact {
@@ -64,6 +65,25 @@ TEST(SceneMarkers, ShowTissueToolAndForcesInTheWorldFrame) {
     EXPECT_TRUE(ids.emplace(marker.ns, marker.id).second) << marker.ns << marker.id;
     EXPECT_TRUE(marker.type != Marker::TRIANGLE_LIST || marker.points.size() % 3 == 0);
   }
+}
+
+TEST(SceneMarkers, MeshesThatDoNotTouchAreLeftToRViz) {
+  const auto resourceFor = [](const std::string& file) {
+    const std::string urdf =
+        replaced(probeUrdf(0.005), "<link name='x_link'/>",
+                 "<link name='x_link'><visual><geometry><mesh filename='" + file + "'/></geometry></visual></link>");
+    Simulator simulator =
+        makeSimulator(blockScene() + onlyBall("[0, 0, 0.026]") +
+                          "friction: [{instrument: probe, tissue: block, static: 0.5, kinetic: 0.4}]\n",
+                      {{"probe", urdf}});
+    SceneMarkers markers(simulator, MarkerStyle());
+    for (const Marker& marker : markers.update(snapshotOf(simulator, kSecond)).markers) {
+      if (marker.type == Marker::MESH_RESOURCE) return marker.mesh_resource;
+    }
+    return std::string();
+  };
+  EXPECT_EQ(resourceFor("file:///opt/my arm/link.stl"), "file:///opt/my%20arm/link.stl");
+  EXPECT_EQ(resourceFor("package://not_here/link.stl"), "package://not_here/link.stl");
 }
 
 TEST(SceneMarkers, ArrowsAreTheForcesOnTheInstrumentFromTheContactPoints) {
