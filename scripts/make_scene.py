@@ -222,6 +222,9 @@ def require_organ_size(size, scale):
         fail("with --scale %g it is %.3g m long, longer than %g m; %s" % (scale, size.max(), LONGEST_M, advice))
     if not size.max() >= SHORTEST_M:
         fail("with --scale %g it is %.3g m long, shorter than %g m; %s" % (scale, size.max(), SHORTEST_M, advice))
+    if not size.min() > 1e-3 * size.max():
+        fail("it is flat, %.3g m along %s: an organ is a closed surface; give it a thickness, or make a sheet of it (doc/scene.md)" %
+             (size.min(), "xyz"[size.argmin()]))
 
 
 def parse_arguments():

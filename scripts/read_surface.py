@@ -63,13 +63,18 @@ def picked(vertices, triangles):
 
 def read_obj(data):
     vertices, triangles = [], []
-    for line in data.decode("utf-8").splitlines():
+    for number, line in enumerate(data.decode("utf-8").splitlines(), 1):
         word = line.split()
-        if word and word[0] == "v":
-            vertices.append([float(text) for text in word[1:4]])
-        elif word and word[0] == "f":
-            face = [int(text.split("/")[0]) for text in word[1:]]
-            triangles += fan([i - 1 if i > 0 else len(vertices) + i for i in face])
+        try:
+            if word and word[0] == "v":
+                vertices.append([float(text) for text in word[1:4]])
+            elif word and word[0] == "f":
+                face = [int(text.split("/")[0]) for text in word[1:]]
+                triangles += fan([i - 1 if i > 0 else len(vertices) + i for i in face])
+        except ValueError as error:
+            raise ValueError("line %d: %s" % (number, error)) from error
+        if word and word[0] in ("v", "f") and len(word) < 4:
+            raise ValueError("line %d has %d numbers and needs three; is the file cut off?" % (number, len(word) - 1))
     return picked(vertices, triangles)
 
 

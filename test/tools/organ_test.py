@@ -286,6 +286,10 @@ class OrganTest(unittest.TestCase):
         cases = {"no.stl": (b"", "no triangles"), "cut.stl": (stl(vertices, triangles)[:-70], "damaged"),
                  "pointer.stl": (b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 9\n", "git lfs pull"),
                  "empty.obj": (b"# nothing\n", "no triangles"), "far.obj": (b"v 0 0 0\nf 1 2 3\n", "not there"),
+                 "cut.obj": (b"\n".join(obj(vertices, triangles).splitlines()[:-3] + [b"f 3"]),
+                             "line %d has 1 numbers" % (len(vertices) + len(triangles) - 2)),
+                 "half.obj": (b"v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n", "line 3 has 2 numbers"),
+                 "words.obj": (b"v 0 0 0\nv one 0 0\n", "line 2: "),
                  "nan.obj": (b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "not finite"),
                  "cut.ply": (ply(vertices, triangles)[:-70], "damaged"), "other.vtp": (b"x", "endings")}
         for name, (content, words) in cases.items():
@@ -295,6 +299,11 @@ class OrganTest(unittest.TestCase):
                 self.assertIn(name, made.stdout)
                 self.assertIn(words, made.stdout)
                 self.assertEqual(made.stdout.count("\n"), 1, made.stdout)
+
+    def test_what_is_flat_is_no_organ(self):
+        made = self.make(self.write("flat.obj", b"v 0 0 5\nv 90 0 5\nv 0 90 5\nf 1 2 3\n"), "--scale", 0.001)
+        self.assertEqual((made.returncode, made.stdout.count("\n")), (1, 1), made.stdout)
+        self.assertIn("flat, 0 m along z", made.stdout)
 
     def test_no_folder_to_write_to(self):
         self.write("made", b"a file")

@@ -238,7 +238,7 @@ void BagReader::readIndex() {
       readChunk(records);
     } else if (op == Op::kIndex) {
       readChunkIndex(records);
-    } else {
+    } else if (op != Op::kZeros) {  // `rosbag reindex` of ROS Melodic leaves them where a chunk was cut off
       throw BagError("the record that ends at byte " + std::to_string(records.dataPosition() + records.dataSize()) +
                      " is neither a chunk nor an index");
     }

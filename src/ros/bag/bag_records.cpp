@@ -10,6 +10,9 @@ constexpr std::size_t kBuffer = 1 << 14;
 /// Data grow by at most so much at a time, so that a length which is not backed by bytes takes no memory.
 constexpr std::size_t kGrowth = 1 << 20;
 
+/// Where a chunk was cut off there are at most so many bytes of it.
+constexpr std::uint64_t kMaxZeros = (1ULL << 32U) + BagRecords::kMaxHeader;
+
 }  // namespace
 
 void BagFields::parse(std::string bytes) {
@@ -78,10 +81,29 @@ std::uint32_t BagRecords::length() {
   return value;
 }
 
+/// What is left has to be: a file of any size may be all zeros and take no room, but not the time to look.
+void BagRecords::requireZeros() {
+  if (end_ - position_ > kMaxZeros) fail("an empty header");
+  while (position_ < end_) {
+    if (buffer_begin_ == buffer_end_ && !fill()) fail("it is cut off");
+    const std::size_t count = std::min<std::uint64_t>(end_ - position_, buffer_end_ - buffer_begin_);
+    const char* const begin = buffer_.data() + buffer_begin_;
+    if (std::any_of(begin, begin + count, [](char c) { return c != '\0'; })) fail("an empty header");
+    buffer_begin_ += count;
+    position_ += count;
+  }
+}
+
 Op BagRecords::next() {
   skipData();
   record_position_ = position_;
   const std::uint32_t header_size = length();
+  if (header_size == 0) {
+    requireZeros();
+    data_position_ = end_;
+    data_size_ = 0;
+    return Op::kZeros;
+  }
   if (header_size > kMaxHeader) {
     fail("a header of " + std::to_string(header_size) + " bytes; at most " + std::to_string(kMaxHeader) + " are read");
   }

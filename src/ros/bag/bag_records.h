@@ -17,6 +17,7 @@
 namespace tissue_contact {
 
 enum class Op : std::uint8_t {
+  kZeros = 0,  ///< no record: nothing but zeros, up to the end
   kMessage = 2,
   kFileHeader = 3,
   kIndex = 4,
@@ -102,6 +103,7 @@ class BagRecords {
   void read(char* to, std::size_t size);
   bool fill();
   std::uint32_t length();
+  void requireZeros();
   [[noreturn]] void fail(const std::string& why) const;
 
   std::unique_ptr<ByteSource> source_;

@@ -78,6 +78,7 @@ inline std::vector<RecordPlace> recordsOf(const std::string& bytes, std::size_t 
 }
 
 constexpr int kMessageOp = 2;
+constexpr int kFileHeaderOp = 3;
 constexpr int kIndexOp = 4;
 constexpr int kChunkOp = 5;
 constexpr int kChunkInfoOp = 6;

@@ -6,6 +6,10 @@
 #include <gtest/gtest.h>
 #include <std_msgs/String.h>
 
+#include <filesystem>
+#include <fstream>
+#include <string>
+
 #include "bag_fixture.h"
 #include "support/refusal.h"
 
@@ -96,6 +100,36 @@ TEST_F(BagReaderTest, ChunksHaveOneIndexForEachConnection) {
   }
   writeBytes(file_, bytes);
   EXPECT_NO_THROW(select_all());
+}
+
+/// As `rosbag reindex` of ROS Melodic mends a bag that ended within a chunk: what was left of that one is zeros, and the index follows it.
+TEST_F(BagReaderTest, ZerosInPlaceOfAChunkThatWasCutOff) {
+  writeJointStates(file_, 200, rosbag::compression::Uncompressed, 2000);
+  const std::string messages = readAll();
+  const std::string bytes = readBytes(file_);
+  const std::size_t header = recordOf(bytes, kFileHeaderOp).field.at("index_pos");
+  const auto index = numberAt<std::uint64_t>(bytes, header);
+  const auto withHole = [&](const std::string& hole) {
+    std::string other = patched(bytes, header, bytesOf<std::uint64_t>(index + hole.size()));
+    writeBytes(file_, other.insert(index, hole));
+  };
+  for (const std::size_t size : {4, 8, 2095, 100000}) {
+    withHole(std::string(size, '\0'));
+    EXPECT_EQ(readAll(), messages) << size;
+  }
+  const BagLimits limits;
+  for (const std::size_t at : {4, 1000, 99999}) {
+    withHole(patched(std::string(100000, '\0'), at, "x"));
+    expectRefused(limits, "an empty header");
+  }
+  withHole(std::string(3, '\0'));
+  expectRefused(limits, "it is cut off");
+
+  const std::uint64_t far = index + (1ULL << 40U);  // a sparse file, which takes no room
+  writeBytes(file_, patched(bytes.substr(0, index), header, bytesOf(far)));
+  std::filesystem::resize_file(file_, far);
+  std::ofstream(file_, std::ios::binary | std::ios::app) << bytes.substr(index);
+  expectRefused(limits, "an empty header");
 }
 
 TEST_F(BagReaderTest, ClaimedSizeOfACompressedChunkTakesNoMemory) {
