@@ -33,6 +33,15 @@ struct Drive {
   double offset = 0.0;
 };
 
+/// To find a package may take a walk over all that are installed, and a robot may have hundreds of meshes of one.
+PackagePath askedOnce(const PackagePath& package_path) {
+  if (!package_path) return nullptr;
+  return [&package_path, known = std::map<std::string, std::string>()](const std::string& package) mutable {
+    const auto found = known.find(package);
+    return found != known.end() ? found->second : known.emplace(package, package_path(package)).first->second;
+  };
+}
+
 /// Turns urdfdom's model into links in tree order. One instance per parse.
 class UrdfReader {
  public:
@@ -41,7 +50,7 @@ class UrdfReader {
       : urdf_(urdf),
         source_(std::move(source)),
         base_directory_(std::move(base_directory)),
-        package_path_(package_path) {}
+        package_path_(askedOnce(package_path)) {}
 
   RobotModel read() {
     orderLinks();
@@ -242,7 +251,7 @@ class UrdfReader {
   const urdf::ModelInterface& urdf_;
   std::string source_;
   std::string base_directory_;
-  const PackagePath& package_path_;
+  PackagePath package_path_;
   std::vector<urdf::LinkConstSharedPtr> order_;
   std::map<std::string, int> index_;
   std::vector<IndependentJoint> joints_;
