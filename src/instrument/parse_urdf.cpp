@@ -258,12 +258,20 @@ class UrdfReader {
   std::map<std::string, Drive> drives_;
 };
 
-/// Whether xacro has yet to expand it: a xacro element, or a ${...} or $(...) in a tag, as the oldest files have without any such element. Comments
-/// do not count, since xacro copies them to what it expands.
+/// Whether xacro has yet to expand it: a command of xacro's, or a ${...} or $(...) in a tag, as the oldest files have without any such element. Not
+/// in comments and for Gazebo, which xacro copies to what it expands, nor where a macro is called that nothing defines, which xacro of old left as
+/// it was.
 bool needsXacro(const std::string& xml) {
+  const std::set<std::string_view> commands = {
+      "xacro:arg",   "xacro:attribute", "xacro:element",      "xacro:if",     "xacro:include",
+      "xacro:macro", "xacro:property",  "xacro:insert_block", "xacro:unless", "xacro:call"};
   XmlTagScanner scanner(xml);
+  std::size_t for_gazebo = 0;
   for (XmlTag tag; scanner.next(tag);) {
-    if (tag.name.substr(0, 6) == "xacro:") return true;
+    if (commands.count(tag.name) > 0) return true;
+    if (tag.name == "gazebo" && tag.kind == XmlTag::Kind::kOpen) ++for_gazebo;
+    if (tag.name == "gazebo" && tag.kind == XmlTag::Kind::kClose && for_gazebo > 0) --for_gazebo;
+    if (for_gazebo > 0) continue;
     const std::string_view text = std::string_view(xml).substr(tag.position);
     const std::string_view attributes = text.substr(0, text.find('>'));
     for (const char* open : {"${", "$("}) {

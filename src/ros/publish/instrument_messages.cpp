@@ -23,9 +23,14 @@ void checkTopicName(const std::string& kind, const std::string& name) {
                               (why.empty() ? "" : " (" + why + ")"));
 }
 
+/// As tf2 calls it: links of old URDFs begin with a /, which it takes off what it is told and refuses in what it is asked.
+std::string frameOf(const RobotModel::Link& link) {
+  return link.name.size() > 1 && link.name.front() == '/' ? link.name.substr(1) : link.name;
+}
+
 /// A root link that is the world frame itself, called like it and where it is.
 bool isWorld(const Simulator& simulator, std::size_t instrument, const RobotModel::Link& link) {
-  return link.parent < 0 && link.name == simulator.scene().world_frame &&
+  return link.parent < 0 && frameOf(link) == simulator.scene().world_frame &&
          simulator.linkPoses(static_cast<int>(instrument)).front().isApprox(Pose::Identity());
 }
 
@@ -34,7 +39,7 @@ std::map<std::string, int> countNames(const Simulator& simulator) {
   std::map<std::string, int> counts = {{simulator.scene().world_frame, 1}};
   for (std::size_t i = 0; i < simulator.instruments().size(); ++i) {
     for (const RobotModel::Link& link : simulator.instruments()[i].model().links()) {
-      if (!isWorld(simulator, i, link)) ++counts[link.name];
+      if (!isWorld(simulator, i, link)) ++counts[frameOf(link)];
     }
   }
   return counts;
@@ -54,12 +59,12 @@ FrameNames frameNames(const Simulator& simulator) {
   for (std::size_t i = 0; i < simulator.instruments().size(); ++i) {
     const std::vector<RobotModel::Link>& links = simulator.instruments()[i].model().links();
     const bool shares = std::any_of(links.begin(), links.end(), [&](const RobotModel::Link& link) {
-      return !isWorld(simulator, i, link) && counts.at(link.name) > 1;
+      return !isWorld(simulator, i, link) && counts.at(frameOf(link)) > 1;
     });
     std::vector<std::string>& names = frames.emplace_back();
     for (const RobotModel::Link& link : links) {
       const bool is_world = isWorld(simulator, i, link);
-      names.push_back(shares && !is_world ? simulator.instruments()[i].name() + "/" + link.name : link.name);
+      names.push_back(shares && !is_world ? simulator.instruments()[i].name() + "/" + frameOf(link) : frameOf(link));
       if (is_world || taken.insert(names.back()).second) continue;
       throw std::invalid_argument("two links have the frame '" + names.back() + "'; rename one in its URDF");
     }

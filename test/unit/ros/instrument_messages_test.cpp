@@ -8,6 +8,7 @@
 #include <string>
 
 #include "support/refusal.h"
+#include "support/replaced.h"
 #include "support/text_scene.h"
 
 namespace tissue_contact {
@@ -28,6 +29,8 @@ Simulator sceneOf(const std::map<std::string, std::string>& instruments, const s
   const std::map<std::string, std::string> urdfs = {
       {"probe", probeUrdf(0.005)},
       {"other", "<robot name='other'><link name='foot'/><link name='tip'>" + ball + "</link>" + joint + "</robot>"},
+      {"old", "<robot name='old'><link name='/foot'/><link name='tip'>" + ball + "</link>" +
+                  replaced(joint, "'foot'", "'/foot'") + "</robot>"},
       // Its first link is called as the frame of probe `a`'s tip is where several share a tip.
       {"cunning", "<robot name='cunning'><link name='a/tip'/><link name='point'>" + ball +
                       "</link><joint name='x' type='prismatic'><parent link='a/tip'/><child link='point'/>"
@@ -42,6 +45,12 @@ Simulator sceneOf(const std::map<std::string, std::string>& instruments, const s
 TEST(FrameNames, AreTheLinksWhereNoneIsShared) {
   const FrameNames frames = frameNames(sceneOf({{"a", "probe"}}));
   EXPECT_EQ(frames, (FrameNames{{"base", "x_link", "y_link", "tip"}}));
+}
+
+TEST(FrameNames, BeginWithNoSlash) {
+  EXPECT_EQ(frameNames(sceneOf({{"a", "old"}})), (FrameNames{{"foot", "tip"}}));
+  EXPECT_EQ(frameNames(sceneOf({{"a", "old"}, {"b", "probe"}})),
+            (FrameNames{{"a/foot", "a/tip"}, {"b/base", "b/x_link", "b/y_link", "b/tip"}}));
 }
 
 TEST(FrameNames, HaveTheInstrumentWhereTwoShareOne) {
