@@ -19,7 +19,7 @@ from tissue_contact_testing import free_port
 def run(arguments):
     """Exit code; 1 as well when roslaunch succeeds without plots."""
     port = str(free_port())
-    environment = dict(os.environ, ROS_MASTER_URI="http://localhost:" + port)
+    environment = dict(os.environ, ROS_MASTER_URI="http://localhost:" + port, PWD=os.getcwd())  # scene.launch takes paths from there
     print("to look at its topics: export ROS_MASTER_URI=" + environment["ROS_MASTER_URI"], flush=True)
     with tempfile.TemporaryDirectory() as folder:
         done = os.path.join(folder, "done")

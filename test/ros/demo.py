@@ -59,6 +59,20 @@ class Demo(harness.TestCase):
         self.assertEqual(code, 0, output)
         self.assert_pictures()
 
+    def test_relative_paths_are_those_of_the_shell(self):
+        """Nodes of roslaunch run elsewhere."""
+        self.bag_of("press.bag", harness.press(20))
+        shutil.copy(harness.SCENE, self.path("press.yaml"))
+        shutil.copy(os.path.join(os.path.dirname(harness.SCENE), "../../urdf/probe.urdf"), self.directory)
+        code, output = harness.launch("scene.launch", "bag:=press.bag", "scene:=press.yaml", "output:=plots", cwd=self.directory)
+        self.assertEqual(code, 0, output)
+        self.assert_pictures()
+        shutil.rmtree(self.plots)
+        self.scene_without_urdf()
+        code, output = harness.launch("scene.launch", "bag:=press.bag", "scene:=no urdf.yaml", "model:=probe.urdf", "output:=plots", cwd=self.directory)
+        self.assertEqual(code, 0, output)
+        self.assert_pictures()
+
     def test_a_node_that_connects_late_misses_nothing(self):
         """On a busy machine: the player's own script was connected first, and the recording began for it."""
         bag = self.bag_of("late.bag", harness.press(50))

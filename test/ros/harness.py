@@ -201,10 +201,10 @@ def run(command, **options):
     return done.returncode, done.stdout if done.stderr is None else done.stderr
 
 
-def launch(*arguments):
-    """What scripts/demo ends with: roslaunch on a master of its own, without a display."""
+def launch(*arguments, **options):
+    """What scripts/demo ends with: roslaunch on a master of its own, without a display. `options` as of run()."""
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
-    return run([program("run_launch.py")] + list(arguments), env=environment)
+    return run([program("run_launch.py")] + list(arguments), env=environment, **options)
 
 
 def replay(scene, bag, csv_file, *more, **options):
