@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Turns a table of joint positions into a recording: joint states at 500 Hz, smoothly from row to row.
 
-The table is a CSV file. Its first line names the columns: time_s, then joints as the scene knows them (rad or m), or TOPIC:JOINT where
+The table is a CSV file. Its first line names the columns: time_s, then joints as the scene knows them (rad or m), or /TOPIC:JOINT where
 there are several topics. Each further line says where the joints are at a time; times ascend. Between two lines a joint follows the
 cubic that starts and ends at rest, so nothing jerks. Examples: config/grasp_path.csv, config/two_psm_path.csv.
 The same bytes every time: stamps, positions and record times follow from the table alone.
@@ -30,8 +30,8 @@ def fail(message):
 def read_table(file):
     """(joint names, rows); a row is [time (s), position of each joint]."""
     try:
-        with open(file, newline="", encoding="utf-8") as stream:
-            lines = [(number, line) for number, line in enumerate(csv.reader(stream), 1) if line]
+        with open(file, newline="", encoding="utf-8-sig") as stream:  # spreadsheets begin with a byte-order mark
+            lines = [(number, [text.strip() for text in line]) for number, line in enumerate(csv.reader(stream), 1) if line]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         fail("%s cannot be read: %s" % (file, error))
     if len(lines) < 3 or lines[0][1][0] != "time_s" or len(lines[0][1]) < 2:
@@ -64,12 +64,14 @@ def positions(rows, time):
 
 
 def topics_of(columns, topic):
-    """{topic: [(place, joint name)]} of columns named JOINT, which are of `topic`, or TOPIC:JOINT."""
+    """{topic: [(place, joint name)]} of columns named JOINT, which are of `topic`, or /TOPIC:JOINT; a joint's own name may have a colon."""
+    if topic and not topic.startswith("/"):
+        fail("--topic %s must begin with /, as scenes name topics" % topic)
     topics = {}
     for place, column in enumerate(columns):
-        of, _, joint = column.rpartition(":")
+        of, _, joint = column.partition(":") if column.startswith("/") else ("", "", column)
         if not (of or topic) or not joint:
-            fail("column '%s' names no %s: write TOPIC:JOINT, or give --topic" % (column, "joint" if of else "topic"))
+            fail("column '%s' names no %s: write /TOPIC:JOINT, or give --topic" % (column, "joint" if of else "topic"))
         topics.setdefault(of or topic, []).append((place, joint))
     return topics
 

@@ -299,7 +299,7 @@ def main():
         print("the last joint state has no wrench; the node's warnings say why", flush=True)
     try:
         for path in plot(recorder.forces, friction_of(rospy.get_param(arguments.node + "/scene")), arguments.output):
-            print("wrote " + path, flush=True)
+            print("wrote " + os.path.abspath(path), flush=True)
     except OSError as error:
         fail("cannot write %s: %s" % (error.filename, error.strerror))
     if lost > 0:

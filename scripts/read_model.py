@@ -6,6 +6,7 @@ usage: read_model.py MODEL SCENE
   SCENE  the scene that is to use it; refused if no instrument of it takes its URDF from robot_description
 """
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -48,16 +49,25 @@ def require_use(scene):
              "scene %s and give it as scene:=" % (scene, PARAMETER, fix))
 
 
+def decoded(data):
+    """The text of XML, whose first line may name an encoding; a parameter's is UTF-8."""
+    declared = re.match(rb"""(?:\xef\xbb\xbf)?\s*<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._-]+)["']""", data)
+    if not declared:
+        return data.decode("utf-8-sig")
+    text = data[:declared.start(1)] + b"UTF-8" + data[declared.end(1):]
+    return text.decode("utf-8-sig" if declared[1].lower() == b"utf-8" else declared[1].decode())
+
+
 def text_of(model):
     path = resolved(model)
     if not os.path.isfile(path):
         fail("%s does not exist; correct model:=" % path)
     if not path.endswith(".xacro"):
         try:
-            with open(path, encoding="utf-8") as stream:
-                return stream.read()
-        except (OSError, UnicodeDecodeError) as error:
-            fail("%s cannot be read: %s" % (path, error))
+            with open(path, "rb") as stream:
+                return decoded(stream.read())
+        except (OSError, UnicodeDecodeError, LookupError) as error:
+            fail("%s cannot be read: %s; save it as UTF-8" % (path, error))
     xacro = shutil.which("xacro")
     if not xacro:
         fail("%s is a xacro file and xacro is not installed here (Debian 12 has no package of it). Where it is: "

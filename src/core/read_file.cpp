@@ -68,11 +68,20 @@ std::string otherCapitals(const std::string& file) {
   return {};
 }
 
+/// Of a relative path: roslaunch starts nodes elsewhere than where it was typed in.
+std::string whereLookedFor(const std::string& file) {
+  std::error_code error;
+  const std::filesystem::path here = std::filesystem::current_path(error);
+  return error || file.empty() || std::filesystem::path(file).is_absolute() ? ""
+                                                                            : " in '" + printable(here.string()) + "'";
+}
+
 [[noreturn]] void refuseUnreadable(const std::string& file, const std::string& what, int error) {
   if (error == ENOENT || error == ENOTDIR) {
     const std::string other = otherCapitals(file);
     refuse(file, what,
-           "does not exist; correct the path" + (other.empty() ? "" : " ('" + printable(other) + "' lies there)"));
+           "does not exist" + whereLookedFor(file) + "; correct the path" +
+               (other.empty() ? "" : " ('" + printable(other) + "' lies there)"));
   }
   refuse(file, what, "cannot be read: " + std::generic_category().message(error));
 }

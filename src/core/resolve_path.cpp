@@ -52,9 +52,10 @@ fs::path inPackage(const std::string& uri, const std::string& rest, const Packag
   const std::string package = rest.substr(0, slash);
   const std::string directory = package_path ? package_path(package) : "";
   if (directory.empty()) {
-    refuse(uri, "names the ROS package \"" + package +
-                    "\", which is not known; install it, source its setup file, name the folder it lies in in "
-                    "ROS_PACKAGE_PATH, or give a plain path");
+    refuse(uri,
+           "names the ROS package \"" + package +
+               "\", which is not known; install it, source its setup file, name the folder that it lies in, with its "
+               "package.xml, in ROS_PACKAGE_PATH, or give a plain path");
   }
   return ofUri(fs::path(directory) / rest.substr(start));
 }

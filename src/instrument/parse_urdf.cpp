@@ -259,19 +259,20 @@ class UrdfReader {
 };
 
 /// Whether xacro has yet to expand it: a command of xacro's, or a ${...} or $(...) in a tag, as the oldest files have without any such element. Not
-/// in comments and for Gazebo, which xacro copies to what it expands, nor where a macro is called that nothing defines, which xacro of old left as
-/// it was.
+/// in comments and in what is for others than urdfdom, which xacro copies to what it expands, nor where a macro is called that nothing defines,
+/// which xacro of old left as it was.
 bool needsXacro(const std::string& xml) {
   const std::set<std::string_view> commands = {
       "xacro:arg",   "xacro:attribute", "xacro:element",      "xacro:if",     "xacro:include",
       "xacro:macro", "xacro:property",  "xacro:insert_block", "xacro:unless", "xacro:call"};
   XmlTagScanner scanner(xml);
-  std::size_t for_gazebo = 0;
+  const std::set<std::string_view> of_others = {"gazebo", "transmission", "ros2_control"};
+  std::size_t within_others = 0;
   for (XmlTag tag; scanner.next(tag);) {
     if (commands.count(tag.name) > 0) return true;
-    if (tag.name == "gazebo" && tag.kind == XmlTag::Kind::kOpen) ++for_gazebo;
-    if (tag.name == "gazebo" && tag.kind == XmlTag::Kind::kClose && for_gazebo > 0) --for_gazebo;
-    if (for_gazebo > 0) continue;
+    if (of_others.count(tag.name) > 0 && tag.kind == XmlTag::Kind::kOpen) ++within_others;
+    if (of_others.count(tag.name) > 0 && tag.kind == XmlTag::Kind::kClose && within_others > 0) --within_others;
+    if (within_others > 0) continue;
     const std::string_view text = std::string_view(xml).substr(tag.position);
     const std::string_view attributes = text.substr(0, text.find('>'));
     for (const char* open : {"${", "$("}) {

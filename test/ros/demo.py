@@ -101,6 +101,18 @@ class Demo(harness.TestCase):
         self.assertEqual(code, 0, output)
         self.assert_pictures()
 
+    def test_model_in_another_encoding(self):
+        model = self.path("umlaut.urdf")
+        for encoding, text in [("ISO-8859-1", "latin-1"), ("utf-8", "utf-8-sig"), ("UTF-16", "utf-16")]:
+            with open(model, "wb") as stream:
+                stream.write(("<?xml version='1.0' encoding='%s'?><robot name='k\u00f6rper'/>" % encoding).encode(text))
+            code, output = harness.run([harness.program("read_model.py"), model, self.scene_without_urdf()])
+            if encoding == "UTF-16":
+                self.assertEqual(code, 1, output)
+                self.assertIn("save it as UTF-8", output)
+            else:
+                self.assertEqual((code, output), (0, "<?xml version='1.0' encoding='UTF-8'?><robot name='k\u00f6rper'/>"))
+
     def test_model_that_cannot_be_used_is_said_without_a_trace(self):
         bag = self.bag_of("press.bag", harness.press(5))
         xacro = self.write("robot.urdf.xacro",

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Offline replay: what it refuses, what it says, and that it never leaves half a result behind."""
+import filecmp
 import os
 
 import rosbag
@@ -76,6 +77,8 @@ class ReplayErrors(harness.TestCase):
         self.assertIn("none.urdf", errors)
         urdf = os.path.join(harness.PACKAGE, "urdf", "probe.urdf")
         self.replayed(scene, self.bag, self.csv, "--urdf", urdf)
+        self.replayed(scene, self.bag, self.path("same.csv"), "--urdf", "package://tissue_contact/urdf/probe.urdf")
+        self.assertTrue(filecmp.cmp(self.csv, self.path("same.csv"), shallow=False))
         for unused in [urdf, self.path("none.urdf")]:
             code, errors = harness.replay(harness.SCENE, self.bag, self.path("unused.csv"), "--urdf", unused)
             self.assertEqual(code, 1)

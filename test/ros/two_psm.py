@@ -4,6 +4,7 @@ the sign and frames of CRTK; the launch file draws plots."""
 import math
 import os
 
+import rosbag
 import roslaunch.substitution_args
 import rospy
 from geometry_msgs.msg import WrenchStamped
@@ -111,7 +112,19 @@ class TwoPsm(harness.TestCase):
         for columns in ["time_s,jaw", "time_s,/PSM1/measured_js:"]:
             code, output = harness.run([harness.program("make_joint_bag.py"), self.write("path.csv", columns + "\n0,0\n1,1\n"), bag])
             self.assertEqual(code, 1)
-            self.assertIn("write TOPIC:JOINT, or give --topic", output)
+            self.assertIn("write /TOPIC:JOINT, or give --topic", output)
+
+    def test_table_of_a_spreadsheet_whose_joints_have_colons(self):
+        bag = self.path("path.bag")
+        table = self.write("path.csv", "\ufefftime_s, robot0:shoulder, jaw\r\n0, 0, 0\r\n1, 1, 0.5\r\n")
+        code, output = harness.run([harness.program("make_joint_bag.py"), table, bag, "--topic", "/js"])
+        self.assertEqual(code, 0, output)
+        with rosbag.Bag(bag) as made:
+            self.assertEqual({(topic, tuple(message.name)) for topic, message, _ in made.read_messages()},
+                             {("/js", ("robot0:shoulder", "jaw"))})
+        code, output = harness.run([harness.program("make_joint_bag.py"), table, bag, "--topic", "js"])
+        self.assertEqual(code, 1, output)
+        self.assertIn("must begin with /", output)
 
 
 if __name__ == "__main__":

@@ -75,6 +75,17 @@ class HelpTest(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(done.stdout.splitlines()[0], "--help --extend")
 
+    def test_the_environment_keeps_packages_that_were_named_before(self):
+        script = ("export ROS_PACKAGE_PATH=/opt/mine:/opt/yours; . '%s/scripts/env.bash'; echo \"$ROS_PACKAGE_PATH\"; . '%s/scripts/env.bash'; "
+                  "echo \"$ROS_PACKAGE_PATH\"; unset ROS_PACKAGE_PATH; . '%s/scripts/env.bash'; echo \"$ROS_PACKAGE_PATH:/opt/mine:/opt/yours\"") % (
+                      SOURCE, SOURCE, SOURCE)
+        done = subprocess.run(["/bin/bash", "-c", script], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
+        if done.returncode != 0:
+            self.skipTest(done.stderr.strip())
+        first, second, own = done.stdout.splitlines()
+        self.assertEqual(second, first)
+        self.assertEqual(own, first)
+
     def test_node_names_what_it_needs(self):
         text = self.run_tool("node", "__name:=other", "--help", "_scene:=x.yaml").stdout
         for word in ["~scene", "~tf_timeout_s", "~robot_description", "/wrench", "/diagnostics", "_scene:="]:

@@ -7,8 +7,10 @@
 #include <stdexcept>
 
 #include "tissue_contact/core/command_line.h"
+#include "tissue_contact/core/resolve_path.h"
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/core/whole_file.h"
+#include "tissue_contact/ros/environment.h"
 
 namespace tissue_contact {
 namespace {
@@ -92,6 +94,9 @@ PlaceOptions parsePlaceOptions(const std::vector<std::string>& arguments) {
   requireKeys(line, options.task, task);
   options.bag_file = line.value("--bag");
   options.urdf_file = line.value("--urdf");
+  if (options.urdf_file.find("://") != std::string::npos) {
+    options.urdf_file = resolvePath(options.urdf_file, "", packagePath);
+  }
   options.measured = line.value("--measured");
   options.instrument = line.value("--instrument");
   options.x_m = line.number("--x", 0.0, kPlace);

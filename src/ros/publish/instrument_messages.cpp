@@ -58,13 +58,19 @@ FrameNames frameNames(const Simulator& simulator) {
   std::set<std::string> taken;
   for (std::size_t i = 0; i < simulator.instruments().size(); ++i) {
     const std::vector<RobotModel::Link>& links = simulator.instruments()[i].model().links();
+    // A root that is called as the world frame and stands elsewhere, as many arms' does, is renamed alone: other nodes know the others.
+    const auto isNamesake = [&](const RobotModel::Link& link) {
+      return link.parent < 0 && frameOf(link) == simulator.scene().world_frame;
+    };
     const bool shares = std::any_of(links.begin(), links.end(), [&](const RobotModel::Link& link) {
-      return !isWorld(simulator, i, link) && counts.at(frameOf(link)) > 1;
+      return !isNamesake(link) && counts.at(frameOf(link)) > 1;
     });
     std::vector<std::string>& names = frames.emplace_back();
     for (const RobotModel::Link& link : links) {
       const bool is_world = isWorld(simulator, i, link);
-      names.push_back(shares && !is_world ? simulator.instruments()[i].name() + "/" + frameOf(link) : frameOf(link));
+      names.push_back((shares || isNamesake(link)) && !is_world
+                          ? simulator.instruments()[i].name() + "/" + frameOf(link)
+                          : frameOf(link));
       if (is_world || taken.insert(names.back()).second) continue;
       throw std::invalid_argument("two links have the frame '" + names.back() + "'; rename one in its URDF");
     }

@@ -1,8 +1,11 @@
 #include <cstdint>
 #include <stdexcept>
+#include <string>
 
 #include "ros/replay/replay.h"
 #include "tissue_contact/core/command_line.h"
+#include "tissue_contact/core/resolve_path.h"
+#include "tissue_contact/ros/environment.h"
 
 namespace tissue_contact {
 namespace {
@@ -93,6 +96,9 @@ ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
   options.from_s = line.number("--from", options.from_s, kFrom);
   options.duration_s = line.number("--duration", options.duration_s, kDuration);
   options.urdf_file = line.value("--urdf");
+  if (options.urdf_file.find("://") != std::string::npos) {
+    options.urdf_file = resolvePath(options.urdf_file, "", packagePath);
+  }
   options.changes_topic = line.value("--changes");
   options.timing_file = line.value("--timing");
   options.manifest_file = line.value("--manifest");

@@ -79,6 +79,11 @@ TEST_F(ReadFile, NothingButRegularFilesIsOpened) {
   EXPECT_NE(refusal(path("round")).find("Too many levels of symbolic links"), std::string::npos);
 }
 
+TEST_F(ReadFile, TellsWhereARelativePathWasLookedFor) {
+  EXPECT_EQ(refusal("no_such_folder/none"), "test file 'no_such_folder/none' does not exist in '" +
+                                                fs::current_path().string() + "'; correct the path");
+}
+
 TEST_F(ReadFile, TellsOfAFileWhoseNameDiffersInCapitalsAlone) {
   write("tool.stl", "x");
   EXPECT_EQ(refusal(path("tool.STL")),

@@ -62,7 +62,10 @@ TEST(FrameNames, HaveTheInstrumentWhereTwoShareOne) {
 }
 
 TEST(FrameNames, HaveTheInstrumentWhereALinkIsCalledAsTheWorldAndElsewhere) {
-  EXPECT_EQ(frameNames(sceneOf({{"b", "other"}}, "foot")), (FrameNames{{"b/foot", "b/tip"}}));
+  EXPECT_EQ(frameNames(sceneOf({{"b", "other"}}, "foot")), (FrameNames{{"b/foot", "tip"}}));  // the root alone
+  EXPECT_EQ(frameNames(sceneOf({{"a", "other"}, {"b", "other"}}, "foot")),
+            (FrameNames{{"a/foot", "a/tip"}, {"b/foot", "b/tip"}}));
+  EXPECT_EQ(frameNames(sceneOf({{"b", "other"}}, "tip")), (FrameNames{{"b/foot", "b/tip"}}));
 }
 
 TEST(FrameNames, AreRefusedWhereALinkIsCalledAsTheFrameOfAnother) {
