@@ -3,15 +3,25 @@
 /// written element by element, parts that were meshed one by one, a cut.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "tissue_contact/core/types.h"
+#include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
 
-/// For each node the first used one that lies where it does (within kMergeDistance of the diagonal of the box around those used); for a node
-/// that is not used itself.
-/// @pre `used` has an entry for each node.
-std::vector<int> firstInPlace(const std::vector<Vector3>& nodes, const std::vector<bool>& used);
+/// For each node the first used one that lies where it does; for a node that is not used itself. In one place: within kMergeDistance of the
+/// diagonal of the box around those used, or, as far as that is a thousandth of the shortest edge, of what single precision resolves at their
+/// distance from the origin (scanners put an organ metres away from it).
+/// @param shortest_edge of the elements. @pre `used` has an entry for each node.
+std::vector<int> firstInPlace(const std::vector<Vector3>& nodes, const std::vector<bool>& used, double shortest_edge);
+
+/// Nodes that lie beside others, nearer than a hundredth of the edges at both: a gap that nobody sees, where a mesh was to be one.
+struct NearNodes {
+  std::size_t count = 0;
+  int one = -1, other = -1;  ///< the first two
+};
+NearNodes findNearNodes(const TetMesh& mesh);
 
 }  // namespace tissue_contact

@@ -190,6 +190,7 @@ Filled fill(const MeshDescription& description, const std::string& version) {
                          roundedText(1e3 * description.cell_size_m, 3) + " mm; smallest angle between faces " +
                          roundedText(filled.made.quality.smallest_angle) + " degrees, volume " +
                          roundedText(100.0 * share, 3) + " % of the surface's; by gmsh " + version);
+  if (const std::string flat = flatElementsText(filled.made.mesh); !flat.empty()) filled.notes.push_back(flat);
   const Missing missing = findMissing(surface.mesh, filled.made.mesh, description.cell_size_m);
   if (missing.share > 0.0) {
     filled.notes.push_back(roundedText(100.0 * missing.share) +
@@ -235,6 +236,7 @@ TetMesh fillSurface(const MeshDescription& description, const MeshPreparation& p
     tell(description, {"that mesh was kept as " + cache.path(key)}, preparation);
     return mesh;
   }
+  tell(description, {"gmsh fills it, which takes some seconds as a rule, and up to ten minutes"}, preparation);
   Filled filled = fill(description, version);
   if (keyOf(description, version) != key) {
     throw std::invalid_argument(sourceOf(description) +

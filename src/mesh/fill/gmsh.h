@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "mesh/fill/mesh_quality.h"
+#include "mesh/mesh_quality.h"
 #include "tissue_contact/mesh/tet_mesh.h"
 #include "tissue_contact/mesh/triangle_mesh.h"
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -21,6 +22,7 @@
 #include "mesh/conformity.h"
 #include "mesh/fill/fill_surface.h"
 #include "mesh/mesh_checks.h"
+#include "mesh/mesh_quality.h"
 #include "mesh/nodes.h"
 #include "mesh/orientation.h"
 #include "tissue_contact/core/check.h"
@@ -80,6 +82,22 @@ void merge(const std::vector<int>& first, std::vector<ElementCorners>& elements)
   }
 }
 
+/// Or diagonal: between two corners of a volume that do not lie in one place; infinity where there are none. In the file's unit.
+double shortestEdge(const MeshFileContents& contents) {
+  double squared = std::numeric_limits<double>::infinity();
+  for (const ElementCorners& corners : contents.volumes) {
+    for (std::size_t i = 0; i < cornerCount(corners); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const double edge = (contents.nodes[static_cast<std::size_t>(corners[i])] -
+                             contents.nodes[static_cast<std::size_t>(corners[j])])
+                                .squaredNorm();
+        if (edge > 0.0) squared = std::min(squared, edge);
+      }
+    }
+  }
+  return std::sqrt(squared);
+}
+
 /// @return the nodes that were merged with others, which nothing uses then.
 std::vector<int> treatCoincidentNodes(const MeshDescription& description, MeshFileContents& contents) {
   if (description.coincident_nodes == CoincidentNodes::kKeep) return {};
@@ -87,7 +105,7 @@ std::vector<int> treatCoincidentNodes(const MeshDescription& description, MeshFi
   for (const ElementCorners& corners : contents.volumes) {
     for (std::size_t i = 0; i < cornerCount(corners); ++i) used[static_cast<std::size_t>(corners[i])] = true;
   }
-  const std::vector<int> first = firstInPlace(contents.nodes, used);
+  const std::vector<int> first = firstInPlace(contents.nodes, used, shortestEdge(contents));
   std::vector<int> merged;
   for (int i = 0; i < static_cast<int>(first.size()); ++i) {
     if (first[static_cast<std::size_t>(i)] != i) merged.push_back(i);
@@ -239,6 +257,20 @@ TetMesh loadTetMesh(const MeshDescription& description, const MeshPreparation& p
                                             " elements are hexahedra, prisms or pyramids, and split into tetrahedra");
   say(merged.size(), "nodes that lay where others do are merged with them");
   say(turned, of_all + "are numbered the other way round, and turned");
+  if (preparation.say && description.coincident_nodes != CoincidentNodes::kKeep) {
+    const NearNodes near = findNearNodes(mesh);
+    std::ostringstream where;
+    if (near.count > 0) {
+      const Vector3 one = mesh.positions.col(near.one);
+      where << "nodes lie nearer to others than a hundredth of the edges there and are not joined with them, the first "
+            << (mesh.positions.col(near.other) - one).norm() << " m away at (" << one.transpose()
+            << ") m: the tissue is cut open there; if it is one, mesh it as one, or write coordinates that are equal, "
+               "and set coincident_nodes: merge";
+    }
+    say(near.count, where.str());
+  }
+  const std::string flat = flatElementsText(mesh);
+  if (!flat.empty() && preparation.say) preparation.say("mesh file '" + description.file + "': " + flat);
   const std::size_t parts = countParts(mesh);
   say(parts > 1 ? parts : 0, "parts that share no node: each is held only by what is fixed of it");
   const std::size_t by_faces = countPartsByFaces(mesh);

@@ -132,6 +132,66 @@ TEST_F(CoincidentNodesOfFiles, AreKeptAsACut) {
   EXPECT_NE(said_.find("90 parts that share no node"), std::string::npos) << said_;
 }
 
+/// A scanner's frame, and every other element written in single precision: neighbours differ by a unit in the last place of 900 mm.
+TEST(CoincidentNodes, AreAsNearAsSinglePrecisionFarFromTheOrigin) {
+  TetMesh mesh = apart(block());
+  const double size = (mesh.positions.rowwise().maxCoeff() - mesh.positions.rowwise().minCoeff()).maxCoeff();
+  mesh.positions *= 60.0 / size;
+  mesh.positions.row(2).array() -= 900.0;
+  for (Eigen::Index i = 0; i < mesh.positions.cols(); ++i) {
+    if (i % 8 < 4) mesh.positions.col(i) = mesh.positions.col(i).cast<float>().cast<double>();
+  }
+  const FileOfBytes file(VtkWriter({"3.0", false, 8, 8, false}).write(mesh));
+  MeshDescription description = meshFile(file.path());
+  description.coincident_nodes = CoincidentNodes::kMerge;
+  const TetMesh merged = loadTetMesh(description);
+  EXPECT_EQ(countParts(merged), 1u);
+  EXPECT_EQ(merged.positions.cols(), block().positions.cols());
+
+  mesh.positions.row(2).array() +=
+      1e9;  // where that resolution is larger than the elements, no corners of one are joined
+  const FileOfBytes far(VtkWriter({"3.0", false, 8, 8, false}).write(mesh));
+  description.file = far.path();
+  EXPECT_NO_THROW(checkTetMesh(loadTetMesh(description), "mesh"));
+}
+
+TEST(CoincidentNodes, ThoseThatHardlyMissEachOtherAreTold) {
+  const auto saidOf = [](double gap, CoincidentNodes treatment) {
+    TetMesh mesh = apart(twoTetrahedra());
+    for (Eigen::Index i = 4; i < 8; ++i) mesh.positions.col(i) += Vector3(gap, 0.0, 0.0);
+    const FileOfBytes file(VtkWriter({"3.0", false, 8, 8, false}).write(mesh));
+    MeshDescription description = meshFile(file.path());
+    description.coincident_nodes = treatment;
+    std::string said;
+    MeshPreparation preparation;
+    preparation.say = [&](const std::string& line) { said += line + "\n"; };
+    loadTetMesh(description, preparation);
+    return said;
+  };
+  const std::string said = saidOf(1e-4, CoincidentNodes::kMerge);
+  EXPECT_NE(said.find("3 nodes lie nearer to others"), std::string::npos) << said;
+  EXPECT_NE(said.find("cut open"), std::string::npos) << said;
+  EXPECT_EQ(saidOf(1e-4, CoincidentNodes::kKeep).find("cut open"), std::string::npos);  // which the scene says
+  EXPECT_EQ(saidOf(0.1, CoincidentNodes::kMerge).find("cut open"), std::string::npos);
+  EXPECT_EQ(saidOf(0.0, CoincidentNodes::kMerge).find("cut open"), std::string::npos);
+}
+
+TEST(FlatElements, AreToldWithThePlaceOfTheFlattest) {
+  TetMesh mesh = twoTetrahedra();
+  EXPECT_EQ(flatElementsText(mesh), "");
+  EXPECT_EQ(flatElementsText(block()), "");
+  // A third on three nodes of the first, its own a hair above their middle: dihedral angles of some 1e-3.
+  const Tetrahedron& first = mesh.tetrahedra[0];
+  mesh.positions.conservativeResize(Eigen::NoChange, 6);
+  const Vector3 a = mesh.positions.col(first[0]), b = mesh.positions.col(first[1]), c = mesh.positions.col(first[2]);
+  const Vector3 middle = (a + b + c) / 3.0;
+  mesh.positions.col(5) = middle + 3e-4 * (b - a).cross(c - a).normalized();
+  mesh.tetrahedra.push_back({first[0], first[1], first[2], 5});
+  const std::string text = flatElementsText(mesh);
+  EXPECT_NE(text.find("warning: 1 of 3 elements are flat"), std::string::npos) << text;
+  EXPECT_NE(text.find("the flattest at 0.0"), std::string::npos) << text;
+}
+
 /// Groups name the nodes that are left. Nodes that no volume uses are not looked at, wherever they lie.
 TEST(CoincidentNodes, GroupsFollowAndLooseNodesDoNotCount) {
   const std::string text =

@@ -11,8 +11,8 @@
 #include <string>
 
 #include "mesh/fill/crossing_triangles.h"
-#include "mesh/fill/mesh_quality.h"
 #include "mesh/fill/run_program.h"
+#include "mesh/mesh_quality.h"
 #include "support/refusal.h"
 #include "support/temporary_directory.h"
 #include "tissue_contact/mesh/gmsh_version.h"

@@ -2,6 +2,8 @@
 /// Room `mesh`, private: how good the shapes of tetrahedra are.
 #pragma once
 
+#include <string>
+
 #include "tissue_contact/mesh/tet_mesh.h"
 
 namespace tissue_contact {
@@ -14,5 +16,8 @@ struct MeshQuality {
 
 /// @param mesh that checkTetMesh() passes.
 MeshQuality qualityOf(const TetMesh& mesh);
+
+/// How many elements are so flat that they turn inside out as soon as they are pressed, and where the flattest is; empty where none is.
+std::string flatElementsText(const TetMesh& mesh);
 
 }  // namespace tissue_contact
