@@ -28,7 +28,12 @@ SPEED_M_PER_S = 0.02
 HOLD_S = 0.2
 HELD_PERCENT = range(15, 65, 5)  # of the height: the first that the organ stands on
 SURFACES, TETRAHEDRA = (".stl", ".obj", ".ply"), (".msh", ".vtk")
+OTHERS = {".unv": "to convert it: gmsh FILE -save -o organ.msh",
+          **dict.fromkeys([".msh2", ".msh4"], "if it is Gmsh's, rename it to .msh"),
+          **dict.fromkeys([".glb", ".gltf", ".dae", ".3ds", ".fbx", ".off", ".vtp", ".x3d", ".wrl"],
+                          "save the surface as .stl, for instance with MeshLab or Blender")}
 LONGEST_M, SHORTEST_M = 2.0, 0.002  # of an organ
+LONGEST_NAME = 50  # of a tissue: 64, with organ_
 
 SCENE = """\
 # {name} from {file}, by make_scene.py. Keys and units: doc/scene.md.
@@ -42,7 +47,7 @@ tissues:
 {cells}
     material: {{preset: {material}, model: neo_hookean}}  # doc/organ.md; or youngs_modulus_pa, poissons_ratio, density_kg_per_m3
     fixed:
-      - plane: {{point_m: [0, 0, {held:.4f}], normal: [0, 0, 1]}}  # the lowest {percent} % of its height: {why}
+      - plane: {{point_m: [0, 0, {held:.7f}], normal: [0, 0, 1]}}  # the lowest {percent} % of its height: {why}
 
 instruments:
   - name: probe
@@ -201,8 +206,8 @@ def read_organ(arguments):
     """Corners of the surface, m, and how the scene says what cells the organ has."""
     ending = os.path.splitext(arguments.organ)[1].lower()
     if ending not in SURFACES + TETRAHEDRA:
-        fail("%s has none of the endings %s; to convert tetrahedra of other programs: meshio convert FILE organ.vtk" %
-             (arguments.organ, ", ".join(SURFACES + TETRAHEDRA)))
+        fail("%s has none of the endings %s; %s" % (arguments.organ, ", ".join(SURFACES + TETRAHEDRA), OTHERS.get(
+            ending, "to convert tetrahedra of other programs: meshio convert FILE organ.vtk")))
     if ending in TETRAHEDRA:
         if arguments.cell_size:
             fail("--cell-size is for surfaces: the tetrahedra of %s are in the file" % arguments.organ)
@@ -257,11 +262,11 @@ def main():
     path = drag_path(corners, depth, min(0.02, 0.2 * size[:2].max()))
     rows = timed(path)
 
-    name = re.sub("[^a-z0-9_]", "_", os.path.splitext(os.path.basename(arguments.organ))[0].lower())
+    name = re.sub("[^a-z0-9_]", "_", os.path.splitext(os.path.basename(arguments.organ))[0].lower())[-LONGEST_NAME:]
     folder = os.path.abspath(arguments.out)
     scene, bag = os.path.join(folder, "scene.yaml"), os.path.join(folder, "probe.bag")
     text = SCENE.format(
-        name=name if name[0].isalpha() else "organ_" + name, file=quoted(os.path.basename(arguments.organ)),
+        name=name if name[:1].isalpha() and name != "probe" else "organ_" + name, file=quoted(os.path.basename(arguments.organ)),
         quoted=quoted(os.path.abspath(arguments.organ)), scale=arguments.scale, size=size, cells=cells,
         material=arguments.material, held=held, percent=percent,
         why="its middle is over that" if stands else "it may swing: its middle is over no more of it either",

@@ -41,12 +41,18 @@ def read_surface(path):
 
 
 def read_stl(data):
-    count = struct.unpack("<I", data[80:84])[0] if len(data) >= 84 else -1
-    if len(data) == 84 + 50 * count:
-        return numpy.frombuffer(data, dtype="(3,)<f4, (3, 3)<f4, <u2", offset=84)["f1"].astype(float)
-    words = [line.split() for line in data.decode("ascii").splitlines()]
+    count = struct.unpack("<I", data[80:84])[0] if len(data) >= 84 else 0
+    is_text = data[:5].lower() == b"solid" and b"facet" in data[:1024].lower()
+    if len(data) == 84 + 50 * count or (count > 0 and len(data) > 84 + 50 * count and not is_text):  # some write more behind
+        return numpy.frombuffer(data, "(3,)<f4, (3, 3)<f4, <u2", count, 84)["f1"].astype(float)
+    words = [line.split() for line in text_of(data).lower().splitlines()]
     corners = numpy.array([word[1:4] for word in words if word and word[0] == "vertex"], dtype=float)
     return corners.reshape(-1, 3, 3)
+
+
+def text_of(data):
+    """Numbers and keywords are ASCII; names and comments may be anything, and come after a byte-order mark at times."""
+    return (data[3:] if data.startswith(b"\xef\xbb\xbf") else data).decode("latin-1")
 
 
 def fan(face):
@@ -63,7 +69,10 @@ def picked(vertices, triangles):
 
 def read_obj(data):
     vertices, triangles = [], []
-    for number, line in enumerate(data.decode("utf-8").splitlines(), 1):
+    lines = text_of(data).replace("\\\r\n", " ").replace("\\\n", " ").splitlines()  # a \ at its end: the line goes on
+    if lines and lines[0].split()[:1] == ["P"]:
+        raise ValueError("it is an .obj of MNI's tools, not of Wavefront's; save it as .stl or .ply")
+    for number, line in enumerate(lines, 1):
         word = line.split()
         try:
             if word and word[0] == "v":
@@ -102,7 +111,7 @@ class PlyNumbers:
 
 def read_ply(data):
     end = data.index(b"end_header")
-    header = [line.split() for line in data[:end].decode("ascii").splitlines()]
+    header = [line.split() for line in text_of(data[:end]).splitlines()]
     if header[0] != ["ply"]:
         raise ValueError("its first line is not 'ply'")
     form = next(words[1] for words in header if words and words[0] == "format")

@@ -300,6 +300,26 @@ class OrganTest(unittest.TestCase):
                 self.assertIn(words, made.stdout)
                 self.assertEqual(made.stdout.count("\n"), 1, made.stdout)
 
+    def test_surfaces_as_some_programs_write_them(self):
+        vertices, triangles = ball()
+        text = "solid Leber gr\u00f6\u00dfe\n" + "".join(
+            "facet normal 0 0 0\nouter loop\n%sendloop\nendfacet\n" % "".join("vertex %.9g %.9g %.9g\n" % vertices[v] for v in triangle)
+            for triangle in triangles) + "endsolid\n"
+        wavefront = obj(vertices, triangles)
+        forces = []
+        for name, content in {"a.stl": stl(vertices, triangles), "latin1.stl": text.encode("latin-1"), "utf8.stl": text.encode(), "capitals.stl": text.upper().encode(),
+                              "more.stl": stl(vertices, triangles) + b"written by a program", "bom.obj": b"\xef\xbb\xbf# gr\xf6\xdfe\n" + wavefront,
+                              "probe.ply": ply(vertices, triangles), "1.3.6." + 20 * "12345." + "stl": stl(vertices, triangles)}.items():
+            with self.subTest(name):
+                made = self.make(self.write(name, content), "--scale", 0.001, "--cell-size", 0.012)
+                self.assertEqual(made.returncode, 0, made.stdout)
+                forces.append(max(self.replay("--duration", 0.8, "--set", "tissues.0.refinement=never")[0]))
+                self.assertGreater(forces[-1], 0.0)
+        made = self.make(self.write("brain.obj", b"P 0.3 0.3 0.4 10 1 4\n0 0 0\n"), "--scale", 0.001)
+        self.assertIn("MNI", made.stdout)
+        made = self.make(self.write("organ.glb", b"glTF"), "--scale", 0.001)
+        self.assertIn("as .stl", made.stdout)
+
     def test_what_is_flat_is_no_organ(self):
         made = self.make(self.write("flat.obj", b"v 0 0 5\nv 90 0 5\nv 0 90 5\nf 1 2 3\n"), "--scale", 0.001)
         self.assertEqual((made.returncode, made.stdout.count("\n")), (1, 1), made.stdout)

@@ -5,8 +5,11 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <new>
 #include <stdexcept>
@@ -14,6 +17,7 @@
 #include <utility>
 
 #include "mesh/reader/isolated.h"
+#include "tissue_contact/core/read_file.h"
 
 namespace tissue_contact {
 namespace {
@@ -68,11 +72,48 @@ void appendNode(const aiScene& scene, const aiNode& node, const Matrix4& X_paren
   for (unsigned i = 0; i < node.mNumChildren; ++i) appendNode(scene, *node.mChildren[i], X, soup);
 }
 
+std::string lowerCase(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
+
+constexpr std::size_t kStlHeader = 84;  // bytes, with the number of triangles
+constexpr std::size_t kStlTriangle = 50;
+
+bool isTextStl(std::string_view bytes) {
+  const std::string start = lowerCase(bytes.substr(0, 1024));
+  return start.rfind("solid", 0) == 0 && start.find("facet") != std::string::npos;
+}
+
+/// Of files that others read and assimp does not: their bytes as it does. Empty for all others.
+std::string withoutOddities(const std::string& file, const std::string& ending) {
+  if (ending != "stl" && ending != "obj") return {};
+  std::string bytes = readFile(file, "mesh file", kMaxSurfaceBytes);
+  if (ending == "obj") return bytes.rfind("\xEF\xBB\xBF", 0) == 0 ? bytes.substr(3) : "";
+  if (isTextStl(bytes)) return bytes.rfind("solid", 0) == 0 ? "" : lowerCase(bytes);  // keywords in capitals
+  if (bytes.size() < kStlHeader) return {};
+  std::uint32_t count = 0;
+  std::memcpy(&count, &bytes[kStlHeader - sizeof count], sizeof count);
+  const std::size_t size = kStlHeader + kStlTriangle * std::size_t{count};
+  if (count == 0 || bytes.size() <= size) return {};
+  bytes.resize(size);  // some write more behind the triangles
+  return bytes;
+}
+
 TriangleSoup readWithAssimp(const std::string& file) {
   Assimp::Importer importer;
-  importer.SetIOHandler(new SingleFileSystem(file));  // the importer deletes it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = importer.ReadFile(file, aiProcess_Triangulate);
+  const std::string ending = lowerCase(std::string_view(file).substr(file.rfind('.') + 1));
+  const std::string bytes = withoutOddities(file, ending);
+  const aiScene* scene = nullptr;
+  if (bytes.empty()) {
+    importer.SetIOHandler(new SingleFileSystem(file));  // the importer deletes it
+    scene = importer.ReadFile(file, aiProcess_Triangulate);
+  } else {
+    scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, ending.c_str());
+  }
   if (scene == nullptr || scene->mRootNode == nullptr) {
     const std::string error = importer.GetErrorString();  // assimp catches everything, this too:
     if (error.find("bad_alloc") != std::string::npos) throw std::bad_alloc();

@@ -2,12 +2,15 @@
 /// Room `mesh` (private): mesh file in, unconnected triangles out (assimp).
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "tissue_contact/core/types.h"
 
 namespace tissue_contact {
+
+constexpr std::uintmax_t kMaxSurfaceBytes = 64u << 20;  ///< of a file: 1.3 million triangles of binary STL
 
 struct TriangleSoup {
   std::vector<Vector3> vertices;    ///< in the file's units (DAE: m), node transforms applied, finite

@@ -15,8 +15,6 @@
 namespace tissue_contact {
 namespace {
 
-constexpr std::uintmax_t kMaxMeshBytes = 64u << 20;  // 1.3 million triangles of binary STL
-
 [[noreturn]] void refuseFile(const std::string& file, const std::string& what) {
   throw std::invalid_argument("mesh file '" + file + "' " + what);
 }
@@ -42,7 +40,7 @@ void applyScale(const Vector3& scale, const std::string& file, TriangleMesh& mes
 }  // namespace
 
 TriangleMesh loadTriangleMesh(const std::string& file, const Vector3& scale) {
-  requireRegularFile(file, "mesh file", kMaxMeshBytes);
+  requireRegularFile(file, "mesh file", kMaxSurfaceBytes);
   checkExtension(file);
   if (!scale.allFinite() || !(scale.array() != 0.0).all()) {
     refuseFile(file, "has a scale that is zero or not finite; use e.g. 0.001 0.001 0.001 for a file in millimetres");

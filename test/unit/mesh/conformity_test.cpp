@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mesh/labels.h"
+#include "mesh/mesh_quality.h"
 #include "mesh_writers.h"
 
 namespace tissue_contact {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <limits>
 #include <string>
 #include <utility>
@@ -40,6 +42,15 @@ TEST_F(LoadTriangleMesh, AsciiStl) { expectTetrahedron(load("a.stl", asciiStl())
 TEST_F(LoadTriangleMesh, BinaryStl) { expectTetrahedron(load("a.stl", binaryStl())); }
 TEST_F(LoadTriangleMesh, UpperCaseExtension) { expectTetrahedron(load("a.STL", binaryStl())); }
 TEST_F(LoadTriangleMesh, Obj) { expectTetrahedron(load("a.obj", obj())); }
+TEST_F(LoadTriangleMesh, FilesAsSomeProgramsWriteThem) {
+  std::string capitals = asciiStl();
+  std::transform(capitals.begin(), capitals.end(), capitals.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  expectTetrahedron(load("a.stl", capitals));
+  expectTetrahedron(load("b.stl", binaryStl() + "written by a program"));
+  expectTetrahedron(load("c.obj", "\xEF\xBB\xBF" + obj()));
+  expectContains(refusalOf("d.stl", binaryStl().substr(0, binaryStl().size() - 1)), {"cannot be read"});
+}
 TEST_F(LoadTriangleMesh, Dae) {
   expectTetrahedron(load("a.dae", dae("1", "Z_UP", "<node><instance_geometry url=\"#g\"/></node>")));
 }
