@@ -29,7 +29,6 @@
 namespace tissue_contact {
 namespace {
 
-constexpr std::uintmax_t kMostSurfaceBytes = std::uintmax_t{64} << 20U;
 constexpr std::uint64_t kRecipe = 2;          // raise it when what is done to a surface changes
 constexpr double kTetrahedraPerVolume = 4.5;  // of a cell's edge cubed, as gmsh fills organs
 constexpr double kFewestCells = 3.0;          // across the longest side
@@ -53,7 +52,7 @@ FillOptions optionsOf(const MeshDescription& description) {
 
 std::string keyOf(const MeshDescription& description, const std::string& version) {
   ContentKey key;
-  const std::string bytes = readFile(description.file, "mesh file", kMostSurfaceBytes);
+  const std::string bytes = readFile(description.file, "mesh file", kMaxSurfaceBytes);
   const double numbers[] = {static_cast<double>(kRecipe), description.scale_m_per_unit, description.cell_size_m,
                             description.cell_size_inside_m};
   key.add(numbers, sizeof numbers);
