@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "mesh/point_grid.h"
 
@@ -37,41 +38,69 @@ std::vector<int> firstInPlace(const std::vector<Vector3>& nodes, const std::vect
   return first;
 }
 
-NearNodes findNearNodes(const TetMesh& mesh) {
-  constexpr double kNear = 0.01;
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  const auto nodes = static_cast<std::size_t>(mesh.positions.cols());
-  const auto at = [&](std::size_t node) -> Vector3 { return mesh.positions.col(static_cast<Eigen::Index>(node)); };
-  std::vector<double> shortest(nodes, kNone);  // of the edges at a node
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+/// Of the edges at each node; kNone at those of no element.
+std::vector<double> shortestEdges(const TetMesh& mesh) {
+  std::vector<double> shortest(static_cast<std::size_t>(mesh.positions.cols()), kNone);
   for (const Tetrahedron& tet : mesh.tetrahedra) {
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        const auto a = static_cast<std::size_t>(tet[i]), b = static_cast<std::size_t>(tet[j]);
-        const double edge = (at(a) - at(b)).norm();
-        shortest[a] = std::min(shortest[a], edge);
-        shortest[b] = std::min(shortest[b], edge);
+        const double edge = (mesh.positions.col(tet[i]) - mesh.positions.col(tet[j])).norm();
+        for (const int node : {tet[i], tet[j]}) {
+          double& at = shortest[static_cast<std::size_t>(node)];
+          at = std::min(at, edge);
+        }
       }
     }
   }
+  return shortest;
+}
+
+std::vector<bool> nodesOfSurface(const TetMesh& mesh) {
+  std::vector<bool> outside(static_cast<std::size_t>(mesh.positions.cols()), false);
+  for (const Triangle& triangle : boundaryTriangles(mesh.tetrahedra)) {
+    for (const int node : triangle) outside[static_cast<std::size_t>(node)] = true;
+  }
+  return outside;
+}
+
+}  // namespace
+
+NearNodes findNearNodes(const TetMesh& mesh) {
+  constexpr double kNear = 0.01;
+  const std::vector<double> shortest = shortestEdges(mesh);
   std::vector<double> usual;
   std::copy_if(shortest.begin(), shortest.end(), std::back_inserter(usual),
                [](double edge) { return edge > 0.0 && edge < kNone; });
-  NearNodes near;
-  if (usual.empty()) return near;
+  if (usual.empty()) return {};
   const auto middle = usual.begin() + static_cast<std::ptrdiff_t>(usual.size() / 2);
   std::nth_element(usual.begin(), middle, usual.end());
   PointGrid grid(mesh.positions.rowwise().minCoeff(), kNear * *middle);
-  std::vector<std::size_t> filed;  // the node of each point of the grid
-  for (std::size_t i = 0; i < nodes; ++i) {
-    if (shortest[i] == kNone) continue;
-    const auto point = static_cast<std::size_t>(grid.findOrAdd(at(i)));
+  std::vector<int> filed;                  // the node of each point of the grid
+  std::vector<std::pair<int, int>> pairs;  // that are near
+  for (int i = 0; i < static_cast<int>(shortest.size()); ++i) {
+    const double edge = shortest[static_cast<std::size_t>(i)];
+    if (edge == kNone) continue;
+    const Vector3 here = mesh.positions.col(i);
+    const auto point = static_cast<std::size_t>(grid.findOrAdd(here));
     if (point == filed.size()) {
       filed.push_back(i);
       continue;
     }
-    const std::size_t other = filed[point];
-    if (!((at(i) - at(other)).norm() < kNear * std::min(shortest[i], shortest[other]))) continue;
-    if (near.count++ == 0) near = {1, static_cast<int>(other), static_cast<int>(i)};
+    const int other = filed[point];
+    const double limit = kNear * std::min(edge, shortest[static_cast<std::size_t>(other)]);
+    if ((here - mesh.positions.col(other)).norm() < limit) pairs.emplace_back(other, i);
+  }
+  if (pairs.empty()) return {};
+  const std::vector<bool> outside =
+      nodesOfSurface(mesh);  // where a mesh is cut open there is one; flat elements have near nodes, too
+  NearNodes near;
+  for (const auto& [one, other] : pairs) {
+    if (!outside[static_cast<std::size_t>(one)] || !outside[static_cast<std::size_t>(other)]) continue;
+    if (near.count++ == 0) near = {1, one, other};
   }
   return near;
 }
