@@ -31,11 +31,11 @@ def read_table(file):
     """(joint names, rows); a row is [time (s), position of each joint]."""
     try:
         with open(file, newline="", encoding="utf-8-sig") as stream:  # spreadsheets begin with a byte-order mark
-            lines = [(number, [text.strip() for text in line]) for number, line in enumerate(csv.reader(stream), 1) if line]
+            lines = [(number, [text.strip() for text in line]) for number, line in enumerate(csv.reader(stream), 1) if "".join(line).strip()]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         fail("%s cannot be read: %s" % (file, error))
     if len(lines) < 3 or lines[0][1][0] != "time_s" or len(lines[0][1]) < 2:
-        fail("%s: the first line must name time_s and joints, and two rows or more must follow" % file)
+        fail("%s: the first line must name time_s and joints, with commas between them, and two rows or more must follow" % file)
     names = lines[0][1]
     rows = []
     for number, line in lines[1:]:

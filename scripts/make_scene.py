@@ -198,7 +198,8 @@ def require_one_body(topology):
     parts, part_of = connected_components(joined, directed=False)
     if parts > 1:
         place = topology.rest_positions[part_of == part_of.max()].mean(axis=0)
-        fail("it has %d separate parts, one of them around (%.3g, %.3g, %.3g) m; a tissue is one body: keep the one you want, or, if they are to hang together, give them the same nodes where they meet" %
+        fail("it has %d separate parts, one of them around (%.3g, %.3g, %.3g) m; a tissue is one body: keep the one you want, or, if they "
+             "are to hang together, give them the same nodes where they meet" %
              (parts, *place))
 
 

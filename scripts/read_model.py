@@ -55,7 +55,7 @@ def decoded(data):
     if not declared:
         return data.decode("utf-8-sig")
     text = data[:declared.start(1)] + b"UTF-8" + data[declared.end(1):]
-    return text.decode("utf-8-sig" if declared[1].lower() == b"utf-8" else declared[1].decode())
+    return text.decode(declared[1].decode()).lstrip("\ufeff")
 
 
 def text_of(model):
@@ -66,7 +66,7 @@ def text_of(model):
         try:
             with open(path, "rb") as stream:
                 return decoded(stream.read())
-        except (OSError, UnicodeDecodeError, LookupError) as error:
+        except (OSError, ValueError, LookupError) as error:
             fail("%s cannot be read: %s; save it as UTF-8" % (path, error))
     xacro = shutil.which("xacro")
     if not xacro:

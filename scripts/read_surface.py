@@ -43,9 +43,12 @@ def read_surface(path):
 def read_stl(data):
     count = struct.unpack("<I", data[80:84])[0] if len(data) >= 84 else 0
     is_text = data[:5].lower() == b"solid" and b"facet" in data[:1024].lower()
-    if len(data) == 84 + 50 * count or (count > 0 and len(data) > 84 + 50 * count and not is_text):  # some write more behind
+    rest = len(data) - 84 - 50 * count
+    if rest == 0 or (count > 0 and 0 < rest < 50 and not is_text):  # some write a few bytes behind
         return numpy.frombuffer(data, "(3,)<f4, (3, 3)<f4, <u2", count, 84)["f1"].astype(float)
-    words = [line.split() for line in text_of(data).lower().splitlines()]
+    if count > 0 and not is_text:
+        raise ValueError("it has %d bytes, and %d triangles take %d" % (len(data), count, 84 + 50 * count))
+    words = [text_of(line).split() for line in data.lower().splitlines()]
     corners = numpy.array([word[1:4] for word in words if word and word[0] == "vertex"], dtype=float)
     return corners.reshape(-1, 3, 3)
 
@@ -69,11 +72,14 @@ def picked(vertices, triangles):
 
 def read_obj(data):
     vertices, triangles = [], []
-    lines = text_of(data).replace("\\\r\n", " ").replace("\\\n", " ").splitlines()  # a \ at its end: the line goes on
+    lines = [text_of(line) for line in data.splitlines()]
     if lines and lines[0].split()[:1] == ["P"]:
         raise ValueError("it is an .obj of MNI's tools, not of Wavefront's; save it as .stl or .ply")
+    word = []
     for number, line in enumerate(lines, 1):
-        word = line.split()
+        word = (word[:-1] if word[-1:] == ["\\"] else []) + line.split()  # which goes on in the next line
+        if word[-1:] == ["\\"]:
+            continue
         try:
             if word and word[0] == "v":
                 vertices.append([float(text) for text in word[1:4]])
@@ -82,7 +88,7 @@ def read_obj(data):
                 triangles += fan([i - 1 if i > 0 else len(vertices) + i for i in face])
         except ValueError as error:
             raise ValueError("line %d: %s" % (number, error)) from error
-        if word and word[0] in ("v", "f") and len(word) < 4:
+        if len(word) < 4 and word[:1] in (["v"], ["f"] if number == len(lines) else []):
             raise ValueError("line %d has %d numbers and needs three; is the file cut off?" % (number, len(word) - 1))
     return picked(vertices, triangles)
 
@@ -111,7 +117,7 @@ class PlyNumbers:
 
 def read_ply(data):
     end = data.index(b"end_header")
-    header = [line.split() for line in text_of(data[:end]).splitlines()]
+    header = [text_of(line).split() for line in data[:end].splitlines()]
     if header[0] != ["ply"]:
         raise ValueError("its first line is not 'ply'")
     form = next(words[1] for words in header if words and words[0] == "format")

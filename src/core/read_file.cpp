@@ -72,8 +72,9 @@ std::string otherCapitals(const std::string& file) {
 std::string whereLookedFor(const std::string& file) {
   std::error_code error;
   const std::filesystem::path here = std::filesystem::current_path(error);
-  return error || file.empty() || std::filesystem::path(file).is_absolute() ? ""
-                                                                            : " in '" + printable(here.string()) + "'";
+  return error || file.empty() || std::filesystem::path(file).is_absolute()
+             ? ""
+             : " in '" + printable(here.string(), 4096) + "'";
 }
 
 [[noreturn]] void refuseUnreadable(const std::string& file, const std::string& what, int error) {

@@ -36,13 +36,13 @@ std::string percentDecoded(const std::string& text) {
   return decoded;
 }
 
-/// The file that a URI's path names: as it stands if that is there, which is how most URDFs write spaces, else decoded, as RViz reads it.
-fs::path ofUri(const fs::path& path) {
-  const std::string decoded = percentDecoded(path.string());
+/// The file that a URI's path names in a folder: as it stands if that is there, which is how most URDFs write spaces, else decoded, as RViz reads it.
+fs::path ofUri(const fs::path& folder, const std::string& rest) {
+  const std::string decoded = percentDecoded(rest);
   std::error_code unreadable;
-  const bool is_decoded = decoded != path.string() && std::none_of(decoded.begin(), decoded.end(), isControl) &&
-                          !fs::exists(path, unreadable) && fs::exists(decoded, unreadable);
-  return is_decoded ? fs::path(decoded) : path;
+  const bool is_decoded = decoded != rest && std::none_of(decoded.begin(), decoded.end(), isControl) &&
+                          !fs::exists(folder / rest, unreadable) && fs::exists(folder / decoded, unreadable);
+  return folder / (is_decoded ? decoded : rest);
 }
 
 fs::path inPackage(const std::string& uri, const std::string& rest, const PackagePath& package_path) {
@@ -57,7 +57,7 @@ fs::path inPackage(const std::string& uri, const std::string& rest, const Packag
                "\", which is not known; install it, source its setup file, name the folder that it lies in, with its "
                "package.xml, in ROS_PACKAGE_PATH, or give a plain path");
   }
-  return ofUri(fs::path(directory) / rest.substr(start));
+  return ofUri(directory, rest.substr(start));
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ std::string resolvePath(const std::string& uri, const std::string& base_director
     path = inPackage(uri, rest, package_path);
   } else if (scheme == "file") {
     if (rest.empty() || rest.front() != '/') refuse(uri, "must read file:///<absolute path>");
-    path = ofUri(rest);
+    path = ofUri("/", rest);
   } else {
     refuse(uri, "has the unknown scheme \"" + scheme + "\"; use package://, file:// or a plain path");
   }

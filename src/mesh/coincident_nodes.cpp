@@ -8,20 +8,31 @@
 #include <numeric>
 #include <utility>
 
+#include "mesh/nodes.h"
 #include "mesh/point_grid.h"
 
 namespace tissue_contact {
+namespace {
+
+/// Lowest and highest coordinates of the nodes that `counts` says; infinite where there are none.
+template <class Counts>
+std::pair<Vector3, Vector3> boxOf(const NodalVectors& nodes, const Counts& counts) {
+  Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
+  Vector3 high = -low;
+  for (Eigen::Index i = 0; i < nodes.cols(); ++i) {
+    if (!counts(static_cast<std::size_t>(i))) continue;
+    low = low.cwiseMin(nodes.col(i));
+    high = high.cwiseMax(nodes.col(i));
+  }
+  return {low, high};
+}
+
+}  // namespace
 
 std::vector<int> firstInPlace(const std::vector<Vector3>& nodes, const std::vector<bool>& used, double shortest_edge) {
   std::vector<int> first(nodes.size());
   std::iota(first.begin(), first.end(), 0);
-  Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
-  Vector3 high = -low;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (!used[i]) continue;
-    low = low.cwiseMin(nodes[i]);
-    high = high.cwiseMax(nodes[i]);
-  }
+  const auto [low, high] = boxOf(columnsOf(nodes), [&](std::size_t node) { return used[node]; });
   const double diagonal = (high - low).stableNorm();
   if (!(diagonal > 0.0) || !std::isfinite(diagonal)) return first;
   constexpr double kSinglePrecision =
@@ -78,7 +89,11 @@ NearNodes findNearNodes(const TetMesh& mesh) {
   if (usual.empty()) return {};
   const auto middle = usual.begin() + static_cast<std::ptrdiff_t>(usual.size() / 2);
   std::nth_element(usual.begin(), middle, usual.end());
-  PointGrid grid(mesh.positions.rowwise().minCoeff(), kNear * *middle);
+  const auto [low, high] = boxOf(mesh.positions, [&](std::size_t node) { return shortest[node] != kNone; });
+  const double diagonal = (high - low).stableNorm();
+  if (!std::isfinite(diagonal)) return {};
+  // No nearer than nodes in one place, or cells of the grid would be too many to count.
+  PointGrid grid(low, std::max(kNear * *middle, kMergeDistance * diagonal));
   std::vector<int> filed;                  // the node of each point of the grid
   std::vector<std::pair<int, int>> pairs;  // that are near
   for (int i = 0; i < static_cast<int>(shortest.size()); ++i) {

@@ -14,10 +14,12 @@ namespace tissue_contact {
 /// For each node the first used one that lies where it does; for a node that is not used itself. In one place: within kMergeDistance of the
 /// diagonal of the box around those used, or, as far as that is a thousandth of the shortest edge, of what single precision resolves at their
 /// distance from the origin (scanners put an organ metres away from it).
-/// @param shortest_edge of the elements. @pre `used` has an entry for each node.
+/// @param shortest_edge of the elements: one that is all but flat keeps the distance small, and findNearNodes() tells what stays apart.
+/// @pre `used` has an entry for each node.
 std::vector<int> firstInPlace(const std::vector<Vector3>& nodes, const std::vector<bool>& used, double shortest_edge);
 
-/// Nodes that lie beside others, nearer than a hundredth of the edges at both: a gap that nobody sees, where a mesh was to be one.
+/// Nodes of the surface that lie beside others, nearer than a hundredth of the edges at both and of the median edge: a gap that nobody sees, where
+/// a mesh was to be one.
 struct NearNodes {
   std::size_t count = 0;
   int one = -1, other = -1;  ///< the first two

@@ -6,7 +6,15 @@
 #include <string>
 #include <system_error>
 
+#include "tissue_contact/core/resolve_path.h"
+#include "tissue_contact/ros/environment.h"
+
 namespace tissue_contact {
+
+/// A file that an argument names, which may be a URI. @throws as resolvePath().
+inline std::string withoutUri(const std::string& file) {
+  return file.find("://") == std::string::npos ? file : resolvePath(file, "", packagePath);
+}
 
 /// As given where the working directory is gone.
 inline std::string absolutePath(const std::string& file) {

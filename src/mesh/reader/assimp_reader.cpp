@@ -82,38 +82,45 @@ std::string lowerCase(std::string_view text) {
 constexpr std::size_t kStlHeader = 84;  // bytes, with the number of triangles
 constexpr std::size_t kStlTriangle = 50;
 
-bool isTextStl(std::string_view bytes) {
-  const std::string start = lowerCase(bytes.substr(0, 1024));
-  return start.rfind("solid", 0) == 0 && start.find("facet") != std::string::npos;
+/// An STL that assimp does not read as others do; empty for all others.
+std::string withoutOddities(std::string stl) {
+  std::size_t size = 0;  // of a binary one
+  if (stl.size() >= kStlHeader) {
+    std::uint32_t count = 0;
+    std::memcpy(&count, &stl[kStlHeader - sizeof count], sizeof count);
+    size = count > 0 ? kStlHeader + kStlTriangle * std::size_t{count} : 0;
+  }
+  if (stl.size() == size) return {};
+  const std::string_view start = std::string_view(stl).substr(0, 1024);
+  const std::string lower = lowerCase(start);
+  const std::size_t facet = lower.find("facet");
+  if (lower.rfind("solid", 0) == 0 && facet != std::string::npos) {  // a text
+    const bool is_read = start.substr(0, 5) == "solid" && start.substr(facet, 5) == "facet";
+    return is_read ? "" : lowerCase(stl);  // keywords in capitals
+  }
+  if (size == 0 || stl.size() < size || stl.size() - size >= kStlTriangle) return {};
+  stl.resize(size);  // some write a few bytes behind the triangles; more may be another part
+  return stl;
 }
 
-/// Of files that others read and assimp does not: their bytes as it does. Empty for all others.
-std::string withoutOddities(const std::string& file, const std::string& ending) {
+/// The bytes of a file, where it is to be read in other ones than it has.
+std::string otherBytes(const std::string& file, const std::string& ending) {
   if (ending != "stl" && ending != "obj") return {};
   std::string bytes = readFile(file, "mesh file", kMaxSurfaceBytes);
-  if (ending == "obj") return bytes.rfind("\xEF\xBB\xBF", 0) == 0 ? bytes.substr(3) : "";
-  if (isTextStl(bytes)) return bytes.rfind("solid", 0) == 0 ? "" : lowerCase(bytes);  // keywords in capitals
-  if (bytes.size() < kStlHeader) return {};
-  std::uint32_t count = 0;
-  std::memcpy(&count, &bytes[kStlHeader - sizeof count], sizeof count);
-  const std::size_t size = kStlHeader + kStlTriangle * std::size_t{count};
-  if (count == 0 || bytes.size() <= size) return {};
-  bytes.resize(size);  // some write more behind the triangles
-  return bytes;
+  if (ending == "stl") return withoutOddities(std::move(bytes));
+  return bytes.rfind("\xEF\xBB\xBF", 0) == 0 ? bytes.substr(3) : "";  // a byte-order mark
 }
 
 TriangleSoup readWithAssimp(const std::string& file) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const std::string ending = lowerCase(std::string_view(file).substr(file.rfind('.') + 1));
-  const std::string bytes = withoutOddities(file, ending);
-  const aiScene* scene = nullptr;
-  if (bytes.empty()) {
-    importer.SetIOHandler(new SingleFileSystem(file));  // the importer deletes it
-    scene = importer.ReadFile(file, aiProcess_Triangulate);
-  } else {
-    scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, ending.c_str());
-  }
+  const std::string bytes = otherBytes(file, ending);
+  importer.SetIOHandler(
+      new SingleFileSystem(file));  // the importer deletes it; what is read from memory asks it for other files, too
+  const aiScene* scene =
+      bytes.empty() ? importer.ReadFile(file, aiProcess_Triangulate)
+                    : importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, ending.c_str());
   if (scene == nullptr || scene->mRootNode == nullptr) {
     const std::string error = importer.GetErrorString();  // assimp catches everything, this too:
     if (error.find("bad_alloc") != std::string::npos) throw std::bad_alloc();

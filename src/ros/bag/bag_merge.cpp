@@ -89,6 +89,7 @@ std::uint64_t BagMerge::readMessages(const BagReader::Chunk& chunk, std::map<std
   for (std::uint32_t place = 0; !records.done(); ++place) {
     const Op op = records.next();
     if (op == Op::kConnection) continue;
+    if (op == Op::kZeros) throw BagError("its last message is cut off: zeros follow");
     if (op != Op::kMessage) throw BagError("it holds a record that is no message");
     const auto number = records.fields().number<std::uint32_t>("conn");
     if (bag_.messageCount(number) == 0) continue;

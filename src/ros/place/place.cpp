@@ -6,11 +6,10 @@
 #include <map>
 #include <stdexcept>
 
+#include "ros/absolute_path.h"
 #include "tissue_contact/core/command_line.h"
-#include "tissue_contact/core/resolve_path.h"
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/core/whole_file.h"
-#include "tissue_contact/ros/environment.h"
 
 namespace tissue_contact {
 namespace {
@@ -75,7 +74,8 @@ std::string placeUsage() {
          "            shift that would make it touch\n"
          "  picture   the scene from three sides, with the way of the instruments' tips if there is a bag\n"
          "\n"
-         "  --urdf FILE  text for the robot_description parameter that the scene takes its URDF from\n"
+         "  --urdf FILE  text for the robot_description parameter that the scene takes its URDF from; or "
+         "package://...\n"
          "  --bag FILE   also where tf frames that the scene names are taken from\n"
          "  --help       this text\n"
          "\n"
@@ -93,10 +93,7 @@ PlaceOptions parsePlaceOptions(const std::vector<std::string>& arguments) {
   options.scene_file = line.required("--scene");
   requireKeys(line, options.task, task);
   options.bag_file = line.value("--bag");
-  options.urdf_file = line.value("--urdf");
-  if (options.urdf_file.find("://") != std::string::npos) {
-    options.urdf_file = resolvePath(options.urdf_file, "", packagePath);
-  }
+  options.urdf_file = withoutUri(line.value("--urdf"));
   options.measured = line.value("--measured");
   options.instrument = line.value("--instrument");
   options.x_m = line.number("--x", 0.0, kPlace);

@@ -25,7 +25,8 @@ void checkTopicName(const std::string& kind, const std::string& name) {
 
 /// As tf2 calls it: links of old URDFs begin with a /, which it takes off what it is told and refuses in what it is asked.
 std::string frameOf(const RobotModel::Link& link) {
-  return link.name.size() > 1 && link.name.front() == '/' ? link.name.substr(1) : link.name;
+  const std::size_t begin = link.name.find_first_not_of('/');
+  return begin == std::string::npos ? link.name : link.name.substr(begin);
 }
 
 /// A root link that is the world frame itself, called like it and where it is.

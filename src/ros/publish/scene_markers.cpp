@@ -50,7 +50,7 @@ void setGeometry(const ShapeGeometry& geometry, const TriangleMesh* mesh, Marker
     const auto& file = std::get<MeshGeometry>(geometry);
     marker.type = Marker::MESH_RESOURCE;
     // A path that could not be resolved here stands as it was written, and RViz's machine may know its package.
-    marker.mesh_resource = file.file.front() == '/' ? fileUri(file.file) : file.file;
+    marker.mesh_resource = file.file.rfind('/', 0) == 0 ? fileUri(file.file) : file.file;
     marker.scale = toVector(file.scale);
   }
 }

@@ -2,10 +2,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "ros/absolute_path.h"
 #include "ros/replay/replay.h"
 #include "tissue_contact/core/command_line.h"
-#include "tissue_contact/core/resolve_path.h"
-#include "tissue_contact/ros/environment.h"
 
 namespace tissue_contact {
 namespace {
@@ -42,7 +41,8 @@ std::string replayUsage() {
          "  --plot DIR    pictures of that bag: force over time, friction over normal force\n"
          "  --from S      begin so many seconds into the recording, with undeformed tissue\n"
          "  --duration S  play so many seconds of it\n"
-         "  --urdf FILE   text for the robot_description parameter that the scene takes its URDF from\n"
+         "  --urdf FILE   text for the robot_description parameter that the scene takes its URDF from; or "
+         "package://...\n"
          "  --changes TOPIC  numbers of the scene changed while the node ran, played back at the same moments: their "
          "topic, if "
          "the\n"
@@ -95,10 +95,7 @@ ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
   }
   options.from_s = line.number("--from", options.from_s, kFrom);
   options.duration_s = line.number("--duration", options.duration_s, kDuration);
-  options.urdf_file = line.value("--urdf");
-  if (options.urdf_file.find("://") != std::string::npos) {
-    options.urdf_file = resolvePath(options.urdf_file, "", packagePath);
-  }
+  options.urdf_file = withoutUri(line.value("--urdf"));
   options.changes_topic = line.value("--changes");
   options.timing_file = line.value("--timing");
   options.manifest_file = line.value("--manifest");

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/coincident_nodes.h"
 #include "mesh/labels.h"
 #include "mesh/mesh_quality.h"
 #include "mesh_writers.h"
@@ -191,6 +192,24 @@ TEST(FlatElements, AreToldWithThePlaceOfTheFlattest) {
   const std::string text = flatElementsText(mesh);
   EXPECT_NE(text.find("warning: 1 of 3 elements are flat"), std::string::npos) << text;
   EXPECT_NE(text.find("the flattest at 0.0"), std::string::npos) << text;
+
+  const FileOfBytes file(VtkWriter({"3.0", false, 8, 8, false}).write(mesh));
+  std::string said;
+  MeshPreparation preparation;
+  preparation.say = [&](const std::string& line) { said += line + "\n"; };
+  loadTetMesh(meshFile(file.path()), preparation);
+  EXPECT_NE(said.find("1 of 3 elements are flat"), std::string::npos) << said;
+}
+
+/// A node that nothing uses, however far: cells of the grid are counted from those of elements.
+TEST(NearNodes, AreFoundInReasonableTimeBesideNodesThatAreFar) {
+  TetMesh mesh = makeBlockMesh({Vector3(0.03, 0.03, 0.02), {30, 30, 20}, {}}, BlockSplit::kFive);
+  EXPECT_EQ(findNearNodes(mesh).count, 0u);
+  mesh.positions.conservativeResize(Eigen::NoChange, mesh.positions.cols() + 1);
+  mesh.positions.rightCols<1>() = Vector3(-1e300, 0, 0);
+  EXPECT_EQ(findNearNodes(mesh).count, 0u);
+  mesh.positions.rightCols<1>() = mesh.positions.col(0) + Vector3(1e-9, 0, 0);
+  EXPECT_EQ(findNearNodes(mesh).count, 0u);
 }
 
 /// Groups name the nodes that are left. Nodes that no volume uses are not looked at, wherever they lie.

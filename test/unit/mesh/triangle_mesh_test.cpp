@@ -1,6 +1,7 @@
 #include "tissue_contact/mesh/triangle_mesh.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cctype>
@@ -47,7 +48,14 @@ TEST_F(LoadTriangleMesh, FilesAsSomeProgramsWriteThem) {
   std::transform(capitals.begin(), capitals.end(), capitals.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   expectTetrahedron(load("a.stl", capitals));
+  std::string mixed = asciiStl();
+  mixed.replace(mixed.find("facet"), 5, "Facet");
+  expectTetrahedron(load("e.stl", mixed));
   expectTetrahedron(load("b.stl", binaryStl() + "written by a program"));
+  std::string header = binaryStl();
+  header.replace(0, 20, "SOLID WITH 4 FACETS ");
+  expectTetrahedron(load("f.stl", header));
+  expectContains(refusalOf("g.stl", binaryStl() + binaryStl()), {"cannot be read"});  // which may be another part
   expectTetrahedron(load("c.obj", "\xEF\xBB\xBF" + obj()));
   expectContains(refusalOf("d.stl", binaryStl().substr(0, binaryStl().size() - 1)), {"cannot be read"});
 }
@@ -264,6 +272,12 @@ TEST_F(LoadTriangleMesh, MalformedDaeThatMakesAssimpAllocateWithoutEndIsRefused)
   std::string text = dae("1", "Z_UP", "<node><instance_geometry url=\"#g\"/></node>");
   text.replace(text.find("<p>0 2 1"), 8, "<p>0 x 1");
   expectContains(refusalOf("endless.dae", text), {"cannot be read", "too much memory"});
+}
+
+TEST_F(LoadTriangleMesh, OtherFilesNamedInAMeshWithAByteOrderMarkAreNotOpened) {
+  const std::string pipe = directory_.path("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);  // whoever opens it waits for ever
+  expectTetrahedron(load("a.obj", "\xEF\xBB\xBFmtllib pipe\nmtllib " + pipe + "\nmtllib /dev/zero\n" + obj()));
 }
 
 TEST_F(LoadTriangleMesh, OtherFilesNamedInAMeshAreNotOpened) {
