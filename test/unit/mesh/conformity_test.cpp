@@ -182,12 +182,12 @@ TEST(FlatElements, AreToldWithThePlaceOfTheFlattest) {
   TetMesh mesh = twoTetrahedra();
   EXPECT_EQ(flatElementsText(mesh), "");
   EXPECT_EQ(flatElementsText(block()), "");
-  // A third on three nodes of the first, its own a hair above their middle: dihedral angles of some 1e-3.
+  // A third on three nodes of the first, its own a hair outside their middle: dihedral angles of some 1e-3.
   const Tetrahedron& first = mesh.tetrahedra[0];
   mesh.positions.conservativeResize(Eigen::NoChange, 6);
   const Vector3 a = mesh.positions.col(first[0]), b = mesh.positions.col(first[1]), c = mesh.positions.col(first[2]);
   const Vector3 middle = (a + b + c) / 3.0;
-  mesh.positions.col(5) = middle + 3e-4 * (b - a).cross(c - a).normalized();
+  mesh.positions.col(5) = middle - 3e-4 * (b - a).cross(c - a).normalized();
   mesh.tetrahedra.push_back({first[0], first[1], first[2], 5});
   const std::string text = flatElementsText(mesh);
   EXPECT_NE(text.find("warning: 1 of 3 elements are flat"), std::string::npos) << text;
