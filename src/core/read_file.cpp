@@ -62,7 +62,7 @@ std::string otherCapitals(const std::string& file) {
   const std::filesystem::path path = std::filesystem::absolute(file, error);
   for (std::filesystem::directory_iterator at(path.parent_path(), error), end; !error && at != end;
        at.increment(error)) {
-    const std::string name = at->path().filename().string();
+    std::string name = at->path().filename().string();
     if (name != path.filename() && lower(name) == lower(path.filename().string())) return name;
   }
   return {};
