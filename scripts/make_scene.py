@@ -2,19 +2,22 @@
 """Makes a scene of an organ from its surface or its tetrahedra: a probe presses the highest point and drags over it.
 
 Writes a folder with
-  scene.yaml  the organ, a surface filled with tetrahedra when the scene is first run, held at as much of its lowest part as it stands on; every choice explained
+  scene.yaml  the organ, a surface filled with tetrahedra (which is tried, and kept for the first run), held at as much of its lowest part as it stands on; every choice explained
   probe.bag   joint states of urdf/probe.urdf: press, drag, lift
 and prints the command that turns both into forces. Edit the scene, or record your own robot over it.
 """
 import argparse
 import json
+import logging
 import math
 import os
 import re
 import shlex
+import shutil
 import sys
 
 import numpy
+import yaml
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
 from make_joint_bag import write
@@ -162,6 +165,11 @@ def quoted(text):
     return json.dumps(text, ensure_ascii=False)
 
 
+def within_mesh(error):
+    """What is wrong with a mesh, without where it stands in a scene that nobody sees."""
+    return re.sub(r"^scene\.yaml:[0-9]+: tissues\[0\]\.mesh(\.file)?[:.] ?", "", str(error))
+
+
 def read_tetrahedra(path, scale):
     """Corners of the surface of a tetrahedral mesh, n x 3 x 3, m, and more lines for the mesh; by the simulator, for all that it checks."""
     if not os.path.isfile(path):
@@ -183,7 +191,7 @@ def read_tetrahedra(path, scale):
             if asked:
                 keys += asked
                 continue
-            fail(re.sub(r"^scene\.yaml:[0-9]+: tissues\[0\]\.mesh\.(file: )?", "", str(error)))
+            fail(within_mesh(error))
         require_one_body(topology)
         more = "".join("      %s: %s  # %s\n" % (key, *MESH_KEYS[key]) for key in keys)
         return topology.rest_positions[topology.triangles], more
@@ -222,6 +230,25 @@ def read_organ(arguments):
     return corners, SURFACE_CELLS.format(cell=cell, fine=min(0.3 * BALL_M, 0.5 * cell))
 
 
+def require_filling(path, scale, cells):
+    """Refuses a surface that the simulator cannot fill, as a replay would; what it fills it with is kept for that."""
+    if not shutil.which("gmsh"):
+        print("gmsh, which fills surfaces, is not installed here: apt-get install gmsh (doc/organ.md)")
+        return
+    log = logging.getLogger("tissue_contact")  # what comes of the filling
+    log.setLevel(logging.INFO)
+    log.addHandler(logging.StreamHandler(sys.stdout))
+    try:
+        import tissue_contact
+        cell = yaml.safe_load("{%s}" % cells.split("#")[0].strip())["cell_size_m"]
+        mesh = "{file: %s, scale_m_per_unit: %g, cell_size_m: %r}" % (quoted(path), scale, cell)
+        tissue_contact.Simulator(tissue_contact.parse_scene("tissues: [{name: organ, mesh: %s, material: liver}]" % mesh))
+    except ImportError:
+        return  # the replay looks
+    except ValueError as error:
+        fail(within_mesh(error))
+
+
 def require_organ_size(size, scale):
     advice = "give --scale, metres per unit of the file: 0.001 for millimetres, 1 for metres"
     if not size.max() <= LONGEST_M:
@@ -258,6 +285,8 @@ def main():
     low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
     size = high - low
     require_organ_size(size, arguments.scale)
+    if arguments.organ.lower().endswith(SURFACES):
+        require_filling(os.path.abspath(arguments.organ), arguments.scale, cells)
     held, percent, stands = held_height(corners)
     depth = arguments.depth or min(0.005, 0.1 * size[2])
     path = drag_path(corners, depth, min(0.02, 0.2 * size[:2].max()))

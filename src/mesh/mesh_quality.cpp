@@ -62,7 +62,7 @@ std::string flatElementsText(const TetMesh& mesh) {
   text << "warning: " << count << " of " << mesh.tetrahedra.size() << " elements are flat, with faces at less than "
        << kFlat << " degree to each other, the flattest at " << kDegrees * std::acos(std::min(sharpest, 1.0));
   text.precision(3);
-  text << ", at (" << middle.transpose()
+  text << ", at (" << middle.x() << ", " << middle.y() << ", " << middle.z()
        << ") m: pressed there they turn inside out, and forces mean nothing; mesh it anew, with other cells or a "
           "surface without details much smaller than they";
   return text.str();

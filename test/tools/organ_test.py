@@ -116,7 +116,8 @@ class OrganTest(unittest.TestCase):
         return self.path(name)
 
     def make(self, surface, *more):
-        return run(sys.executable, os.path.join(SOURCE, "scripts", "make_scene.py"), surface, "--out", self.path("made"), *more)
+        return run(sys.executable, os.path.join(SOURCE, "scripts", "make_scene.py"), surface, "--out", self.path("made"), *more,
+                   env=dict(os.environ, XDG_CACHE_HOME=self.folder))
 
     def replay(self, *more):
         """Forces (N), and what was said."""
@@ -321,6 +322,17 @@ class OrganTest(unittest.TestCase):
         self.assertIn("MNI", made.stdout)
         made = self.make(self.write("organ.glb", b"glTF"), "--scale", 0.001)
         self.assertIn("as .stl", made.stdout)
+
+    @unittest.skipUnless(shutil.which("gmsh") and has_simulator(), "gmsh, or the package's Python module, is not installed")
+    def test_what_cannot_be_filled_is_refused_at_once(self):
+        vertices, triangles = ball()
+        made = self.make(self.write("open.stl", stl(vertices, triangles[:len(triangles) // 2])), "--scale", 0.001)
+        self.assertEqual(made.returncode, 1, made.stdout)
+        self.assertRegex(made.stdout, r"make_scene\.py: mesh file '.*open\.stl': it is open: ")
+        self.assertFalse(os.path.exists(self.path("made/scene.yaml")))
+        made = self.make(self.write("ball.stl", stl(vertices, triangles)), "--scale", 0.001)
+        self.assertEqual(made.returncode, 0, made.stdout)
+        self.assertIn("that mesh was kept as", self.replay("--duration", 0.1)[1])
 
     def test_what_is_flat_is_no_organ(self):
         made = self.make(self.write("flat.obj", b"v 0 0 5\nv 90 0 5\nv 0 90 5\nf 1 2 3\n"), "--scale", 0.001)

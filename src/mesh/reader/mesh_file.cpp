@@ -154,8 +154,8 @@ void requireConvex(const NodalVectors& positions, const std::vector<Tetrahedron>
   throw std::invalid_argument(
       "mesh file '" + file + "': volume element " + std::to_string(element) +
       " (0-based, in file order), a hexahedron, prism or pyramid, is so far from convex that a "
-      "part of it is flat or inverted when it is split into tetrahedra; repair it, or mesh with "
-      "tetrahedra");
+      "part of it is flat or inverted when it is split from its nodes into tetrahedra; repair it, or mesh with "
+      "tetrahedra, for instance with ParaView's filter Tetrahedralize");
 }
 
 /// The volumes as tetrahedra, and what is said per volume said per tetrahedron.
@@ -263,7 +263,8 @@ TetMesh loadTetMesh(const MeshDescription& description, const MeshPreparation& p
     if (near.count > 0) {
       const Vector3 one = mesh.positions.col(near.one);
       where << "nodes lie nearer to others than a hundredth of the edges there and are not joined with them, the first "
-            << (mesh.positions.col(near.other) - one).norm() << " m away at (" << one.transpose()
+            << (mesh.positions.col(near.other) - one).norm() << " m away at (" << one.x() << ", " << one.y() << ", "
+            << one.z()
             << ") m: the tissue is cut open there; if it is one, mesh it as one, or write coordinates that are equal, "
                "and set coincident_nodes: merge";
     }
