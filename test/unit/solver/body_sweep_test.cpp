@@ -259,7 +259,8 @@ TEST(BodySweep, DeflationGoesToWhereTheEnergyIsLeast) {
     NodalVectors v = NodalVectors::Zero(3, 30);
     const NodalVectors way = deflated(body.system, randomVectors(body), sweeps, v);
     for (const int node : {0, 7, 11, 12}) EXPECT_EQ(Vector3(way.col(node)), Vector3::Zero());
-    ASSERT_GT(way.norm(), 1e-3 * v.norm());
+    ASSERT_GT(way.norm(),
+              1e-4 * v.norm());  // far above round-off; how far it is hangs on the random numbers of the library
     // Round-off of sums of some hundred terms.
     EXPECT_LE(std::abs(workLeft(body.system, way, v)), 1e-13 * way.norm() * body.system.b.norm()) << damped;
     NodalVectors expected = v;
