@@ -1,34 +1,23 @@
 /// @file
 /// Room `mesh`: Gmsh MSH files, ASCII and binary (Gmsh reference manual, "Gmsh file formats" and "Legacy formats"): sections
-/// $Nodes and $Elements in, $NOD and $ELM of MSH 1, nodes and volumes out, and where asked physical groups ($PhysicalNames,
-/// $Entities). All other sections are skipped, as the manual asks.
+/// $Nodes and $Elements in, $NOD and $ELM of MSH 1, nodes and volumes out, and where asked physical groups. All other sections are
+/// skipped, as the manual asks.
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <iterator>
-#include <limits>
-#include <map>
 #include <numeric>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "mesh/reader/gmsh_groups.h"
 #include "mesh/reader/mesh_file.h"
 #include "mesh/reader/node_tags.h"
 
 namespace tissue_contact {
 namespace {
 
-constexpr int kDouble = 8;        // bytes
-constexpr int kGmshIntBytes = 4;  // bytes
-constexpr int kCount = 8;         // bytes of `unsigned long` (4.0) and `size_t` (4.1)
-constexpr std::int64_t kMostTag = std::numeric_limits<std::int32_t>::max();
-constexpr std::size_t kMostGroups = 16;
-constexpr std::size_t kMostGrouped =
-    4 * kMostElements;  // elements of all groups together, of which a file may hold each for two bytes
 constexpr std::size_t kLongestName =
     64;  // of a section: its end is searched for, at the cost of the name's length times the file's
 
@@ -61,11 +50,6 @@ class GmshReader {
   int nodeOf(std::int64_t tag, std::int64_t node_tag) const;
   void dropRepeatedVolumes();
   void readTags2(std::size_t count);
-  void readPhysicalNames();
-  void readEntities();
-  void readEntity(int dimension);
-  MeshFileContents::Group& group(int dimension, std::int64_t number);
-  void addToGroups(const ElementCorners& corners, int dimension);
   ElementKind kindOf(std::int64_t type, std::int64_t tag) const;
   std::size_t blockCount(std::int64_t count, std::size_t left, ItemSize item, const char* what) const;
   void readSection(const std::string& name);
@@ -85,11 +69,8 @@ class GmshReader {
   bool have_nodes_ = false;
   bool have_elements_ = false;
   bool with_labels_;
-  std::map<std::pair<int, std::int64_t>, std::size_t> group_of_;                           ///< by dimension and number
-  std::map<std::pair<std::int64_t, std::int64_t>, std::vector<std::int64_t>> numbers_of_;  ///< of an entity's groups
-  std::vector<std::int64_t> numbers_;           ///< of the groups of what is read now
+  GmshGroups groups_{in_};
   std::vector<std::int64_t> number_of_volume_;  ///< of MSH 1 and 2, which have one for each; 0: none
-  std::size_t grouped_ = 0;                     ///< elements of all groups
 };
 
 MeshFileContents GmshReader::read() {
@@ -107,6 +88,7 @@ MeshFileContents GmshReader::read() {
         "the file ends without a " + elementsSection() +
         " section: Gmsh made no mesh (it says why when it meshes), or the file is truncated; mesh or copy it again");
   }
+  contents_.groups = groups_.take();
   return std::move(contents_);
 }
 
@@ -115,8 +97,10 @@ void GmshReader::readSection(const std::string& name) {
   const bool is_of_first = version_ == Version::k1 && (name == "$NOD" || name == "$ELM");
   const std::string end = (is_of_first ? "$END" : "$End") + name.substr(1);
   if (name == "$ParametricNodes") in_.fail("$ParametricNodes is not read; save without Mesh.SaveParametric");
-  if (with_labels_ && name == "$PhysicalNames") readPhysicalNames();
-  if (with_labels_ && name == "$Entities" && (version_ == Version::k40 || version_ == Version::k41)) readEntities();
+  if (with_labels_ && name == "$PhysicalNames") groups_.readNames();
+  if (with_labels_ && name == "$Entities" && (version_ == Version::k40 || version_ == Version::k41)) {
+    groups_.readEntities(version_ == Version::k41);
+  }
   const bool is_nodes = name == nodesSection();
   if (!is_nodes && name != elementsSection()) return in_.skipPast(end);
   bool& seen = is_nodes ? have_nodes_ : have_elements_;
@@ -266,8 +250,7 @@ void GmshReader::readElements1() {
       in_.fail("element " + std::to_string(tag) + " has " + std::to_string(stated_nodes) + " nodes; its type " +
                std::to_string(type) + " must have " + std::to_string(needed) + ": export the mesh again");
     }
-    numbers_.clear();
-    if (group_number != 0) numbers_.push_back(group_number);
+    groups_.begin(group_number);
     readElement(tag, type, kGmshIntBytes);
   }
 }
@@ -288,10 +271,10 @@ void GmshReader::readElements2() {
 
 /// The first is the physical group, 0: none.
 void GmshReader::readTags2(std::size_t count) {
-  numbers_.clear();
+  groups_.begin(0);
   for (std::size_t t = 0; t < count; ++t) {
     const std::int64_t tag = in_.integer(kGmshIntBytes, "an element's tag");
-    if (t == 0 && tag != 0) numbers_.push_back(tag);
+    if (t == 0) groups_.begin(tag);
   }
 }
 
@@ -323,9 +306,7 @@ void GmshReader::readElements4() {
   for (std::size_t b = in_.checkedCount(blocks, kBlockHeader, "entity blocks"); b > 0; --b) {
     const std::int64_t first = in_.integer(kGmshIntBytes, "an entity");
     const std::int64_t second = in_.integer(kGmshIntBytes, "an entity");
-    const auto entity = version_ == Version::k41 ? std::make_pair(first, second) : std::make_pair(second, first);
-    const auto known = numbers_of_.find(entity);
-    numbers_ = known == numbers_of_.end() ? std::vector<std::int64_t>() : known->second;
+    version_ == Version::k41 ? groups_.beginEntity(first, second) : groups_.beginEntity(second, first);
     const std::int64_t type = in_.integer(kGmshIntBytes, "an element type");
     const std::size_t count =
         blockCount(in_.integer(kCount, "the number of elements of a block"), left, elementSize(), "elements");
@@ -367,15 +348,14 @@ void GmshReader::readElement(std::int64_t tag, std::int64_t type, int tag_bytes)
       corners[static_cast<std::size_t>(i)] = tags_.find(node_tag);
     }
   }
-  if (with_labels_) addToGroups(corners, kind.dimension);
+  if (with_labels_) groups_.add(corners, kind.dimension);
   if (!is_volume) {
     ++contents_.other_elements;
     return;
   }
   contents_.higher_order += kind.nodes > kind.corners ? 1 : 0;
   contents_.volumes.push_back(corners);
-  if (version_ == Version::k1 || version_ == Version::k2)
-    number_of_volume_.push_back(numbers_.empty() ? 0 : numbers_[0]);
+  if (version_ == Version::k1 || version_ == Version::k2) number_of_volume_.push_back(groups_.number());
 }
 
 int GmshReader::nodeOf(std::int64_t tag, std::int64_t node_tag) const {
@@ -408,72 +388,6 @@ void GmshReader::dropRepeatedVolumes() {
   if (kept == contents_.volumes.size() || is_repeated.empty()) return;
   contents_.volumes.resize(kept);
   contents_.higher_order = std::min(contents_.higher_order, kept);  // all are, or none: Gmsh's meshes have one order
-}
-
-MeshFileContents::Group& GmshReader::group(int dimension, std::int64_t number) {
-  const auto [found, is_new] = group_of_.emplace(std::make_pair(dimension, number), contents_.groups.size());
-  if (is_new) contents_.groups.push_back({dimension, number, "", {}});
-  return contents_.groups[found->second];
-}
-
-void GmshReader::addToGroups(const ElementCorners& corners, int dimension) {
-  for (const std::int64_t number : numbers_) group(dimension, number).elements.push_back(corners);
-  grouped_ += numbers_.size();
-  if (grouped_ <= kMostGrouped) return;
-  in_.fail("the physical groups have more than " + std::to_string(kMostGrouped) +
-           " elements; save the mesh with fewer");
-}
-
-void GmshReader::readPhysicalNames() {
-  const std::int64_t stated = in_.textInteger("the number of physical names");
-  for (std::size_t i = in_.checkedCount(stated, {3, 6}, "physical names"); i > 0; --i) {
-    const std::int64_t dimension = in_.textInteger("the dimension of a physical group");
-    const std::int64_t number = in_.textInteger("the number of a physical group");
-    const std::string_view rest = in_.line();
-    const std::size_t from = rest.find('"');
-    const std::size_t to = rest.rfind('"');
-    if (dimension < 0 || dimension > 3 || from == std::string_view::npos || to == from) {
-      in_.fail(
-          "a physical group must be its dimension, 0 to 3, its number and its name in quotes; export the mesh again");
-    }
-    group(static_cast<int>(dimension), number).name = std::string(rest.substr(from + 1, to - from - 1));
-  }
-}
-
-/// Of MSH 4: which entities belong to which physical groups.
-void GmshReader::readEntities() {
-  in_.endLine();
-  std::array<std::size_t, 4> counts{};
-  for (std::size_t& count : counts) {
-    count = in_.checkedCount(in_.integer(kCount, "a number of entities"), {5, 32}, "entities");
-  }
-  for (int dimension = 0; dimension < 4; ++dimension) {
-    for (std::size_t i = 0; i < counts[static_cast<std::size_t>(dimension)]; ++i) readEntity(dimension);
-  }
-}
-
-void GmshReader::readEntity(int dimension) {
-  const std::int64_t tag = in_.integer(kGmshIntBytes, "an entity");
-  const int corners = dimension == 0 && version_ == Version::k41 ? 3 : 6;
-  for (int i = 0; i < corners; ++i) in_.real(kDouble, "a coordinate of an entity");
-  const std::int64_t stated = in_.integer(kCount, "the number of an entity's physical groups");
-  const std::size_t count = in_.checkedCount(stated, {1, kGmshIntBytes}, "physical groups");
-  // Each element of the entity is noted for each of them.
-  if (count > kMostGroups) {
-    in_.fail("an entity belongs to " + std::to_string(count) + " physical groups; at most " +
-             std::to_string(kMostGroups) + " are read: use fewer");
-  }
-  if (numbers_of_.count({dimension, tag}) > 0) in_.fail("an entity is given twice");
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::int64_t number = in_.integer(kGmshIntBytes, "a physical group");
-    if (number < -kMostTag || number > kMostTag) in_.fail("a physical group has a number of more than 32 bits");
-    // Gmsh writes the number of a group that is oriented the other way with a minus.
-    numbers_of_[{dimension, tag}].push_back(std::abs(number));
-  }
-  if (dimension == 0) return;
-  const std::int64_t bounding = in_.integer(kCount, "the number of an entity's boundaries");
-  for (std::size_t i = in_.checkedCount(bounding, {1, kGmshIntBytes}, "boundaries"); i > 0; --i)
-    in_.integer(kGmshIntBytes, "a boundary");
 }
 
 }  // namespace
