@@ -8,6 +8,7 @@ Writes into the output folder
 import argparse
 import os
 import sys
+from urllib.parse import unquote
 
 import numpy
 import rosbag
@@ -110,18 +111,23 @@ def finish(pyplot, figure, axes, end, path):
 
 
 def friction_of(scene_file):
-    """instrument -> [(tissue, static, kinetic)] as the scene says it; only for lines in the plot."""
+    """instrument -> [(tissue, static, kinetic)] as the scene says it; only for lines in the plot, which is drawn without where they are not to be had."""
     table = {}
-    if scene_file.startswith("package://"):
-        package, _, rest = scene_file[len("package://"):].partition("/")
-        scene_file = os.path.join(rospkg.RosPack().get_path(package), rest)
-    elif scene_file.startswith("file://"):
-        scene_file = scene_file[len("file://"):]
-    with open(scene_file, encoding="utf-8") as stream:
-        for pair in (yaml.safe_load(stream) or {}).get("friction") or []:
-            coefficients = [pair.get("static"), pair.get("kinetic")]
-            if "instrument" in pair and all(isinstance(c, (int, float)) for c in coefficients):  # else a law without one line
-                table.setdefault(pair["instrument"], []).append((pair["tissue"], *coefficients))
+    try:
+        if scene_file.startswith("package://"):
+            package, _, rest = unquote(scene_file[len("package://"):]).partition("/")
+            scene_file = os.path.join(rospkg.RosPack().get_path(package), rest)
+        elif scene_file.startswith("file://"):
+            scene_file = unquote(scene_file[len("file://"):])
+        with open(scene_file, encoding="utf-8") as stream:
+            pairs = (yaml.safe_load(stream) or {}).get("friction") or []
+    except (OSError, UnicodeDecodeError, yaml.YAMLError, rospkg.ResourceNotFound) as error:  # the simulator reads more than PyYAML
+        print("plot: without the lines of friction: %s: %s" % (scene_file, " ".join(str(error).split())), file=sys.stderr)
+        return table
+    for pair in pairs:
+        coefficients = [pair.get("static"), pair.get("kinetic")]
+        if "instrument" in pair and all(isinstance(c, (int, float)) for c in coefficients):  # else a law without one line
+            table.setdefault(pair["instrument"], []).append((pair["tissue"], *coefficients))
     return table
 
 

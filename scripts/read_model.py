@@ -10,6 +10,7 @@ import re
 import shutil
 import subprocess
 import sys
+from urllib.parse import unquote
 
 import rospkg
 import yaml
@@ -23,10 +24,10 @@ def fail(message):
 
 def resolved(path):
     if path.startswith("file://"):
-        return path[len("file://"):]
+        return unquote(path[len("file://"):])
     if not path.startswith("package://"):
         return path
-    package, _, rest = path[len("package://"):].partition("/")
+    package, _, rest = unquote(path[len("package://"):]).partition("/")
     try:
         return os.path.join(rospkg.RosPack().get_path(package), rest)
     except rospkg.ResourceNotFound:

@@ -8,8 +8,8 @@ import os
 import subprocess
 import tempfile
 
-COLUMNS = ["stamp_s", "instrument", "static_contacts", "kinetic_contacts", "discarded", "force_x_n", "force_y_n", "force_z_n", "torque_x_nm",
-           "torque_y_nm", "torque_z_nm", "force_error_n", "solver_error_n"]  # of a replay's CSV, that are looked at
+COLUMNS = ["instrument", "static_contacts", "kinetic_contacts", "discarded", "force_x_n", "force_y_n", "force_z_n", "torque_x_nm",
+           "torque_y_nm", "torque_z_nm", "force_error_n", "solver_error_n", "simulated_s"]  # of a replay's CSV, that are looked at
 
 
 class Replayer:
@@ -28,7 +28,7 @@ class Replayer:
             self._process.wait()
 
     def run(self, arguments):
-        """(CPU seconds, None), or (.., what was wrong); CrashError if the process ended."""
+        """(CPU seconds, None), or (.., what was wrong); CrashError if the process ended or the machine did not suffice."""
         if not self._process:
             self._process = subprocess.Popen([self._program, "--batch", "-"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._log,
                                              encoding="utf-8", errors="replace")
@@ -38,6 +38,8 @@ class Replayer:
             words = self._process.stdout.readline().rstrip("\n").split("\t", 2)
         except BrokenPipeError:
             words = []
+        if words[0:1] == ["broken"]:
+            raise CrashError(words[2])
         if words[0:1] not in (["ok"], ["failed"]):
             process, self._process = self._process, None
             process.stdout.close()
@@ -47,7 +49,7 @@ class Replayer:
 
 
 class CrashError(Exception):
-    """The process of a replay ended: the machine may be at fault, so it is tried again when the sweep is."""
+    """The process of a replay ended, or its results could not be written: the machine may be at fault, so it is tried again when the sweep is."""
 
 
 class Measures:
@@ -55,7 +57,7 @@ class Measures:
     intervals is the impulse that the simulation has transferred."""
 
     def __init__(self):
-        self.before = None  # stamp
+        self.before_s = 0.0  # simulated
         self.was_held = False
         self.peak = {"force_n": 0.0, "torque_nm": 0.0}
         self.impulse = {"force_n": 0.0, "torque_nm": 0.0}
@@ -63,13 +65,11 @@ class Measures:
         self.contact_s = 0.0
         self.slips = self.discarded = 0
 
-    def add(self, stamp_s, _, held, sliding, discarded, *numbers):
+    def add(self, _, held, sliding, discarded, *numbers):
         """Of COLUMNS."""
-        numbers = list(map(float, numbers))
-        seconds, _, nanoseconds = stamp_s.partition(".")
-        stamp = int(seconds) * 1000000000 + int(nanoseconds.ljust(9, "0"))
-        interval = (stamp - self.before) * 1e-9 if self.before is not None and stamp > self.before else 0.0
-        self.before = stamp
+        *numbers, simulated_s = map(float, numbers)
+        interval = max(0.0, simulated_s - self.before_s)  # not of stamps: a pause is simulated as step.max_gap_s; 0 again after a reset
+        self.before_s = simulated_s
         for kind, size in zip(self.peak, (math.hypot(*numbers[:3]), math.hypot(*numbers[3:6]))):
             self.peak[kind] = max(self.peak[kind], size)
             self.impulse[kind] += size * interval
@@ -104,7 +104,7 @@ def measured(text):
     pick = operator.itemgetter(*[columns.index(name) for name in COLUMNS])
     for line in lines:
         row = pick(line)
-        instruments.setdefault(row[1], Measures()).add(*row)
+        instruments.setdefault(row[0], Measures()).add(*row)
     return {name: one.result() for name, one in instruments.items()}
 
 

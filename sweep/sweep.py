@@ -102,7 +102,8 @@ class Inputs:
                 return None, result.get("error") or result["crashed"]
             with open(file, encoding="utf-8") as stream:
                 manifest = yaml.load(stream, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-        files = sorted((one["role"], one["sha256"]) for part in ("program", "inputs") for one in manifest[part] if one["role"] != "--bag")
+        # In the order in which they are read, which tells who uses which.
+        files = [(one["role"], one["sha256"]) for part in ("program", "inputs") for one in manifest[part] if one["role"] != "--bag"]
         return fold(files, manifest["versions"].get("gmsh")), None
 
 

@@ -42,6 +42,7 @@ class Replayed:
         for row in self.rows:
             for word in struct.unpack("<7Q", struct.pack("<q6d", row["stamp_ns"], *row["wrench"])):
                 digest = (digest ^ word) * _FNV_PRIME % 2 ** 64
+                digest ^= digest >> 29
         return digest
 
 

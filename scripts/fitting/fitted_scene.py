@@ -42,6 +42,11 @@ def _element(items, part, name_of):
     return next(i for i, item in enumerate(items) if name_of(item) == part)
 
 
+def _of_word(path, word):
+    """What a word stands for where the scene may have a map: "material: liver". Of "refinement: auto" and "axis: fibre" nothing goes on."""
+    return {"preset": word} if path[-1] == "material" else {}
+
+
 def _set_in_tree(tree, path, value):
     for at, part in enumerate(path):
         last = at == len(path) - 1
@@ -50,7 +55,7 @@ def _set_in_tree(tree, path, value):
         elif part not in tree:
             tree[part] = {}
         elif not last and isinstance(tree[part], str):
-            tree[part] = {"preset": tree[part]}  # "material: liver"
+            tree[part] = _of_word(path[:at + 1], tree[part])
         if last:
             tree[part] = value
         tree = tree[part]
@@ -71,8 +76,10 @@ def _edit(root, path, value):
     """(start, end, text) that sets it, by characters of the file."""
     node = root
     for at, part in enumerate(path):
-        if isinstance(node, yaml.ScalarNode):  # "material: liver"
-            return node.start_mark.index, node.end_mark.index, "{preset: %s, %s: %s}" % (text_of(node.value), part, text_of(value))
+        if isinstance(node, yaml.ScalarNode):
+            for missing in reversed(path[at + 1:]):
+                value = {missing: value}
+            return node.start_mark.index, node.end_mark.index, text_of({**_of_word(path[:at], node.value), part: value})
         below = _child(node, part)
         if below is None:
             for missing in reversed(path[at + 1:]):
@@ -103,10 +110,13 @@ def fitted_text(scene, settings, to_folder, heading):
         text = stream.read()
     tree = yaml.safe_load(text)
     changes = [(tuple(key.split(".")), _rounded(value)) for key, value in settings.items()]
-    changes += _moved_paths(tree, os.path.dirname(os.path.abspath(scene)), os.path.abspath(to_folder))
     wanted = _unshared(tree)
     for path, value in changes:
         _set_in_tree(wanted, path, value)
+    moved = list(_moved_paths(wanted, os.path.dirname(os.path.abspath(scene)), os.path.abspath(to_folder)))  # settings' too
+    for path, value in moved:
+        _set_in_tree(wanted, path, value)
+    for path, value in changes + moved:
         start, end, new = _edit(yaml.compose(text, yaml.SafeLoader), path, value)
         text = text[:start] + new + text[end:]
     if yaml.safe_load(text) != wanted:  # anchors, and whatever else is shared: right numbers go before comments

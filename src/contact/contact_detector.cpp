@@ -273,6 +273,7 @@ void ContactDetector::turnWithSlide(const std::vector<std::vector<Pose>>& start_
   constexpr double kMostCurved = 4.0, kSharpCurvature = 8.0;  // over the smallest half extent
   constexpr double kMostDepth = 0.1;  // of the smallest half extent: deeper ones are being freed, and do not slide
   constexpr double kRoundOff = 1e-12;
+  constexpr double kLeastWay_m = 1e-9;
   const auto faded = [](double value, double all, double none) {
     return std::clamp((none - value) / (none - all), 0.0, 1.0);
   };
@@ -292,8 +293,10 @@ void ContactDetector::turnWithSlide(const std::vector<std::vector<Pose>>& start_
       const SignedDistance there = shape.distance->at(p_S + way);
       const double turned = std::max((there.normal - here.normal).norm() - kRoundOff, 0.0);
       const double curvature = turned > 0.0 ? turned * shape.half_extent / way.norm() : 0.0;
+      // On the rim of a cylinder round-off tells which face it is, of which one turns.
+      const double of_ridge = std::min(shape.distance->toRidge(p_S) / std::max(way.norm(), kLeastWay_m), 1.0);
       const double share =
-          std::min(faded(turned, kMostTurn, kSharpTurn), faded(curvature, kMostCurved, kSharpCurvature));
+          of_ridge * std::min(faded(turned, kMostTurn, kSharpTurn), faded(curvature, kMostCurved, kSharpCurvature));
       if (share > 0.0) {
         const Quaternion turn = Quaternion::FromTwoVectors(from_W, end.linear() * there.normal);
         const Matrix3 turn_W = Quaternion::Identity().slerp(share, turn).toRotationMatrix();

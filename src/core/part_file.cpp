@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "tissue_contact/core/read_file.h"
+#include "tissue_contact/core/whole_file.h"
 
 namespace tissue_contact {
 namespace {
@@ -195,8 +196,6 @@ void PartFile::placeBeside(const std::string& ending) {
   place();
 }
 
-void PartFile::fail(int error) const {
-  throw std::runtime_error("cannot write '" + place_.path + "': " + reason(error));
-}
+void PartFile::fail(int error) const { throw WriteError("cannot write '" + place_.path + "': " + reason(error)); }
 
 }  // namespace tissue_contact

@@ -36,7 +36,7 @@ struct OutputPlace {
   std::optional<struct stat> existing;
 };
 
-/// Buffered writing to an unfinished file. Failing writes throw std::runtime_error.
+/// Buffered writing to an unfinished file. Failing writes throw WriteError.
 class PartFile : public std::streambuf {
  public:
   enum class Kind { kUnnamedIfPossible, kNamed };

@@ -189,9 +189,11 @@ std::vector<FrictionDescription> parseFrictionPairs(const YamlCursor& cursor, co
   for (const YamlCursor& element : cursor.list(0, kMostPairs)) {
     pairs.push_back(parseFriction(element, scene));
     const FrictionDescription& pair = pairs.back();
-    const auto sides = unordered(pair.instrument + pair.other_tissue, pair.tissue);  // one of the two first is empty
+    const std::string other = pair.instrument + pair.other_tissue;  // one of the two is empty
+    // A region is one of `tissue`; both tissues may have one of that name.
+    const auto sides = pair.region.empty() ? unordered(other, pair.tissue) : std::pair(other, pair.tissue);
     if (!seen.emplace(sides.first, pair.link, sides.second, pair.region).second) {
-      element.fail("the pair " + inQuotes(pair.instrument + pair.other_tissue) + " and " + inQuotes(pair.tissue) +
+      element.fail("the pair " + inQuotes(other) + " and " + inQuotes(pair.tissue) +
                    (pair.link.empty() ? "" : ", link " + inQuotes(pair.link)) +
                    (pair.region.empty() ? "" : ", region " + inQuotes(pair.region)) + " is given twice; remove one");
     }

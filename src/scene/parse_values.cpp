@@ -64,7 +64,11 @@ std::string parseName(const YamlCursor& cursor) {
 
 std::string parseRosName(const YamlCursor& cursor) {
   std::string name = cursor.text();
-  std::size_t begin = name.front() == '/' || name.front() == '~' ? 1 : 0;
+  if (name.front() == '~') {
+    cursor.fail("is " + inQuotes(name) +
+                "; a private name is of no node here: write it in full, for example /node/name");
+  }
+  std::size_t begin = name.front() == '/' ? 1 : 0;
   bool is_good = true;
   while (is_good && begin != std::string::npos) {
     const std::size_t slash = name.find('/', begin);

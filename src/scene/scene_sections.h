@@ -40,7 +40,7 @@ constexpr std::size_t kMostPlaces = 1000;   ///< of all regions of a tissue, of 
 
 /// A name that may become part of a ROS topic: [A-Za-z][A-Za-z0-9_]*, at most 64 characters.
 std::string parseName(const YamlCursor& cursor);
-/// A name of a ROS topic or parameter: parts as in parseName() joined by '/', which may also begin with '/' or '~'.
+/// A name of a ROS topic or parameter: parts as in parseName() joined by '/', which may also begin with '/'.
 std::string parseRosName(const YamlCursor& cursor);
 /// A tf frame: not beginning with '/' (tf2 refuses that), without spaces.
 std::string parseFrame(const YamlCursor& cursor);

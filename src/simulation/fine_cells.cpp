@@ -14,11 +14,13 @@ constexpr double kWellCovered = 0.25;
 constexpr double kLattice = 0.25;
 
 /// In a saved state: each place is compared with each focus, so that more would keep a reader busy for long.
-constexpr std::size_t kMostCarried = 10'000;
+constexpr std::size_t kMostFoci = 10'000;
+constexpr std::size_t kMostPlaces = 100'000;  // of a contact one to six
 
 void requirePossible(const StateArchive& archive, const Vector3& p_T, double cell_m, double coarsening) {
-  constexpr double kMost_m = 1e6;  // so that no product of two overflows
-  const bool is_possible = p_T.allFinite() && p_T.cwiseAbs().maxCoeff() <= kMost_m && cell_m >= 1.0 / kMost_m &&
+  constexpr double kMost_m = 1e6;    // so that no product of two overflows
+  constexpr double kLeast_m = 1e-9;  // shapes have half extents of 1e-6 and more, and cells a tenth of that
+  const bool is_possible = p_T.allFinite() && p_T.cwiseAbs().maxCoeff() <= kMost_m && cell_m >= kLeast_m &&
                            cell_m <= kMost_m && coarsening >= 1.0 && coarsening <= kMost_m;
   archive.check(is_possible, "a place of fine cells, or their length, that no scene has");
 }
@@ -78,7 +80,7 @@ bool FineCells::anyFinerThan(double coarsening) const {
 }
 
 void FineCells::carry(StateArchive& archive) {
-  archive.carryList(foci_, kMostCarried, [&](Focus& focus) {
+  archive.carryList(foci_, kMostFoci, [&](Focus& focus) {
     archive.carry(focus.p_T);
     archive.carry(focus.asked_m);
     archive.carry(focus.coarsening);
@@ -89,7 +91,7 @@ void FineCells::carry(StateArchive& archive) {
 }
 
 void carryPlaces(StateArchive& archive, std::vector<FinePlace>& places) {
-  archive.carryList(places, kMostCarried, [&](FinePlace& place) {
+  archive.carryList(places, kMostPlaces, [&](FinePlace& place) {
     archive.carry(place.p_T);
     archive.carry(place.cell_m);
     requirePossible(archive, place.p_T, place.cell_m, 1.0);

@@ -12,6 +12,7 @@ namespace tissue_contact {
 
 struct FrictionTable::Entry {
   FrictionLawDescription numbers;
+  bool is_of_region = false;
   CoulombLaw law;                                          ///< axis and kinetic factor are filled in per contact
   std::unique_ptr<const AnisotropicFriction> anisotropic;  ///< what law.anisotropic points to
 };
@@ -128,6 +129,7 @@ void FrictionTable::add(const FrictionDescription& description, const Scene& sce
   const int index = static_cast<int>(entries_.size());
   Entry& entry = entries_.emplace_back();
   entry.numbers = scene.advisor.general_friction ? directional(description.law) : description.law;
+  entry.is_of_region = region >= 0;
   entry.anisotropic = makeAnisotropicFriction(entry.numbers);
   entry.law.anisotropic = entry.anisotropic.get();
   if (entry.anisotropic == nullptr) {
@@ -176,11 +178,14 @@ FrictionTable::Found FrictionTable::find(const Contact& contact, const std::vect
   }
   const Found named =
       in(between_tissues_[key.tissue][key.other_tissue], key.tissue, contact.nodes, contact.weights, 1.0);
-  if (named.entry != nullptr) return named;
-  // The contact has the pair the other way round: the entry's `other_tissue` is what the contact calls `tissue`, so that
-  // what moves forward over what is turned round.
-  return in(between_tissues_[key.other_tissue][key.tissue], key.other_tissue, contact.other_nodes,
-            contact.other_weights, -1.0);
+  // The contact may have the pair the other way round: the entry's `other_tissue` is what the contact calls `tissue`, so
+  // that what moves forward over what is turned round.
+  const Found turned = in(between_tissues_[key.other_tissue][key.tissue], key.other_tissue, contact.other_nodes,
+                          contact.other_weights, -1.0);
+  if (named.entry == nullptr || turned.entry == nullptr) return named.entry != nullptr ? named : turned;
+  // Which of the two has the vertex must not count: that of a region, of two such the one listed first.
+  if (named.entry->is_of_region != turned.entry->is_of_region) return named.entry->is_of_region ? named : turned;
+  return named.entry <= turned.entry ? named : turned;
 }
 
 Vector3 FrictionTable::axisOf(const Found& found, const Contact& contact, const std::vector<NodalVectors>& x,

@@ -16,8 +16,9 @@ namespace {
 
 /// As numbers and text, what a mesh is made from.
 auto parts(const BlockDescription& block) {
-  return std::make_tuple(block.size_m.x(), block.size_m.y(), block.size_m.z(), block.cells, block.grading[0].growth,
-                         block.grading[1].growth, block.grading[2].growth);
+  const auto of = [](const AxisGrading& axis) { return std::make_pair(axis.growth, axis.fine_at); };
+  return std::make_tuple(block.size_m.x(), block.size_m.y(), block.size_m.z(), block.cells, of(block.grading[0]),
+                         of(block.grading[1]), of(block.grading[2]));
 }
 auto parts(const MeshDescription& mesh) {
   return std::tie(mesh.file, mesh.scale_m_per_unit, mesh.cell_size_m, mesh.cell_size_inside_m);
@@ -58,6 +59,7 @@ bool haveSameRegions(const TissueDescription& a, const TissueDescription& b) {
   return std::equal(a.regions.begin(), a.regions.end(), b.regions.begin(), b.regions.end(),
                     [](const TissueRegion& one, const TissueRegion& other) {
                       return one.name == other.name && one.where.size() == other.where.size() &&
+                             one.fibre_direction == other.fibre_direction &&
                              fixedParts(one.material) == fixedParts(other.material);
                     });
 }
@@ -77,6 +79,7 @@ const char* difference(const TissueDescription& a, const TissueDescription& b) {
   if (fixedParts(a.material) != fixedParts(b.material)) return "a tissue's material but for its constants";
   if (!relaxesAlike(a.material, b.material)) return "tissues[].material.prony_series";
   if (!areSame(a.pose, b.pose)) return "tissues[].pose";
+  if (a.fibre_direction != b.fibre_direction) return "tissues[].fibre_direction";
   if (!haveSameRegions(a, b)) return "tissues[].regions";
   if (!haveSameAttachments(a, b)) return "tissues[].attachments";
   if (a.fixed.size() != b.fixed.size()) return "tissues[].fixed";
@@ -96,15 +99,28 @@ const char* difference(const InstrumentDescription& a, const InstrumentDescripti
   const bool are_same = a.name == b.name && a.urdf_file == b.urdf_file && a.tip_link == b.tip_link &&
                         a.robot_description_parameter == b.robot_description_parameter &&
                         areSame(a.base_pose, b.base_pose) && a.joint_names == b.joint_names &&
-                        haveSameCompliance(a, b) && a.contact_links.size() == b.contact_links.size();
+                        a.initial_joint_positions == b.initial_joint_positions && haveSameCompliance(a, b) &&
+                        a.contact_links.size() == b.contact_links.size();
   return are_same ? nullptr : "instruments";
 }
 
+auto fixedParts(const FrictionDescription& pair) {
+  return std::tie(pair.instrument, pair.tissue, pair.other_tissue, pair.link, pair.region);
+}
+
+/// But for the coefficients, of which there are as many.
+bool areAlike(const FrictionLawDescription& a, const FrictionLawDescription& b) {
+  const auto parts = [](const FrictionLawDescription& law) {
+    return std::tie(law.kind, law.angles_rad, law.axis, law.speeds_m_per_s, law.speed_factors, law.pressures_pa,
+                    law.pressure_factors);
+  };
+  return parts(a) == parts(b) && a.link_axis == b.link_axis &&
+         a.static_coefficients.size() == b.static_coefficients.size() &&
+         a.kinetic_coefficients.size() == b.kinetic_coefficients.size();
+}
+
 const char* difference(const FrictionDescription& a, const FrictionDescription& b) {
-  const bool are_same = a.instrument == b.instrument && a.tissue == b.tissue && a.other_tissue == b.other_tissue &&
-                        a.link == b.link && a.region == b.region && a.law.kind == b.law.kind &&
-                        a.law.static_coefficients.size() == b.law.static_coefficients.size() &&
-                        a.law.kinetic_coefficients.size() == b.law.kinetic_coefficients.size();
+  const bool are_same = fixedParts(a) == fixedParts(b) && areAlike(a.law, b.law);
   return are_same ? nullptr : "friction but for its coefficients";
 }
 
@@ -117,6 +133,11 @@ const char* difference(const std::vector<Part>& a, const std::vector<Part>& b, c
   return nullptr;
 }
 
+auto parts(const AdvisorDescription& advisor) {
+  return std::tie(advisor.sleep, advisor.sleep_error, advisor.adapt_rotations, advisor.skip_folds,
+                  advisor.general_friction);
+}
+
 /// What retune() would leave as it is though the scenes differ in it: whoever compares scenes that way would get the same forces and
 /// believe them. Places of regions, of `fixed` and of shapes are not looked at, but how many there are. nullptr: nothing.
 const char* difference(const Scene& a, const Scene& b) {
@@ -127,6 +148,9 @@ const char* difference(const Scene& a, const Scene& b) {
   if (a.step.max_step_s != b.step.max_step_s || a.step.max_gap_s != b.step.max_gap_s) return "step";
   if (a.solver.method != b.solver.method) return "solver.method";
   if (a.solver.relaxation != b.solver.relaxation) return "solver.relaxation";
+  if (a.solver.cone_sides != b.solver.cone_sides) return "solver.cone_sides";
+  if (a.solver.time_budget_s != b.solver.time_budget_s) return "solver.time_budget_s";
+  if (parts(a.advisor) != parts(b.advisor)) return "advisor";
   const bool have_same_pairs = std::equal(a.tissue_pairs.begin(), a.tissue_pairs.end(), b.tissue_pairs.begin(),
                                           b.tissue_pairs.end(), [](const TissuePair& one, const TissuePair& other) {
                                             return one.tissue == other.tissue && one.other == other.other;

@@ -15,7 +15,7 @@ namespace tissue_contact {
 namespace {
 
 /// With the version of what follows it.
-constexpr const char* kStateTitle = "tissue_contact simulation 6";
+constexpr const char* kStateTitle = "tissue_contact simulation 7";
 
 NodalVectors handOver(NodalVectors& values) {
   NodalVectors copy = values;
@@ -67,7 +67,11 @@ std::vector<Advice> Simulator::advice() const {
 
 void Simulator::reset() { implementation_->reset(); }
 
-void Simulator::carry(StateArchive& archive) { implementation_->carry(archive); }
+void Simulator::carry(StateArchive& archive) {
+  if (!archive.isReading() && implementation_->retuned)
+    forceErrors();  // and residuals: of the numbers of the step before
+  implementation_->carry(archive);
+}
 
 std::string Simulator::saveState() {
   StateArchive archive(kStateTitle);
@@ -103,7 +107,10 @@ void Simulator::requireJointPositions(int instrument, const VectorX& joint_posit
 
 void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_positions, const AdvanceLimits& limits) {
   Implementation& all = *implementation_;
-  requirePositive("duration", duration_s, "s");
+  // Stamps have no less. What a contact carried over a step, times so little, is lost in round-off.
+  constexpr double kShortest_s = 1e-9;
+  if (!(duration_s >= kShortest_s && std::isfinite(duration_s)))
+    throwBadValue("duration", duration_s, "s", "finite and at least 1e-9");
   if (joint_positions.size() != all.instruments.size()) {
     throwBadValue("number of joint-position vectors", static_cast<double>(joint_positions.size()), "",
                   std::to_string(all.instruments.size()));

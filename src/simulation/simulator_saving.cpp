@@ -43,6 +43,10 @@ std::uint64_t complianceHash(const Instrument& instrument) {
 std::uint64_t materialHash(const Tissue& tissue, const TissueDescription& description) {
   const auto undeformed = tissue.elasticity().makeState();
   ContentHash hash;
+  hash.add(&description.material.model, sizeof description.material.model);  // laws are alike where nothing is deformed
+  for (const TissueRegion& region : description.regions) {
+    hash.add(&region.material.model, sizeof region.material.model);
+  }
   hash.add(tissue.nodeMasses().data(), sizeof(double) * static_cast<std::size_t>(tissue.nodeMasses().size()));
   for (const BlockMatrix* matrix : {&undeformed->stiffness, &undeformed->damping}) {
     hash.add(matrix->diagonal.data(), sizeof(Matrix3) * matrix->diagonal.size());
@@ -67,7 +71,11 @@ std::uint64_t hashOf(const Values& values) {
 }  // namespace
 
 void Simulator::Implementation::carry(StateArchive& archive) {
-  if (retuned) retune();  // numbers that the next step has
+  if (retuned) {
+    retune();                  // numbers that the next step has
+    problem.contacts.clear();  // their laws are gone
+    solution.states.clear();
+  }
   carryMeshes(archive);
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     archive.section("instrument '" + instruments[i].name() + "'");

@@ -32,6 +32,24 @@ def wrenches_of(file):
     return np.array([[float(row[field]) for field in FIELDS] for row in csv.DictReader(file.open())])
 
 
+def fixture_digest(file):
+    """That of a TissueFixture that has had these wrenches."""
+    from geometry_msgs.msg import WrenchStamped
+    from tissue_contact_testing import TissueFixture
+
+    fixture, heard = TissueFixture.__new__(TissueFixture), []
+    for row in csv.DictReader(file.open()):
+        wrench = WrenchStamped()
+        wrench.header.stamp.secs, wrench.header.stamp.nsecs = map(int, row["stamp_s"].split("."))
+        for vector, name in ((wrench.wrench.force, "force_%s_n"), (wrench.wrench.torque, "torque_%s_nm")):
+            for axis in "xyz":
+                setattr(vector, axis, float(row[name % axis]))
+        heard.append(wrench)
+    fixture._wrenches = {"probe": None}
+    fixture.wrenches = lambda name: heard
+    return fixture.digest()
+
+
 def test_same_bits_as_the_program(source, written, tmp_path):
     ours = tmp_path / "ours.csv"
     result = tc.replay(source / SCENE, source / BAG, csv=ours, duration_s=SECONDS)
@@ -42,6 +60,7 @@ def test_same_bits_as_the_program(source, written, tmp_path):
     assert np.abs(result.wrenches("probe")).max() > 0.01
     assert "joint states accepted" in result.log and result.instruments == ["probe"]
     assert result.digest() == tc.replay(source / SCENE, source / BAG, duration_s=SECONDS).digest()
+    assert result.digest() == fixture_digest(written)
     softer = tc.replay(source / SCENE, source / BAG, duration_s=SECONDS, set={"tissues.block.material.youngs_modulus_pa": 4000.0})
     assert softer.digest() != result.digest()
 

@@ -116,6 +116,14 @@ class FittedSceneTest(Folder):
         self.assertEqual([tissue["mesh"]["file"] for tissue in got["tissues"][:-1]], ["../" + name for name in names])
         self.assertEqual(got["tissues"][-1]["material"], {"preset": "a, b}", "youngs_modulus_pa": 2.0})
 
+    def test_files_and_words_that_settings_replace(self):
+        scene = self.write("s.yaml", "tissues:\n  - {name: a, mesh: {file: coarse.vtk}, refinement: auto}\nfriction:\n  - {instrument: p, tissue: a, axis: fibre}\n")
+        got = yaml.safe_load(fitted_scene.fitted_text(scene, {
+            "tissues.a.mesh.file": "finer.vtk", "tissues.a.refinement.cell_m": 0.003, "friction.0.axis.link_direction": [1, 0, 0]},
+            os.path.join(self.folder, "x"), []))
+        self.assertEqual(got, {"tissues": [{"name": "a", "mesh": {"file": "../finer.vtk"}, "refinement": {"cell_m": 0.003}}],
+                               "friction": [{"instrument": "p", "tissue": "a", "axis": {"link_direction": [1, 0, 0]}}]})
+
     def test_an_anchor_is_not_changed_for_others(self):
         scene = self.write("s.yaml", "tissues:\n  - {name: a, material: &m {youngs_modulus_pa: 1}}\n  - {name: b, material: *m}\n")
         got = yaml.safe_load(fitted_scene.fitted_text(scene, {"tissues.b.material.youngs_modulus_pa": 2.0}, self.folder, []))

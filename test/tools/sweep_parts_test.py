@@ -86,11 +86,12 @@ class MeasuresTest(unittest.TestCase):
     def test_of_a_force_that_is_known(self):
         from replays import measured
         lines = ["stamp_s,instrument,force_x_n,force_y_n,force_z_n,torque_x_nm,torque_y_nm,torque_z_nm,static_contacts,kinetic_contacts,discarded,"
-                 "force_error_n,solver_error_n"]
+                 "force_error_n,solver_error_n,simulated_s"]
         states = [(0, 0), (2, 0), (1, 1), (0, 2), (0, 2), (1, 0), (0, 1), (0, 0)]  # slips where none holds any more: twice
         for i, (held, sliding) in enumerate(states):
             force = 5.0 if held or sliding else 0.0
-            lines.append("1700000000.%09d,probe,%g,%g,0,0,0,%g,%d,%d,0,0.2,0.1" % (i * 100000000, 0.6 * force, 0.8 * force, 0.01 * force, held, sliding))
+            stamp = 1700000000 + 0.1 * i + (3600 if i > 3 else 0)  # a pause, which is simulated as .1 s
+            lines.append("%.9f,probe,%g,%g,0,0,0,%g,%d,%d,0,0.2,0.1,%.17g" % (stamp, 0.6 * force, 0.8 * force, 0.01 * force, held, sliding, 0.1 * i))
         result = measured("\n".join(lines) + "\n")["probe"]
         for name, value in {"peak_force_n": 5.0, "mean_force_n": 5.0, "impulse_n_s": 3.0, "peak_torque_nm": 0.05, "angular_impulse_nm_s": 0.03,
                             "contact_time_s": 0.6, "slips": 2, "likely_error_n": 0.2, "solver_error_n": 0.1, "discarded": 0}.items():

@@ -107,8 +107,8 @@ class StateArchive {
   std::string section_;
 };
 
-/// Reads `state` by `carry(StateArchive&)`. If that fails, reads what `save()` gave before, and if that cannot be read either, because
-/// what was saved there had run away, calls reset(); and throws what the first threw. Of what is no saved state, or damaged, nothing
+/// Reads `state` by `carry(StateArchive&)`. If that fails, reads what `save()` gave before, and if that failed or cannot be read either,
+/// because what was saved there had run away, calls reset(); and throws what the first threw. Of what is no saved state, or damaged, nothing
 /// of all this is done.
 template <typename Carry, typename Save, typename Reset>
 void restoreOrPutBack(const std::string& title, const std::string& state, const Save& save, const Carry& carry,
@@ -118,7 +118,11 @@ void restoreOrPutBack(const std::string& title, const std::string& state, const 
     archive.requireEnd();
   };
   StateArchive archive(title, state);
-  const std::string before = save();
+  std::string before;
+  try {
+    before = save();
+  } catch (const std::exception&) {  // no state at all: not to be read below
+  }
   try {
     read(std::move(archive));
   } catch (const std::exception&) {

@@ -4,12 +4,19 @@
 
 #include <memory>
 #include <ostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace tissue_contact {
 
 class PartFile;
+
+/// What was to be written was not, by no fault of what was asked for: the disk is full, say.
+class WriteError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// Writes into a file without a name (where the file system has none: under an unpredictable name beside the target that
 /// says "partial") and gives it the target's name when complete. So the target is never half a result, whatever ends the
@@ -27,7 +34,7 @@ class WholeFile {
   WholeFile& operator=(const WholeFile&) = delete;
 
   /// Numbers have as many digits as a double needs to be read back to the same bits. A write that fails throws
-  /// std::runtime_error naming the file and the reason.
+  /// WriteError naming the file and the reason.
   std::ostream& stream() { return stream_; }
 
   /// By which a library that opens files by name writes into it, in place of the stream. Valid in this process, until the file has its

@@ -171,6 +171,9 @@ class JointStatePlayer {
   /// @throws std::invalid_argument telling what does not fit; nothing has changed then.
   void restoreState(const std::string& state);
 
+  /// A sample that was to be pushed before a reset or restoreState(): counted as merged.
+  void notePassedOver() { ++merged_; }
+
   /// What every saved state begins with: kind and version.
   static const char* stateTitle();
 

@@ -26,6 +26,11 @@ class CylinderDistance : public ShapeDistance {
     return half_length_ * axis.cwiseAbs() + radius_ * (1.0 - axis.array().square()).max(0.0).sqrt().matrix();
   }
   SignedDistance at(const Vector3& p_S) const override;
+  double toRidge(const Vector3& p_S) const override {
+    const double side = beyondSide(p_S), cap = beyondCap(p_S);
+    return side > 0.0 && cap > 0.0 ? std::numeric_limits<double>::infinity()
+                                   : std::abs(side - cap);  // rounded out there
+  }
   bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const override;
 
  private:

@@ -3,6 +3,7 @@
 /// triangle that distance is least. Everything in the shape's frame S, metres.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -66,6 +67,9 @@ class ShapeDistance {
 
   /// Whether flat parts exist that can lie flush on a triangle, so that tissue vertices and shape corners matter.
   virtual bool hasFlatParts() const { return true; }
+  /// How much farther another smooth part of the shape is than the nearest one, where distances to both are compared by which is larger;
+  /// 0 on the ridge between their gradients. Infinite: there is no such ridge, or both are flat.
+  virtual double toRidge(const Vector3& /*p_S*/) const { return std::numeric_limits<double>::infinity(); }
 
   /// Corners that are the shape's foremost points in direction `forward` (unit; see kCornerSlope), at least those in
   /// `box`. Cleared first.

@@ -50,7 +50,12 @@ std::string joinedNames(const std::set<std::string>& names) {
 
 JointStateBag::JointStateBag(const std::string& file, const std::vector<std::string>& topics)
     : bag_(std::make_unique<BagReader>(file)) {
-  for (std::size_t i = 0; i < topics.size(); ++i) index_[globalName(topics[i])] = static_cast<int>(i);
+  for (std::size_t i = 0; i < topics.size(); ++i) {
+    const auto [other, is_new] = index_.emplace(globalName(topics[i]), static_cast<int>(i));
+    if (is_new) continue;
+    bag_->fail("the scene's topics " + printable(topics[static_cast<std::size_t>(other->second)]) + " and " +
+               printable(topics[i]) + " are one in a bag; spell them alike");
+  }
   bag_->select([this](const BagConnection& connection) { return index_.count(globalName(connection.topic)) > 0; });
   findTopics();
 }

@@ -16,6 +16,9 @@
 namespace tissue_contact {
 namespace {
 
+/// After the first joint state: by then a recorder has the latched message, by a connection of its own.
+const ros::Duration kLatchedWithin(2.0);
+
 /// In all changes of a bag: a slider that was moved for an hour, of a scene with a hundred numbers.
 constexpr std::size_t kMostNumbers = 10'000'000;
 
@@ -35,6 +38,12 @@ Changes readChanges(std::string_view data) {
                    " values");
   }
   return message;
+}
+
+bool areSame(const std::vector<TunedNumber>& a, const std::vector<TunedNumber>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const TunedNumber& one, const TunedNumber& other) {
+    return one.key == other.key && one.value == other.value;
+  });
 }
 
 bool hasChanges(const BagConnection& connection) { return connection.md5sum == ros::message_traits::md5sum<Changes>(); }
@@ -68,19 +77,28 @@ RecordedChanges::RecordedChanges(const std::string& file, const std::string& top
   if (topic.empty() && std::none_of(all.begin(), all.end(), has_changes)) return;  // most bags: no index need be read
   selectTopic(topic, bag);
   std::size_t left = kMostNumbers;
+  std::vector<TunedNumber> before;
+  bool is_first = true;
   bag.forEach([&](const BagMessage& message) {
     try {
       const Changes recorded = readChanges(message.data);
       if (recorded.keys.size() > left) throw BagError("more numbers are changed than are read of a bag");
       left -= recorded.keys.size();
-      Change& change = changes_.emplace_back();
+      Change change;
       change.loop = recorded.loop;
       change.is_latched = message.recorded <= recording_begins;
+      if (change.is_latched || (is_first && message.recorded <= recording_begins + kLatchedWithin)) {
+        first_loop_ = change.loop;
+      }
+      is_first = false;
       change.stamp_ns = kNanosecondsPerSecond * recorded.header.stamp.sec + recorded.header.stamp.nsec;
       for (std::size_t i = 0; i < recorded.keys.size(); ++i) {
         change.numbers.push_back({recorded.keys[i], recorded.values[i]});
       }
       tuned(scene_, change.numbers);
+      if (areSame(change.numbers, before)) return true;  // said again at the beginning of a loop
+      before = change.numbers;
+      changes_.push_back(std::move(change));
     } catch (const BagError& error) {
       bag.fail(message, error);
     } catch (const std::invalid_argument& error) {
@@ -96,13 +114,16 @@ std::optional<Scene> RecordedChanges::takeDue(std::int64_t loop, const std::opti
                                               std::int64_t next_ns) {
   if (taken_ == changes_.size()) return std::nullopt;
   const Change& change = changes_[taken_];
-  // What came before the first moment of the recording is there from its start.
-  // What came before the first moment of the recording is there from its start.
-  const bool is_due =
-      played_ns ? std::pair(first_loop_ + loop, *played_ns) >= std::pair(change.loop, change.stamp_ns)
-                : next_ns > 0 && (change.is_latched || (change.loop == first_loop_ && change.stamp_ns < next_ns));
+  const std::int64_t at_loop = first_loop_ + loop;
+  bool is_due = false;
+  if (!played_ns) {  // what came before the first moment of the recording is there from its start
+    is_due = next_ns > 0 && (change.is_latched || (change.loop == at_loop && change.stamp_ns < next_ns));
+  } else if (at_loop == change.loop) {  // the moment that comes lies before it: after one stray stamp far ahead
+    is_due = *played_ns == change.stamp_ns || (*played_ns > change.stamp_ns && next_ns > change.stamp_ns);
+  } else {
+    is_due = at_loop > change.loop;
+  }
   if (!is_due) return std::nullopt;
-  if (!played_ns) first_loop_ = change.loop;
   ++taken_;
   return tuned(scene_, change.numbers);
 }

@@ -25,16 +25,19 @@ class RecordedChanges {
   /// @throws std::runtime_error when the bag cannot be read, several topics have changes and none is named, the named one has none, or
   ///   a change is not one of this scene.
   /// @param recording_begins of the first joint state. A change recorded before it is a latched one: it holds from the start, whatever
-  ///   its loop, which the recording begins in.
+  ///   its loop, which the recording begins in. So does the first one where it is recorded soon after: a node says its changes again when
+  ///   a loop begins.
   RecordedChanges(const std::string& file, const std::string& topic, const Scene& scene, ros::Time recording_begins);
 
+  /// Of changes to other numbers than before.
   std::size_t count() const { return changes_.size(); }
   std::size_t taken() const { return taken_; }
 
   /// The scene from the next step on, if a change is due that was not taken yet.
   /// @param loop how often time has gone backwards.
   /// @param played_ns stamp of the moment played last; none: none was.
-  /// @param next_ns of the moment that comes; 0: none is ready.
+  /// @param next_ns of the moment that comes; 0: none is ready. Where it lies before a change that seems to be due, what was played
+  ///   was one stray stamp ahead of the others.
   std::optional<Scene> takeDue(std::int64_t loop, const std::optional<std::int64_t>& played_ns, std::int64_t next_ns);
 
  private:

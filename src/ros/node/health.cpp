@@ -1,7 +1,6 @@
 #include "ros/node/health.h"
 
 #include <ros/console.h>
-#include <ros/names.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,11 +27,6 @@ int nodesOf(const Simulator& simulator) {
 /// Of a driver, s: slower ones than this are rare, and a busy machine holds none up for as long.
 constexpr double kLongestSilence_s = 2.0;
 
-std::vector<std::string> resolved(std::vector<std::string> topics) {
-  for (std::string& topic : topics) topic = ros::names::resolve(topic);
-  return topics;
-}
-
 std::vector<bool> triggering(const JointStatePlayer& player) {
   std::vector<bool> triggers;
   for (std::size_t t = 0; t < player.topics().size(); ++t) triggers.push_back(player.triggers(static_cast<int>(t)));
@@ -41,14 +35,14 @@ std::vector<bool> triggering(const JointStatePlayer& player) {
 
 }  // namespace
 
-Health::Health(const Simulator& simulator, const JointStatePlayer& player, const JointStateInbox& inbox)
+Health::Health(const Simulator& simulator, const JointStatePlayer& player, const JointStateInbox& inbox,
+               std::vector<std::string> topics)
     : simulator_(simulator),
       player_(player),
       inbox_(inbox),
       nodes_(nodesOf(simulator)),
       max_lag_s_(simulator.scene().step.max_lag_s),
-      silence_(resolved(player.topics()), triggering(player),
-               std::max(kLongestSilence_s, simulator.scene().step.max_gap_s)) {}
+      silence_(std::move(topics), triggering(player), std::max(kLongestSilence_s, simulator.scene().step.max_gap_s)) {}
 
 bool Health::Throttle::pass() {
   constexpr std::chrono::seconds kPeriod(5);

@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "ros/node/joint_state_inbox.h"
 #include "ros/node/live_figures.h"
@@ -29,7 +30,9 @@ namespace tissue_contact {
 class Health {
  public:
   /// All must outlive this. Only the stepping thread's calls read `simulator` and `player`.
-  Health(const Simulator& simulator, const JointStatePlayer& player, const JointStateInbox& inbox);
+  /// @param topics what those of the player are called on the ROS graph.
+  Health(const Simulator& simulator, const JointStatePlayer& player, const JointStateInbox& inbox,
+         std::vector<std::string> topics);
 
   /// Who names the publishers of a topic in a warning; before any thread starts.
   void setPublishers(std::function<std::string(int topic)> publishers) { publishers_ = std::move(publishers); }

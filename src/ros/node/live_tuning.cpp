@@ -184,10 +184,14 @@ std::optional<LiveNumbers> LiveTuning::take() {
 void LiveTuning::echo(const LiveNumbers& taken, std::int64_t stamp_ns, std::int64_t loop) {
   if (differences(echoed_, taken.scene).empty()) return;
   echoed_ = taken.scene;
+  tell(stamp_ns, loop);
+}
+
+void LiveTuning::tell(std::int64_t stamp_ns, std::int64_t loop) {
   Changes message;
   message.header.stamp = toTime(stamp_ns);
   message.loop = static_cast<std::uint32_t>(loop);
-  for (const TunedNumber& number : differences(at_start_.scene, taken.scene)) {
+  for (const TunedNumber& number : differences(at_start_.scene, echoed_)) {
     message.keys.push_back(number.key);
     message.values.push_back(number.value);
   }

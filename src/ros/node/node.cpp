@@ -125,6 +125,12 @@ Simulator makeSimulator(const ros::NodeHandle& private_node, const std::vector<s
   }
 }
 
+/// By the node's own handle: of a nodelet with its own names and remappings, not its manager's.
+std::vector<std::string> resolvedNames(const ros::NodeHandle& node, std::vector<std::string> topics) {
+  for (std::string& topic : topics) topic = node.resolveName(topic);
+  return topics;
+}
+
 }  // namespace
 
 Node::Node(const ros::NodeHandle& node, const ros::NodeHandle& private_node, const std::string& name,
@@ -133,7 +139,7 @@ Node::Node(const ros::NodeHandle& node, const ros::NodeHandle& private_node, con
       simulator_(makeSimulator(private_node_, arguments, publish_, placed_frames_)),
       player_(simulator_),
       inbox_(kJointStateQueue),
-      health_(simulator_, player_, inbox_),
+      health_(simulator_, player_, inbox_, resolvedNames(node, player_.topics())),
       outputs_(private_node_, simulator_, player_, publish_, [this](Status& status) { health_.addTo(status); }),
       tuning_(private_node_, {simulator_.scene(), publish_}),
       stepper_(simulator_, player_, inbox_, outputs_, health_, tuning_, ros::Time::isSimTime()),

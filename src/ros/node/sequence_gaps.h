@@ -19,8 +19,10 @@ class SequenceGaps {
   void note(int topic, const std::string& publisher, std::uint32_t sequence) {
     if (last_.size() > kMostPublishers) last_.clear();  // names come from outside
     const auto [last, is_new] = last_.try_emplace({topic, publisher.substr(0, kLongestName)}, sequence);
-    // Backwards: started again, or a bag with numbers of its own.
-    if (!is_new && sequence > last->second) missing_ += sequence - last->second - 1;
+    // Backwards: started again, or a bag with numbers of its own. Far ahead: a bag of several publishers, whose numbers rosbag keeps.
+    if (!is_new && sequence > last->second && sequence - last->second <= kMostMissing) {
+      missing_ += sequence - last->second - 1;
+    }
     last->second = sequence;
   }
 
@@ -37,6 +39,7 @@ class SequenceGaps {
   }
 
  private:
+  static constexpr std::uint32_t kMostMissing = 100'000;  // at once: of a driver at 1 kHz 100 s
   static constexpr std::size_t kMostPublishers = 1000;
   static constexpr std::size_t kLongestName = 100;
   std::map<std::pair<int, std::string>, std::uint32_t> last_;

@@ -54,7 +54,7 @@ std::string saveStateFile(JointStatePlayer& player, const std::string& file) {
   return told(file, state.size());
 }
 
-std::string loadStateFile(JointStatePlayer& player, const std::string& file, const std::function<void()>& before) {
+std::string loadStateFile(JointStatePlayer& player, const std::string& file) {
   requireName(file);
   const std::string name = printable(absolutePath(file), kMostLetters);
   requireRegularFile(file, "saved state", kMostBytes);
@@ -64,7 +64,6 @@ std::string loadStateFile(JointStatePlayer& player, const std::string& file, con
   }
   const std::string state = readFile(file, "saved state", kMostBytes);
   try {
-    before();
     player.restoreState(state);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument("'" + name + "' is not loaded, and nothing has changed: " + error.what());

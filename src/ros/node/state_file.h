@@ -15,8 +15,7 @@ namespace tissue_contact {
 ///   of the ROS graph may name one.
 std::string saveStateFile(JointStatePlayer& player, const std::string& file);
 
-/// @param before called once the file is known to begin as a saved state, before it is taken.
 /// @return the same. @throws std::exception naming the file and what does not fit; nothing has changed then.
-std::string loadStateFile(JointStatePlayer& player, const std::string& file, const std::function<void()>& before);
+std::string loadStateFile(JointStatePlayer& player, const std::string& file);
 
 }  // namespace tissue_contact

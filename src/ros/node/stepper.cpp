@@ -143,6 +143,7 @@ bool Stepper::playNext() {
   const double start_s = pace();
   const std::optional<PlayedSample> played = player_.playNext();
   if (played) {
+    if (played->was_reset) tuning_.tell(0, player_.resets());
     const auto steps = static_cast<int>(simulator_.stepCount() - (played->was_reset ? 0 : steps_before));
     const double step_time_s = steps > 0 ? (steadySeconds() - start_s) / steps : 0.0;
     const bool is_moment = played->verdict == Verdict::kAccepted && !played->interrupted;
@@ -173,9 +174,9 @@ void Stepper::publish(const PlayedSample& played, const std::optional<Receipt>& 
   health_.noteSnapshotsDropped(outputs_.snapshotsDropped());
 }
 
-/// Of another simulation: counted as merged once the player forgets it.
-void Stepper::handOverWaiting() {
-  while (std::optional<ReceivedState> state = inbox_.take()) player_.push(state->topic, std::move(state->sample));
+/// Of another simulation.
+void Stepper::passOver(std::size_t waiting) {
+  for (; waiting > 0 && inbox_.take(); --waiting) player_.notePassedOver();
 }
 
 void Stepper::beginAnew() {
@@ -185,10 +186,11 @@ void Stepper::beginAnew() {
   chooser_.startAgain();
   health_.noteReset();
   outputs_.showReset();
+  tuning_.tell(played_stamp_ns_, player_.resets());
 }
 
 Answer Stepper::reset() {
-  handOverWaiting();
+  passOver(inbox_.counts().waiting);
   player_.reset();
   beginAnew();
   return {true, "tissues are undeformed and at rest; instruments go to the next joint state without a way"};
@@ -229,13 +231,16 @@ Answer Stepper::stepOnce() {
 }
 
 Answer Stepper::saveState(const std::string& file) {
+  retune();  // numbers that were changed before it
   const std::string saved = saveStateFile(player_, file);
   return {true, "saved the state at " + now() + " to " + saved};
 }
 
 Answer Stepper::loadState(const std::string& file) {
   retune();  // numbers that were changed for it
-  const std::string loaded = loadStateFile(player_, file, [this] { handOverWaiting(); });
+  const std::size_t waiting = inbox_.counts().waiting;
+  const std::string loaded = loadStateFile(player_, file);
+  passOver(waiting);
   beginAnew();
   return {true, "goes on from the state at " + now() + " of " + loaded};
 }

@@ -70,7 +70,7 @@ class Stepper {
   void awaitStates();
   double pace();
   void noteStep();
-  void handOverWaiting();
+  void passOver(std::size_t waiting);
   void beginAnew();
   std::string now() const;
 

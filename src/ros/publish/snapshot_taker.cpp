@@ -34,7 +34,7 @@ void SnapshotTaker::beginAnew() {
 }
 
 BulkyTopics SnapshotTaker::due(const PlayedSample& played, const BulkyTopics& wanted) {
-  if (played.was_reset) beginAnew();
+  if (played.was_reset || played.was_resumed) beginAnew();  // time goes back
   const std::int64_t stamp_ns = played.stamp_ns;
   const bool mesh_is_due = mesh_rate_.due(stamp_ns);
   BulkyTopics due;

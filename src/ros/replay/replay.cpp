@@ -277,7 +277,8 @@ class Replay {
 
   void summarizeChanges() const {
     if (!changes_ || changes_->count() == 0) return;
-    log_ << kPrefix << changes_->taken() << " of " << changes_->count() << " changes of the scene's numbers played back"
+    log_ << kPrefix << (changes_->taken() < changes_->count() ? "warning: " : "") << changes_->taken() << " of "
+         << changes_->count() << " changes of the scene's numbers played back"
          << (changes_->taken() < changes_->count() ? "; the others belong to moments that it does not have\n" : "\n");
   }
 

@@ -3,8 +3,10 @@
 #include <ctime>
 #include <fstream>
 #include <iostream>
-#include <optional>
+#include <new>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "ros/replay/interruption.h"
@@ -36,17 +38,21 @@ std::vector<std::string> argumentsOf(const std::string& line) {
   return arguments;
 }
 
-/// @return what is wrong; nothing: all is well.
-std::optional<std::string> problemOf(const std::vector<std::string>& arguments) {
+/// @return the words of the answer before and behind the time.
+std::pair<std::string, std::string> outcomeOf(const std::vector<std::string>& arguments) {
   try {
     const ReplayOptions options = parseReplayOptions(arguments);
     if (options.help || !options.batch_file.empty()) throw std::invalid_argument("a line of a batch is one replay");
     replay(options);
-    return std::nullopt;
+    return {"ok", ""};
   } catch (const Interrupted&) {
     throw;
+  } catch (const WriteError& error) {
+    return {"broken", "\t" + printable(error.what(), kShownBytes)};
+  } catch (const std::bad_alloc&) {
+    return {"broken", "\tmemory does not suffice"};
   } catch (const std::exception& error) {
-    return printable(error.what(), kShownBytes);
+    return {"failed", "\t" + printable(error.what(), kShownBytes)};
   }
 }
 
@@ -56,8 +62,8 @@ void replayBatch(std::istream& in, std::ostream& out) {
   std::vector<char> line(kMaxLineBytes);
   while (in.getline(line.data(), static_cast<std::streamsize>(line.size()))) {
     const double start = cpuTime();
-    const std::optional<std::string> problem = problemOf(argumentsOf(line.data()));
-    out << (problem ? "failed" : "ok") << '\t' << cpuTime() - start << (problem ? "\t" + *problem : "") << '\n';
+    const auto [outcome, problem] = outcomeOf(argumentsOf(line.data()));
+    out << outcome << '\t' << cpuTime() - start << problem << '\n';
     requireWritten(out);
   }
   if (!in.eof()) {

@@ -9,7 +9,8 @@
 namespace tissue_contact {
 
 /// Each line of `in` is the arguments of one replay, with tabs between them. When it is over its answer goes to `out`, at once:
-/// "ok<tab>CPU seconds" or "failed<tab>CPU seconds<tab>what is wrong". One that fails does not end the others.
+/// "ok<tab>CPU seconds", "failed<tab>CPU seconds<tab>what is wrong", or "broken" likewise where disk or memory did not suffice, so that
+/// another try may go well. One that fails does not end the others.
 /// @throws std::invalid_argument for a line that is too long; Interrupted.
 void replayBatch(std::istream& in, std::ostream& out);
 

@@ -27,7 +27,7 @@ void addInstrument(const Simulator& simulator, int instrument, std::ostream& out
 void addForceError(const ForceErrorEstimate& error, std::ostream& out) {
   out << ',' << error.total_n() << ',';
   if (error.knows_mesh) out << error.mesh_n;
-  out << ',' << error.step_n << ',' << error.solver_n << '\n';
+  out << ',' << error.step_n << ',' << error.solver_n;
 }
 
 }  // namespace
@@ -37,13 +37,15 @@ ReplayTable::ReplayTable(const std::string& file) : WholeFile(file) {
               "torque_x_nm,torque_y_nm,torque_z_nm,static_contacts,kinetic_contacts,momentum_residual,penetration_m,"
               "adhesion_n,complementarity_w,cone_violation_n,static_slip_m_per_s,kinetic_angle_rad,discarded,jumped,"
               "implausible_load,inverted_elements,contact_pressure_pa,pinched_contacts,"
-              "force_error_n,mesh_error_n,step_error_n,solver_error_n\n";
+              "force_error_n,mesh_error_n,step_error_n,solver_error_n,simulated_s\n";
 }
 
 void ReplayTable::add(const Simulator& simulator, const PlayedSample& played, long steps) {
   const StepReport& report = simulator.report();
   const Residuals& residuals = simulator.residuals();
   std::ostream& out = stream();
+  if (played.was_reset) simulated_s_ = 0.0;
+  if (steps > 0) simulated_s_ += report.advanced_s;
   for (const int instrument : played.instruments) {
     out << stampText(played.stamp_ns) << ',';
     addInstrument(simulator, instrument, out);
@@ -54,6 +56,7 @@ void ReplayTable::add(const Simulator& simulator, const PlayedSample& played, lo
         << report.implausible_load.inverted_elements << ',' << report.implausible_load.pressure_pa << ','
         << report.pinched_contacts;
     addForceError(simulator.forceErrors()[static_cast<std::size_t>(instrument)], out);
+    out << ',' << simulated_s_ << '\n';
   }
 }
 

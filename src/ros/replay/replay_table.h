@@ -20,9 +20,13 @@ class ReplayTable : public WholeFile {
 
   /// One line per instrument of an accepted sample: stamp, tip pose in the world frame, wrench in the tip frame,
   /// contacts of this instrument per state, residuals of the last step over all contacts, 0 or 1 for `discarded` and
-  /// `jumped` of the interval that ended here, and what its loads were like (see StepReport, ImplausibleLoad).
+  /// `jumped` of the interval that ended here, what its loads were like (see StepReport, ImplausibleLoad), and
+  /// how long was simulated since the start or a reset.
   /// @param steps implicit steps of that interval; 0: there was none, so nothing was discarded and nothing jumped.
   void add(const Simulator& simulator, const PlayedSample& played, long steps);
+
+ private:
+  double simulated_s_ = 0.0;  ///< since the start or a reset
 };
 
 /// Wall times, which differ from run to run.

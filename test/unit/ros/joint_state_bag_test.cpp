@@ -262,6 +262,16 @@ TEST_F(JointStateBagTest, TypeAndDefinition) {
 }
 
 /// Names in a bag are anybody's: they neither fill a log nor steer a terminal.
+TEST_F(JointStateBagTest, OneTopicSpelledInTwoWays) {
+  writeJointStates(directory_.path("plain.bag"), 3);
+  const std::string name(kTopic);
+  expectRefusal<std::runtime_error>(
+      [&] {
+        JointStateBag(directory_.path("plain.bag"), {name, name.substr(1)});
+      },
+      {"plain.bag", name + "' and '" + name.substr(1), "spell them alike"});
+}
+
 TEST_F(JointStateBagTest, NamesInMessagesArePrintable) {
   const auto write_strings = [this](const std::vector<std::string>& topics) {
     rosbag::Bag bag(directory_.path("names.bag"), rosbag::bagmode::Write);

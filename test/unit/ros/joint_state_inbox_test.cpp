@@ -161,6 +161,9 @@ TEST(SequenceGaps, CountWhatAPublisherNumberedAndNeverCame) {
   gaps.note(1, "/robot", 50);  // unnumbered
   gaps.note(1, "/robot", 60);
   EXPECT_EQ(gaps.missing(), 11);
+  for (const std::uint32_t sequence : {700000, 61, 700001, 62})
+    gaps.note(1, "/robot", sequence);  // a bag of two drivers
+  EXPECT_EQ(gaps.missing(), 11);
 }
 
 }  // namespace joint_state_inbox_test

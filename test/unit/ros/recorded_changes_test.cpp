@@ -92,6 +92,34 @@ TEST_F(RecordedChangesTest, ALatchedChangeHoldsWhateverItsLoop) {
   EXPECT_EQ(modulusOf(changes.takeDue(1, 3 * kSecond, 4 * kSecond)), 9000.0);
 }
 
+// By a connection of its own it may come a moment later than the first joint state.
+TEST_F(RecordedChangesTest, TheFirstOneSoonAfterTheBeginningTellsItsLoop) {
+  const std::string file = write({{"/node/changes", changesOf(0, 3, {}, {})},
+                                  {"/node/changes", changesOf(95, 3, {kYoung}, {8000.0})},
+                                  {"/node/changes", changesOf(0, 4, {kYoung}, {8000.0})},
+                                  {"/node/changes", changesOf(96, 4, {kYoung}, {9000.0})}});
+  RecordedChanges changes(file, "", scene_, ros::Time(4999));
+  EXPECT_EQ(changes.count(), 2U);  // what is said again where a loop begins changes nothing
+  EXPECT_FALSE(changes.takeDue(0, std::nullopt, 94 * kSecond));
+  EXPECT_FALSE(changes.takeDue(0, 94 * kSecond, 95 * kSecond));
+  EXPECT_EQ(modulusOf(changes.takeDue(0, 95 * kSecond, 96 * kSecond)), 8000.0);
+  EXPECT_FALSE(changes.takeDue(0, 96 * kSecond, 1 * kSecond));
+  EXPECT_FALSE(changes.takeDue(1, 1 * kSecond, 96 * kSecond));
+  EXPECT_EQ(modulusOf(changes.takeDue(1, 96 * kSecond, 0)), 9000.0);
+}
+
+TEST_F(RecordedChangesTest, AStrayStampAheadBringsNoneForward) {
+  const std::string file = write({{"/node/changes", changesOf(10, 0, {kYoung}, {7000.0})},
+                                  {"/node/changes", changesOf(3600, 0, {kYoung}, {8000.0})}});
+  RecordedChanges changes(file, "", scene_, kBegins);
+  EXPECT_FALSE(changes.takeDue(0, 5 * kSecond, 3605 * kSecond));
+  EXPECT_FALSE(changes.takeDue(0, 3605 * kSecond, 0));  // what comes is not known yet
+  EXPECT_FALSE(changes.takeDue(0, 3605 * kSecond, 6 * kSecond));
+  EXPECT_FALSE(changes.takeDue(0, 9 * kSecond, 11 * kSecond));
+  EXPECT_EQ(modulusOf(changes.takeDue(0, 11 * kSecond, 12 * kSecond)), 7000.0);    // its own moment was not recorded
+  EXPECT_EQ(modulusOf(changes.takeDue(0, 3600 * kSecond, 12 * kSecond)), 8000.0);  // changed right after a stray one
+}
+
 TEST_F(RecordedChangesTest, MostBagsHaveNone) {
   writeJointStates(directory_.path("plain.bag"), 3);
   EXPECT_EQ(RecordedChanges(directory_.path("plain.bag"), "", scene_, kBegins).count(), 0U);

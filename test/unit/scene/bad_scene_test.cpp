@@ -158,6 +158,7 @@ const BadScene kNames[] = {
     {"/PSM2/jaw/measured_js", "/PSM2//measured_js", "39: instruments[0].joint_state_topics[1]", "a ROS name must be"},
     {"/PSM2/jaw/measured_js", "/PSM2/measured_js/", "39: instruments[0].joint_state_topics[1]", "a ROS name must be"},
     {"/PSM2/jaw/measured_js", "/PSM2/measured_js", "39: instruments[0].joint_state_topics[1]", "is named twice"},
+    {"/PSM2/jaw/measured_js", "~measured_js", "39: instruments[0].joint_state_topics[1]", "write it in full"},
     {"/PSM2/jaw/measured_js", "{topic: /PSM2/measured_js}", "39: instruments[0].joint_state_topics[1]",
      "is named twice"},
     {"/PSM2/jaw/measured_js", "{topic: /PSM2//jaw}", "39: instruments[0].joint_state_topics[1].topic",

@@ -171,6 +171,30 @@ TEST(FrictionTable, TissuesFindTheirEntryFromBothSides) {
   EXPECT_EQ(with.table.at(outside, with.x, with.X_WL, {}).mu_static, 0.0);
 }
 
+// Whichever of the two has the vertex, and whichever way round the entry without a region has them.
+TEST(FrictionTable, BetweenTissuesTheEntryOfARegionCounts) {
+  for (const char* const general :
+       {"{tissue: pad, other_tissue: bed, static: 0.1}", "{tissue: bed, other_tissue: pad, static: 0.1}"}) {
+    const Table with("  - " + std::string(general) +
+                     "\n  - {tissue: pad, other_tissue: bed, region: scar, static: 0.7}\n");
+    for (const double side : {1.0, -1.0}) {
+      Contact named = with.contactOn(side, 0);
+      named.key.instrument = -1;
+      named.key.other_tissue = 1;
+      named.other_nodes = with.tissues[1].surface()[0];
+      named.other_weights.setConstant(1.0 / 3.0);
+      Contact turned = named;
+      std::swap(turned.key.tissue, turned.key.other_tissue);
+      std::swap(turned.nodes, turned.other_nodes);
+      std::swap(turned.weights, turned.other_weights);
+      turned.R_WC.leftCols<2>() *= -1.0;
+      for (const Contact& contact : {named, turned}) {
+        EXPECT_EQ(with.table.at(contact, with.x, with.X_WL, {}).mu_static, side > 0.0 ? 0.7 : 0.1) << general;
+      }
+    }
+  }
+}
+
 TEST(FrictionTable, RefusesALawThatWouldDriveSliding) {
   EXPECT_THROW(Table("  - {instrument: probe, tissue: pad, law: tensor, static: [[0.5, 0], [0, -0.1]], axis: fibre}\n"),
                std::invalid_argument);

@@ -78,6 +78,33 @@ TEST(Retune, UntilTheNextStepAllIsAsItWas) {
   EXPECT_LE(simulator.report().iterations, 3);
 }
 
+// The laws of the step before lie in a table that is made anew when the state is saved.
+TEST(Retune, SavingBeforeTheNextStepLeavesItsResults) {
+  const auto make = [] {
+    return makeSimulator(blockScene("[0.06, 0.06, 0.02]", "[6, 6, 2]", "poissons_ratio: 0.4") +
+                             onlyBall("[0.001, 0.002, 0.0251]") +
+                             "friction:\n  - {instrument: probe, tissue: block, law: orthotropic, static: [0.3, 0.6], "
+                             "kinetic: [0.2, 0.4], axis: {link_direction: [1, 0, 0]}}\nstep: {max_step_s: 0.002}\n",
+                         {{"probe", probeUrdf(0.005)}});
+  };
+  Simulator simulator = make();
+  Simulator other = make();
+  for (Simulator* one : {&simulator, &other}) {
+    press(*one);
+    for (int k = 1; k <= 20; ++k) one->advance(0.002, {Vector3(1e-4 * k, 0.0, -0.0015)});
+    change(*one, {{kYoung, 20000.0}});
+  }
+  simulator.saveState();
+  EXPECT_EQ(simulator.residuals().momentum, other.residuals().momentum);
+  EXPECT_EQ(simulator.residuals().cone_violation_n, other.residuals().cone_violation_n);
+  EXPECT_EQ(simulator.residuals().kinetic_angle_rad, other.residuals().kinetic_angle_rad);
+  EXPECT_EQ(simulator.forceErrors()[0].total_n(), other.forceErrors()[0].total_n());
+  EXPECT_EQ(simulator.wrench(0).force, other.wrench(0).force);
+  hold(simulator, 3);
+  hold(other, 3);
+  EXPECT_EQ(simulator.wrench(0).force, other.wrench(0).force);
+}
+
 std::vector<Vector3> forcesOf(Simulator& simulator) {
   std::vector<Vector3> forces;
   for (int k = 1; k <= 60; ++k) {
@@ -244,6 +271,21 @@ TEST(Retune, RefusesAScenesOtherPartsByName) {
   expectRefused("instruments", [](Scene& s) { s.instruments[0].base_pose.X.translation().z() = 0.1; });
   expectRefused("friction", [](Scene& s) { s.friction[0].law.kind = FrictionLawDescription::Kind::kOrthotropic; });
   expectRefused("solver.relaxation", [](Scene& s) { s.solver.relaxation = RelaxationKind::kCholesky; });
+  expectRefused("the mesh of a tissue", [](Scene& s) {
+    std::get<BlockDescription>(s.tissues[0].geometry).grading[2].fine_at = AxisGrading::FineAt::kMaximum;
+  });
+  expectRefused("tissues[].fibre_direction", [](Scene& s) { s.tissues[0].fibre_direction = Vector3::UnitX(); });
+  expectRefused("instruments", [](Scene& s) { s.instruments[0].initial_joint_positions = {{"x", 0.001}}; });
+  expectRefused("friction", [](Scene& s) { s.friction[0].law.speeds_m_per_s = {0.0}; });
+  expectRefused("friction", [](Scene& s) { s.friction[0].law.speed_factors = {0.5}; });
+  expectRefused("friction", [](Scene& s) { s.friction[0].law.pressures_pa = {0.0}; });
+  expectRefused("friction", [](Scene& s) { s.friction[0].law.pressure_factors = {0.5}; });
+  expectRefused("friction", [](Scene& s) { s.friction[0].law.angles_rad = {0.0}; });
+  expectRefused("friction", [](Scene& s) { s.friction[0].law.axis = FrictionLawDescription::Axis::kFibre; });
+  expectRefused("friction", [](Scene& s) { s.friction[0].law.link_axis = Vector3::UnitY(); });
+  expectRefused("solver.cone_sides", [](Scene& s) { s.solver.cone_sides = 16; });
+  expectRefused("solver.time_budget_s", [](Scene& s) { s.solver.time_budget_s = 0.001; });
+  expectRefused("advisor", [](Scene& s) { s.advisor.sleep = false; });
   expectRefused("tissue_pairs", [](Scene& s) { s.tissue_pairs.push_back({"block", "block"}); });
 }
 

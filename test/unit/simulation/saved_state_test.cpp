@@ -142,6 +142,24 @@ TEST(SavedStateOfAMovedMesh, IsOfThatMesh) {
   expectEqual(first, second, "two iterations a step");
 }
 
+// Of the smallest tools that a scene may have.
+TEST(SavedStateOfAMovedMesh, IsOfCellsOfLessThanAMicrometre) {
+  const auto make = [] {
+    return makeSimulator(
+        blockScene("[0.0006, 0.0006, 0.0002]", "[6, 6, 2]", "model: corotational, poissons_ratio: 0.45") +
+            "    refinement: auto\n" + onlyBall("[0, 0, 0.0002022]"),
+        {{"probe", probeUrdf(2e-6)}});
+  };
+  Simulator first = make();
+  Simulator second = make();
+  for (int k = 1; k <= 40; ++k) first.advance(0.001, {Vector3(0.0, 0.0, -2e-8 * k)});
+  ASSERT_GT(first.meshRevision(0), 0);
+  ASSERT_GT(first.wrench(0).force.z(), 0.0);
+  second.restoreState(first.saveState());
+  for (Simulator* one : {&first, &second}) one->advance(0.001, {Vector3(0.0, 0.0, -8.2e-7)});
+  expectEqual(first, second, "small");
+}
+
 const Variant kPlain{"corotational"};
 
 class RefusedState : public ::testing::Test {
@@ -169,6 +187,8 @@ class RefusedState : public ::testing::Test {
 TEST_F(RefusedState, OfAnotherSceneWithTheReason) {
   const std::string state = saved();
   EXPECT_NE(refusalOf(state, {"softer", "model: corotational, poissons_ratio: 0.44"}).find("material"),
+            std::string::npos);
+  EXPECT_NE(refusalOf(state, {"another law", "model: linear, poissons_ratio: 0.45"}).find("material"),
             std::string::npos);
   EXPECT_NE(refusalOf(state, {"moved", kPlain.material, "    pose: {position_m: [0, 0, 0.001]}\n"}).find("mesh"),
             std::string::npos);
