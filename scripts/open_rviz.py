@@ -222,6 +222,7 @@ def main():
     parser.add_argument("--write", metavar="FILE", help="writes the configuration to this file and opens nothing")
     arguments = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("open_rviz", argv=[], anonymous=True, disable_signals=True)  # not by the name that RViz is to have
+    arguments.node = rospy.resolve_name(arguments.node)
     markers = markers_of(arguments.node)
     picture = Picture(markers)
     config = configuration(picture, tips_of(markers), arguments.node, follows=not arguments.write)

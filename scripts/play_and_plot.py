@@ -271,6 +271,7 @@ def main():
     arguments = parse_arguments()
     in_bag = bag_topics(arguments.bag)
     rospy.init_node("play_and_plot")
+    arguments.node = rospy.resolve_name(arguments.node)  # of a launch file in a namespace
     graph = Graph(arguments.node)
     heard = graph.heard()
     topics = [topic for topic in heard if topic in in_bag]

@@ -202,6 +202,7 @@ def main():
     parser.add_argument("--png", metavar="FILE", help="write one picture of the next seconds and end")
     arguments = parser.parse_args(rospy.myargv()[1:])
     rospy.init_node("watch", anonymous=True)
+    arguments.node = rospy.resolve_name(arguments.node)
     watch = Watch(arguments.node, arguments.seconds)
     if arguments.png:
         write_picture(watch, arguments.seconds, arguments.png)

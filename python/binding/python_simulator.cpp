@@ -5,6 +5,7 @@
 
 #include "python/binding/arrays.h"
 #include "python/binding/signal_check.h"
+#include "tissue_contact/core/check.h"
 #include "tissue_contact/core/nearest_word.h"
 #include "tissue_contact/core/text.h"
 
@@ -130,6 +131,9 @@ void PythonSimulator::place(const std::string& instrument, const py::object& joi
 
 void PythonSimulator::advance(double duration_s, const py::object& joint_positions) {
   const Use use(*this);
+  // Stamps have no less. What a contact carried over a step is lost in round-off where the next is of so little.
+  constexpr double kShortest_s = 1e-9;
+  if (duration_s > 0.0 && duration_s < kShortest_s) throwBadValue("duration", duration_s, "s", ">= 1e-9");
   const std::vector<VectorX> to = targets(joint_positions);
   leaveMemoryToViews();
   AdvanceLimits limits;

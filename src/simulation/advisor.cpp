@@ -144,7 +144,7 @@ Advice withExpectedError(const TissueDescription& tissue, const std::string& mes
   const double most = error(under_smallest_m, shapes.smallest_m);
   const double least = error(under_largest_m, shapes.largest_m);
   std::string text = mesh + ", under shapes of " + rangeText(1e3 * shapes.smallest_m, 1e3 * shapes.largest_m) +
-                     " mm half extent (a ball's radius): expect forces to be off (mostly too large) by some " +
+                     " mm half extent (a ball's radius): expect forces to be off by some " +
                      rangeText(100.0 * least, 100.0 * most);
   if (under_smallest_m > kCompared * shapes.smallest_m) text += " (or more)";
   text += " % when pressed in by most of a half extent";

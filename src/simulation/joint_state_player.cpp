@@ -268,6 +268,8 @@ void JointStatePlayer::play(const Moment& moment, PlayedSample& played) {
     resumptions_.erase(resumptions_.begin(), resumptions_.upper_bound(epoch_));
   }
   for (std::size_t t = 0; t < topic_states_.size(); ++t) take(moment, static_cast<int>(t), played);
+  goToSamples(moment);
+  for (const Topic& topic : topic_states_) headForNext(moment, topic);
   placeNewJoints();
   advanceTo(moment.stamp_ns, played);
   settle(played);

@@ -2,17 +2,21 @@
 /// Room `simulation`: where JointStatePlayer has the joints at a moment.
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "tissue_contact/simulation/joint_state_player.h"
 
 namespace tissue_contact {
 namespace {
 
+/// Of drivers slower than 5 Hz, and of those that speak only when something moves, nobody knows how they came there.
+constexpr std::int64_t kLongestWay_ns = 200'000'000;
+
 double secondsBetween(std::int64_t from_ns, std::int64_t to_ns) { return 1e-9 * static_cast<double>(to_ns - from_ns); }
 
 }  // namespace
 
-/// Takes everything of a topic up to the moment, and sets its joints to where they are then.
+/// Takes everything of a topic up to the moment.
 void JointStatePlayer::take(const Moment& moment, int topic, PlayedSample& played) {
   Topic& state = topic_states_[static_cast<std::size_t>(topic)];
   while (!state.queue.empty() && !(moment < state.queue.front().moment)) {
@@ -28,7 +32,6 @@ void JointStatePlayer::take(const Moment& moment, int topic, PlayedSample& playe
     state.queue.pop_front();
     --waiting_;
   }
-  headForNext(moment, state);
 }
 
 /// Where a joint is that a sample of that stamp says to be at `position`: beyond whole turns that its driver leaves out. After a pause nobody knows
@@ -37,14 +40,14 @@ double JointStatePlayer::goneOnTo(double position, std::int64_t stamp_ns, std::s
   const auto index = static_cast<std::size_t>(joint);
   if (heard_[instrument][index] == Heard::kNever) return position;
   const IndependentJoint& described = simulator_.instruments()[instrument].model().joints()[index];
-  if (described.turns_on) return described.nearest(position, targets_[instrument][joint]);
   const Said& before = said_[instrument][index];
+  if (described.turns_on) return described.nearest(position, before.position + before.turns);
   const bool goes_on = stamp_ns >= before.stamp_ns && stamp_ns - before.stamp_ns < max_gap_ns_;
   const double interval_s = goes_on ? secondsBetween(before.stamp_ns, stamp_ns) : 0.0;
   return position + before.turns + described.turnsLeftOut(before.position, position, interval_s);
 }
 
-/// Sets the targets of the joints in a sample.
+/// Notes where the joints in a sample are to go.
 void JointStatePlayer::takeJoints(const Queued& queued, const Topic& topic) {
   const JointStateSample& sample = queued.sample;
   for (const Listener& listener : topic.listeners) {
@@ -54,15 +57,58 @@ void JointStatePlayer::takeJoints(const Queued& queued, const Topic& topic) {
       const int joint = simulator_.instruments()[index].jointOfRecordedName(sample.names[k]);
       if (joint < 0) continue;
       any_known = true;
-      const double target = goneOnTo(sample.positions[k], queued.moment.stamp_ns, index, joint);
-      targets_[index][joint] = target;
-      said_[index][static_cast<std::size_t>(joint)] = {sample.positions[k], target - sample.positions[k],
-                                                       queued.moment.stamp_ns};
+      Said& said = said_[index][static_cast<std::size_t>(joint)];
+      said.turns = goneOnTo(sample.positions[k], queued.moment.stamp_ns, index, joint) - sample.positions[k];
+      said.position = sample.positions[k];
+      said.stamp_ns = queued.moment.stamp_ns;
+      said.is_news = true;
       Heard& heard = heard_[index][static_cast<std::size_t>(joint)];
       if (heard == Heard::kNever) heard = Heard::kNow;
     }
     if (any_known && listener.triggers) owes_[index] = true;
   }
+}
+
+/// Sets the joints to where samples have them, at once or at a pace of their own: where others' moments came in between, at which a joint
+/// was held since nothing was known of it, its way from one sample to the next is not to be made in what is left of that time.
+void JointStatePlayer::goToSamples(const Moment& moment) {
+  for (std::size_t i = 0; i < said_.size(); ++i) {
+    for (std::size_t k = 0; k < said_[i].size(); ++k) {
+      Said& said = said_[i][k];
+      if (!std::exchange(said.is_news, false) && said.arrives_ns == 0) continue;
+      double& target = targets_[i][static_cast<Eigen::Index>(k)];
+      const double goal = said.position + said.turns;
+      const std::int64_t now_ns = simulatedTo(moment);
+      const std::int64_t own_ns = std::min({said.stamp_ns - said.right_ns, max_gap_ns_, kLongestWay_ns});
+      const bool is_new = heard_[i][k] == Heard::kNow;
+      std::int64_t arrives_ns = 0;
+      if (!is_new && said.arrives_ns > now_ns) {
+        arrives_ns = std::max(said.arrives_ns, now_ns + own_ns);
+      } else if (!is_new && isSqueezed(own_ns, moment.stamp_ns - now_ns)) {
+        arrives_ns = now_ns + own_ns;
+      }
+      if (arrives_ns <= moment.stamp_ns) {
+        target = goal;
+        said.right_ns = said.stamp_ns;
+        said.arrives_ns = 0;
+        continue;
+      }
+      target +=
+          static_cast<double>(moment.stamp_ns - now_ns) / static_cast<double>(arrives_ns - now_ns) * (goal - target);
+      said.arrives_ns = arrives_ns;
+    }
+  }
+}
+
+/// Where the simulator is; at the first moment, there.
+std::int64_t JointStatePlayer::simulatedTo(const Moment& moment) const {
+  return time_ns_ ? *time_ns_ - behind_ns_ : moment.stamp_ns;
+}
+
+/// Whether a way that took so long is made in so much less time that speed, and what hangs on it, is another. Stamps jitter.
+bool JointStatePlayer::isSqueezed(std::int64_t own_ns, std::int64_t left_ns) {
+  constexpr std::int64_t kMostHaste = 2;
+  return left_ns > 0 && own_ns > kMostHaste * left_ns;
 }
 
 /// Moves the joints' targets from where they were last known towards the topic's next sample, as far as the moment
@@ -79,6 +125,10 @@ void JointStatePlayer::headForNext(const Moment& moment, const Topic& topic) {
     for (std::size_t k = 0; k < next.sample.names.size(); ++k) {
       const int joint = simulator_.instruments()[index].jointOfRecordedName(next.sample.names[k]);
       if (joint < 0 || heard_[index][static_cast<std::size_t>(joint)] == Heard::kNever) continue;
+      Said& said = said_[index][static_cast<std::size_t>(joint)];
+      if (said.arrives_ns != 0 || isSqueezed(next.moment.stamp_ns - said.right_ns, next.moment.stamp_ns - from_ns))
+        continue;
+      said.right_ns = moment.stamp_ns;
       double& target = targets_[index][joint];
       target += fraction * (goneOnTo(next.sample.positions[k], next.moment.stamp_ns, index, joint) - target);
     }

@@ -107,10 +107,7 @@ void Simulator::requireJointPositions(int instrument, const VectorX& joint_posit
 
 void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_positions, const AdvanceLimits& limits) {
   Implementation& all = *implementation_;
-  // Stamps have no less. What a contact carried over a step, times so little, is lost in round-off.
-  constexpr double kShortest_s = 1e-9;
-  if (!(duration_s >= kShortest_s && std::isfinite(duration_s)))
-    throwBadValue("duration", duration_s, "s", "finite and at least 1e-9");
+  requirePositive("duration", duration_s, "s");
   if (joint_positions.size() != all.instruments.size()) {
     throwBadValue("number of joint-position vectors", static_cast<double>(joint_positions.size()), "",
                   std::to_string(all.instruments.size()));

@@ -29,6 +29,7 @@ WRONG = [
     (TypeError, lambda s: s.place("probe", [[0.0], [0.0, 1.0]]), "real numbers"),
     (ValueError, lambda s: s.advance(0.0), "duration"),
     (ValueError, lambda s: s.advance(-1.0), "duration"),
+    (ValueError, lambda s: s.advance(1e-12), "1e-9"),
     (ValueError, lambda s: s.advance(NAN), "duration"),
     (ValueError, lambda s: s.advance(INF), "duration"),
     (ValueError, lambda s: s.advance(1e300), "duration"),

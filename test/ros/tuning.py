@@ -7,6 +7,7 @@ import dynamic_reconfigure.client
 import rospy
 from dynamic_reconfigure.msg import BoolParameter, Config, DoubleParameter
 from dynamic_reconfigure.srv import Reconfigure
+from std_srvs.srv import Trigger
 from tissue_contact.msg import Changes, TissueMesh
 
 import harness
@@ -107,6 +108,24 @@ class Tuning(harness.TestCase):
         for i, (topic, message, _) in enumerate(self.recorded):  # recorded one after the other
             self.recorded[i] = (topic, message, rospy.Time(5000) + rospy.Duration.from_sec(0.01) * i)
         self.assertEqual(self.replayed_bits()[0], bits)
+
+    def test_a_recording_that_begins_after_a_reset_knows_its_loop(self):
+        samples = harness.press(60)
+        with harness.node(harness.SCENE):
+            self.connect()
+            self.play(samples[:10])
+            self.assertTrue(rospy.ServiceProxy(harness.NODE + "/reset", Trigger)().success)
+            told = self.changes.wait(lambda all: all, "what is said where a loop begins")[-1]
+            self.assertEqual((told.header.stamp, told.loop, told.keys), (rospy.Time(0), 1, []))
+            before = len(self.wrenches.messages)
+            self.recorded = [(harness.NODE + "/changes", told, rospy.Time(1))]
+            self.play(samples[:40])
+            self.change({YOUNG: 20000.0})
+            self.play(samples[40:])
+            bits = [harness.wrench_bits(message) for message in self.wrenches.messages[before:]]
+        replayed, said = self.replayed_bits()
+        self.assertEqual(replayed, bits)
+        self.assertRegex(said, "1 of 1 changes")
 
     def play_loop(self, samples):
         """The first samples of a loop, which is one once the third has come."""

@@ -62,8 +62,9 @@ struct PlayedSample {
 /// which no instrument is triggered makes no moment: its joints are taken at the next one.
 ///
 /// Joints. At a moment every joint is where its topic says: in its sample of that stamp; else on the straight line to
-/// its next sample, if that is here and follows in less than max_gap_s; else where its newest sample before put it. In
-/// between instruments move linearly. A joint heard for the first time since the start or a reset is placed. Joints not
+/// its next sample, if that is here and follows in less than max_gap_s; else where its newest sample before put it. A joint that was so
+/// held at moments of others, and for whose way less than half of the time between its samples is left, takes all of that time
+/// (at most .2 s and max_gap_s), and so is late by as much: made in what is left it would be as fast as it never was. In between instruments move linearly. A joint heard for the first time since the start or a reset is placed. Joints not
 /// heard stay at the scene's initial position. The first moment of a run places instruments without any step.
 ///
 /// Publishers. Several may share a topic, each with joints of its own (drivers of an arm and of its gripper). A sample that is no later
@@ -257,6 +258,9 @@ class JointStatePlayer {
   void take(const Moment& moment, int topic, PlayedSample& played);
   void takeJoints(const Queued& queued, const Topic& topic);
   double goneOnTo(double position, std::int64_t stamp_ns, std::size_t instrument, int joint) const;
+  void goToSamples(const Moment& moment);
+  std::int64_t simulatedTo(const Moment& moment) const;
+  static bool isSqueezed(std::int64_t own_ns, std::int64_t left_ns);
   void headForNext(const Moment& moment, const Topic& topic);
   void placeNewJoints();
   void carry(StateArchive& archive);
@@ -287,6 +291,9 @@ class JointStatePlayer {
     double position = 0.0;  ///< rad or m
     double turns = 0.0;     ///< that drivers have left out up to then, rad
     std::int64_t stamp_ns = 0;
+    std::int64_t right_ns = 0;    ///< the joint's target is where it was then
+    std::int64_t arrives_ns = 0;  ///< when it is to be where the sample says; 0: it was
+    bool is_news = false;         ///< since the moment played last
   };
   std::vector<std::vector<Said>> said_;  ///< per instrument and joint, of those that are heard
   enum class Heard { kNever, kNow, kBefore };

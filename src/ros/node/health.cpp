@@ -42,6 +42,7 @@ Health::Health(const Simulator& simulator, const JointStatePlayer& player, const
       inbox_(inbox),
       nodes_(nodesOf(simulator)),
       max_lag_s_(simulator.scene().step.max_lag_s),
+      topics_(topics),
       silence_(std::move(topics), triggering(player), std::max(kLongestSilence_s, simulator.scene().step.max_gap_s)) {}
 
 bool Health::Throttle::pass() {
@@ -314,6 +315,27 @@ void Health::tellSilence() {
     ROS_WARN_STREAM(line);
 }
 
+/// Under every_state nothing is played while a topic may still have something to say of that moment: for ever, where stamps go on by
+/// answers to wrenches. Empty: something was played since the last look, or nothing waits for a topic.
+std::string Health::heldText(const LiveFigures& now) {
+  const bool is_held = !now.newest_state && !now.paused && now.held > 0 && now.held == now.waiting && told_.held > 0 &&
+                       now.accepted == told_.accepted;
+  if (!is_held) {
+    told_of_hold_ = false;
+    return "";
+  }
+  const std::vector<std::optional<double>> heard = inbox_.heard(topics_.size());
+  const auto last = static_cast<std::size_t>(std::min_element(heard.begin(), heard.end()) - heard.begin());
+  const std::string text = std::to_string(now.held) + " joint states wait for " + topics_[last] +
+                           (heard[last] ? ", the longest silent" : ", of which none has come");
+  if (!std::exchange(told_of_hold_, true)) {
+    ROS_WARN_STREAM(
+        text << ": under every_state a moment waits for all topics until stamps have gone on by step.max_gap_s; "
+                "publish there too, take that instrument out of the scene, or set step.joint_states: newest_state");
+  }
+  return text;
+}
+
 void Health::summarize(const LiveFigures& now, double worst_lag_s,
                        diagnostic_updater::DiagnosticStatusWrapper& status) {
   using Level = diagnostic_msgs::DiagnosticStatus;
@@ -347,11 +369,14 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   }
   const std::string troubles =
       is_troubled && status.level != Level::ERROR ? "joint states refused or dropped, or motion cut short" : "";
-  for (const std::string& also : {troubles, now.ahead, silence_.summary()}) {
+  for (const std::string& also : {troubles, now.ahead, silence_.summary(), heldText(now)}) {
     if (!now.failed && !now.paused && !also.empty()) status.mergeSummary(Level::WARN, also);
   }
-  const bool waits_for_topic = !now.newest_state && now.held > 0 && now.held == now.waiting;  // not for want of time
-  if (!(now.step_cost_s > 0.0)) return;                                                       // in the first step
+  const auto waits = [](const LiveFigures& then) {
+    return !then.newest_state && then.held > 0 && then.held == then.waiting;
+  };
+  const bool waits_for_topic = waits(now) || waits(told_);  // not for want of time; or did, and what was held is late
+  if (!(now.step_cost_s > 0.0)) return;                     // in the first step
   if (advised_ || now.paused || waits_for_topic || (lag == LagVerdict::kWithinBound && !is_strained)) return;
   advised_ = true;
   ROS_WARN_STREAM("does not keep up: " << keepUpAdvice(now, simulator_.scene().step.max_step_s, max_lag_s_, nodes_));

@@ -102,6 +102,7 @@ class Health {
   static void tellBroken(const PlayedSample& played, bool finite);
   double worstLag(const LiveFigures& figures);
   void tellSilence();
+  std::string heldText(const LiveFigures& now);
   void summarize(const LiveFigures& now, double worst_lag_s, diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const Simulator& simulator_;
@@ -136,7 +137,9 @@ class Health {
 
   // The diagnostics thread's alone.
   LiveFigures told_;
+  bool told_of_hold_ = false;  ///< the present one
   bool advised_ = false;
+  const std::vector<std::string> topics_;  ///< as people know them
   TopicSilence silence_;
 };
 

@@ -269,7 +269,7 @@ TEST_F(JointStateBagTest, OneTopicSpelledInTwoWays) {
       [&] {
         JointStateBag(directory_.path("plain.bag"), {name, name.substr(1)});
       },
-      {"plain.bag", name + "' and '" + name.substr(1), "spell them alike"});
+      {"plain.bag", name + " and " + name.substr(1), "spell them alike"});
 }
 
 TEST_F(JointStateBagTest, NamesInMessagesArePrintable) {

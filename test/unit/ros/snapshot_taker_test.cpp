@@ -12,9 +12,8 @@ namespace snapshot_taker_test {
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 TEST(SnapshotTaker, GoesOnWhereTimeGoesBack) {
-  const Simulator simulator = makeSimulator(blockScene() + "instruments: []\n");
-  Simulator played_into = makeSimulator(blockScene() + "instruments: []\n");
-  const JointStatePlayer player(played_into);
+  Simulator simulator = makeSimulator(blockScene() + "instruments:\n" + probeEntry("probe", "/probe", "[0, 0, 0.026]"));
+  const JointStatePlayer player(simulator);
   SnapshotTaker taker(simulator, player, PublishOptions(), PublishedMesh::kRefined);
   const auto due = [&](std::int64_t stamp_ns, bool was_reset, bool was_resumed) {
     PlayedSample played;

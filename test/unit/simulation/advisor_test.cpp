@@ -90,7 +90,7 @@ TEST(Advisor, SaysWhatItHasChosen) {
   EXPECT_TRUE(has(
       plain,
       "mesh of tissue 'slab': as it is, cells of 6.7 mm (its shorter surface edges), under shapes of 5 mm "
-      "half extent (a ball's radius): expect forces to be off (mostly too large) by some 84 % when pressed in by most "
+      "half extent (a ball's radius): expect forces to be off by some 84 % when pressed in by most "
       "of a half extent; smaller cells help"));
   EXPECT_TRUE(
       has(plain, "sleep: nodes at rest away from contacts are left out while holding them takes at most 0.1 %"));

@@ -1,6 +1,7 @@
 /// @file
 /// JointStatePlayer where several publishers share a topic, and where the joints are continuous.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
 
@@ -42,6 +43,70 @@ TEST(JointStateSharedTopic, WhatTwoDriversShareDoesNotDependOnWhenItIsPlayed) {
   JointStatePlayer second(*one_by_one);
   for (const auto& [topic, s] : order) first.push(topic, s);
   EXPECT_TRUE(run(*at_once, first, {}) == runAll(*one_by_one, second, order));
+}
+
+/// Fastest motion of a joint from moment to moment, m/s.
+struct Speed {
+  double before = 0.0;
+  std::int64_t before_ns = 0;
+  double most = 0.0;
+
+  void note(double position, std::int64_t stamp_ns) {
+    if (before_ns > 0)
+      most = std::max(most, std::abs(position - before) / (1e-9 * static_cast<double>(stamp_ns - before_ns)));
+    before = position;
+    before_ns = stamp_ns;
+  }
+};
+
+// The jaw's way of 10 ms is not made in the .3 ms that are left when it becomes known.
+TEST(JointStateSharedTopic, NobodyIsFasterForAnothersMoments) {
+  for (const std::int64_t lead_us : {100, 300, 1000, 4000, 6000, 9900}) {
+    const auto simulator = oneProbe();
+    JointStatePlayer player(*simulator);
+    Speed speed;
+    for (int i = 0; i < 60; ++i) {
+      const std::int64_t stamp = kSecond + i * 10 * kMillisecond;
+      player.push(0, arm(stamp - lead_us * 1000, 0.0));
+      player.push(0, jaw(stamp, -5e-5 * i));
+      while (const auto played = player.playNext()) speed.note(simulator->jointPositions(0).z(), played->stamp_ns);
+      EXPECT_NEAR(simulator->jointPositions(0).z(), -5e-5 * i, 5e-5 + 1e-15) << "late by its own interval at most";
+    }
+    EXPECT_LE(speed.most, 2.0 * 5e-5 / 0.01 * (1.0 + 1e-9)) << lead_us;
+    EXPECT_EQ(player.count(Verdict::kAccepted), 120);
+  }
+}
+
+// The slower of two arms beside a live node, of which nothing is known when the faster one's moments are played.
+TEST_F(TwoProbes, TheSlowerOneIsNoFasterForTheOthersMoments) {
+  player.setPolicy(StatePolicy::kNewestState);
+  Speed speed;
+  for (int i = 0; i < 100; ++i) {
+    const std::int64_t stamp = kSecond + i * 10 * kMillisecond;
+    player.push(0, sample(stamp, 0.0));
+    player.stopWaiting();
+    while (const auto played = player.playNext()) speed.note(simulator->jointPositions(1).z(), played->stamp_ns);
+    if (i % 4 != 0) continue;
+    player.push(1, sample(stamp + kMillisecond, -1e-5 * i));
+    player.stopWaiting();
+    while (const auto played = player.playNext()) speed.note(simulator->jointPositions(1).z(), played->stamp_ns);
+    EXPECT_NEAR(simulator->jointPositions(1).z(), -1e-5 * i, 4e-5 + 1e-15);
+  }
+  EXPECT_LE(speed.most, 2.0 * 1e-5 / 0.01 * (1.0 + 1e-9));
+  EXPECT_GE(speed.most, 1e-5 / 0.01 * (1.0 - 1e-9));
+}
+
+// A connection that was gone: the way takes a gap's time (.05 s here), as that of a single arm does.
+TEST_F(TwoProbes, AfterAPauseBesideAnotherArmTheWayTakesAGap) {
+  Speed speed;
+  for (int i = 0; i < 100; ++i) {
+    const std::int64_t stamp = kSecond + i * 10 * kMillisecond;
+    player.push(0, sample(stamp, 0.0));
+    if (i < 20 || i >= 40) player.push(1, sample(stamp + kMillisecond / 2, -1e-5 * i));
+    while (const auto played = player.playNext()) speed.note(simulator->jointPositions(1).z(), played->stamp_ns);
+  }
+  EXPECT_LE(speed.most, 2e-4 / 0.05 + 1e-5 / 0.01) << "the way left out, and what is added meanwhile";
+  EXPECT_NEAR(simulator->jointPositions(1).z(), -1e-5 * 99, 1.1e-5);
 }
 
 TEST_F(OneProbe, AJointOfASharedTopicThatSaysTheSameMomentTwiceIsRefused) {

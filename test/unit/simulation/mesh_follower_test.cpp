@@ -266,7 +266,7 @@ TEST(SavedFollower, IsRefusedWithWhatNoneHas) {
     }
     all.push_back({[=](SavedFollower& saved) { saved.places[0].cell_m = value; }, "a place of fine cells"});
   }
-  for (const double value : {0.0, -0.001, 1e-7}) {
+  for (const double value : {0.0, -0.001, 1e-10}) {
     all.push_back({[=](SavedFollower& saved) { saved.places[0].cell_m = value; }, "a place of fine cells"});
   }
   for (const double value : {kNan, kInfinity, -1e-9, 2e9}) {
@@ -279,7 +279,7 @@ TEST(SavedFollower, IsRefusedWithWhatNoneHas) {
     all.push_back({[=](SavedFollower& saved) { saved.snapshot(1, 7) = value; }, "a position that no tissue has"});
   }
   all.push_back({[](SavedFollower& saved) { saved.snapshot.setZero(3, 5); }, "15 values, where the scene has"});
-  all.push_back({[](SavedFollower& saved) { saved.places.resize(10'001, saved.places[0]); }, "at most 10000"});
+  all.push_back({[](SavedFollower& saved) { saved.places.resize(100'001, saved.places[0]); }, "at most 100000"});
   Followed followed;
   followed.step({at(0.0)});
   for (std::size_t k = 0; k < all.size(); ++k) {
