@@ -57,7 +57,7 @@ class Measures:
     intervals is the impulse that the simulation has transferred."""
 
     def __init__(self):
-        self.before_s = 0.0  # simulated
+        self.before_s = None  # simulated
         self.was_held = False
         self.peak = {"force_n": 0.0, "torque_nm": 0.0}
         self.impulse = {"force_n": 0.0, "torque_nm": 0.0}
@@ -68,7 +68,8 @@ class Measures:
     def add(self, _, held, sliding, discarded, *numbers):
         """Of COLUMNS."""
         *numbers, simulated_s = map(float, numbers)
-        interval = max(0.0, simulated_s - self.before_s)  # not of stamps: a pause is simulated as step.max_gap_s; 0 again after a reset
+        # Not of stamps: a pause is simulated as step.max_gap_s. 0 again after a reset.
+        interval = simulated_s - self.before_s if self.before_s is not None and simulated_s > self.before_s else 0.0
         self.before_s = simulated_s
         for kind, size in zip(self.peak, (math.hypot(*numbers[:3]), math.hypot(*numbers[3:6]))):
             self.peak[kind] = max(self.peak[kind], size)

@@ -118,7 +118,9 @@ void PartFile::openNamed(mode_t mode) {
     if (file_.isOpen()) part_name_ = name;
     if (!file_.isOpen() && errno != EEXIST) break;
   }
-  if (!file_.isOpen()) place_.refuse(reason(errno));
+  if (file_.isOpen()) return;
+  const bool is_full = errno == ENOSPC || errno == EDQUOT || errno == EMFILE || errno == ENFILE;
+  is_full ? fail(errno) : place_.refuse(reason(errno));
 }
 
 void PartFile::keepPermissions() {

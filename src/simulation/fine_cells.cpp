@@ -13,7 +13,7 @@ constexpr double kWellCovered = 0.25;
 /// covered by its own focus.
 constexpr double kLattice = 0.25;
 
-/// In a saved state: each place is compared with each focus, so that more would keep a reader busy for long.
+/// In a saved state: each place is compared with each focus, so that more would keep a reader busy for more than some seconds.
 constexpr std::size_t kMostFoci = 10'000;
 constexpr std::size_t kMostPlaces = 100'000;  // of a contact one to six
 

@@ -84,10 +84,11 @@ void JointStatePlayer::carry(StateArchive& archive) {
       archive.carry(said.position);
       archive.carry(said.turns);
       archive.carry(said.stamp_ns);
+      archive.carry(said.seen_ns);
       archive.carry(said.right_ns);
       archive.carry(said.arrives_ns);
-      archive.check(said.right_ns >= 0 && said.right_ns <= kCentury_ns && said.arrives_ns >= 0 &&
-                        said.arrives_ns <= 2 * kCentury_ns,
+      archive.check(said.seen_ns >= 0 && said.seen_ns <= kCentury_ns && said.right_ns >= 0 &&
+                        said.right_ns <= kCentury_ns && said.arrives_ns >= 0 && said.arrives_ns <= 2 * kCentury_ns,
                     "a joint state that is none");
       archive.check(std::isfinite(said.position) && std::isfinite(said.turns) && said.stamp_ns >= 0 &&
                         said.stamp_ns <= kCentury_ns,

@@ -75,34 +75,40 @@ void JointStatePlayer::goToSamples(const Moment& moment) {
   for (std::size_t i = 0; i < said_.size(); ++i) {
     for (std::size_t k = 0; k < said_[i].size(); ++k) {
       Said& said = said_[i][k];
-      if (!std::exchange(said.is_news, false) && said.arrives_ns == 0) continue;
+      const bool is_news = std::exchange(said.is_news, false);
+      if (!is_news && said.arrives_ns == 0) continue;
       double& target = targets_[i][static_cast<Eigen::Index>(k)];
       const double goal = said.position + said.turns;
-      const std::int64_t now_ns = simulatedTo(moment);
-      const std::int64_t own_ns = std::min({said.stamp_ns - said.right_ns, max_gap_ns_, kLongestWay_ns});
-      const bool is_new = heard_[i][k] == Heard::kNow;
-      std::int64_t arrives_ns = 0;
-      if (!is_new && said.arrives_ns > now_ns) {
-        arrives_ns = std::max(said.arrives_ns, now_ns + own_ns);
-      } else if (!is_new && isSqueezed(own_ns, moment.stamp_ns - now_ns)) {
-        arrives_ns = now_ns + own_ns;
-      }
+      const std::int64_t arrives_ns = heard_[i][k] == Heard::kNow ? 0 : arrivalOf(said, is_news, moment);
+      said.seen_ns = said.stamp_ns;
       if (arrives_ns <= moment.stamp_ns) {
         target = goal;
         said.right_ns = said.stamp_ns;
         said.arrives_ns = 0;
         continue;
       }
-      target +=
-          static_cast<double>(moment.stamp_ns - now_ns) / static_cast<double>(arrives_ns - now_ns) * (goal - target);
+      target += static_cast<double>(moment.stamp_ns - *time_ns_) / static_cast<double>(arrives_ns - *time_ns_) *
+                (goal - target);
       said.arrives_ns = arrives_ns;
     }
   }
 }
 
-/// Where the simulator is; at the first moment, there.
-std::int64_t JointStatePlayer::simulatedTo(const Moment& moment) const {
-  return time_ns_ ? *time_ns_ - behind_ns_ : moment.stamp_ns;
+/// When a joint is to be where the newest sample has it; not after the moment: then.
+std::int64_t JointStatePlayer::arrivalOf(const Said& said, bool is_news, const Moment& moment) const {
+  if (!time_ns_ || moment.stamp_ns <= *time_ns_) return 0;  // the first one, or time has gone back
+  const std::int64_t now_ns = *time_ns_;
+  if (said.arrives_ns > now_ns) {  // on its way
+    const std::int64_t arrives_ns = std::min(said.arrives_ns, now_ns + kLongestWay_ns);
+    return is_news ? std::max(arrives_ns, now_ns + ownWay(said.seen_ns, said.stamp_ns)) : arrives_ns;
+  }
+  const std::int64_t own_ns = ownWay(said.right_ns, said.stamp_ns);
+  return isSqueezed(own_ns, moment.stamp_ns - now_ns + behind_ns_) ? now_ns + own_ns : 0;
+}
+
+/// The time that a joint takes from one place to another.
+std::int64_t JointStatePlayer::ownWay(std::int64_t from_ns, std::int64_t to_ns) const {
+  return std::min({to_ns - from_ns, max_gap_ns_, kLongestWay_ns});
 }
 
 /// Whether a way that took so long is made in so much less time that speed, and what hangs on it, is another. Stamps jitter.
@@ -126,7 +132,8 @@ void JointStatePlayer::headForNext(const Moment& moment, const Topic& topic) {
       const int joint = simulator_.instruments()[index].jointOfRecordedName(next.sample.names[k]);
       if (joint < 0 || heard_[index][static_cast<std::size_t>(joint)] == Heard::kNever) continue;
       Said& said = said_[index][static_cast<std::size_t>(joint)];
-      if (said.arrives_ns != 0 || isSqueezed(next.moment.stamp_ns - said.right_ns, next.moment.stamp_ns - from_ns))
+      if (said.arrives_ns != 0 ||
+          isSqueezed(ownWay(said.right_ns, next.moment.stamp_ns), next.moment.stamp_ns - from_ns))
         continue;
       said.right_ns = moment.stamp_ns;
       double& target = targets_[index][joint];

@@ -21,7 +21,8 @@ auto parts(const BlockDescription& block) {
                          of(block.grading[1]), of(block.grading[2]));
 }
 auto parts(const MeshDescription& mesh) {
-  return std::tie(mesh.file, mesh.scale_m_per_unit, mesh.cell_size_m, mesh.cell_size_inside_m);
+  return std::tie(mesh.file, mesh.scale_m_per_unit, mesh.cell_size_m, mesh.cell_size_inside_m, mesh.coincident_nodes,
+                  mesh.remove_unreferenced_nodes);
 }
 auto parts(const SheetDescription& sheet) {
   return std::make_tuple(sheet.size_m.x(), sheet.size_m.y(), sheet.cells, sheet.thickness_m);

@@ -98,6 +98,19 @@ class MeasuresTest(unittest.TestCase):
             self.assertAlmostEqual(result[name], value, delta=1e-9, msg=name)
 
 
+class ReplayerTest(unittest.TestCase):
+    def test_what_could_not_be_written_is_tried_again(self):
+        from replays import Replayer, result_of
+        with tempfile.TemporaryDirectory() as folder:
+            program = os.path.join(folder, "replay")
+            with open(program, "w", encoding="utf-8") as stream:
+                stream.write("#!/bin/sh\nread -r line; printf 'broken\\t0.1\\tno space\\n'; read -r line; printf 'failed\\t0.1\\tno such scene\\n'\n")
+            os.chmod(program, 0o755)
+            with Replayer(program) as replayer:
+                self.assertEqual(result_of(replayer, [], os.path.join(folder, "a.csv")), {"crashed": "no space"})
+                self.assertEqual(result_of(replayer, [], os.path.join(folder, "b.csv")), {"error": "no such scene", "cpu_time_s": 0.1})
+
+
 class JobsTest(unittest.TestCase):
     def test_results_that_a_job_gives_their_name_meanwhile(self):
         """As they are about to be opened, after a look whether they are there."""

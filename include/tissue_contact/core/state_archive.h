@@ -121,6 +121,8 @@ void restoreOrPutBack(const std::string& title, const std::string& state, const 
   std::string before;
   try {
     before = save();
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception&) {  // no state at all: not to be read below
   }
   try {

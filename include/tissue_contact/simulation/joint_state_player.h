@@ -92,9 +92,9 @@ struct PlayedSample {
 /// or another topic's clock, and no time in which to move a tool: the tissues stay, the moment's wrenches are those of
 /// the step before, and its time and motion are part of the next interval.
 ///
-/// Counts. pushed = accepted + merged + refused (count() of the other verdicts) + waiting(), at any time. Accepted are
+/// Counts. pushed, and notePassedOver(), = accepted + merged + refused (count() of the other verdicts) + waiting(), at any time. Accepted are
 /// the samples of moments that were played, and those of update-only topics up to them. Merged are those that were
-/// passed over: under kNewestState older moments, which only shape the motion by their last positions; what is taken with a topic's
+/// passed over: noted by notePassedOver(); under kNewestState older moments, which only shape the motion by their last positions; what is taken with a topic's
 /// next sample; and those of an interrupted advance.
 ///
 /// Memory. Played or refused samples are forgotten; waiting ones span at most max_gap_s of message time per loop (more only
@@ -258,8 +258,8 @@ class JointStatePlayer {
   void take(const Moment& moment, int topic, PlayedSample& played);
   void takeJoints(const Queued& queued, const Topic& topic);
   double goneOnTo(double position, std::int64_t stamp_ns, std::size_t instrument, int joint) const;
+  std::int64_t ownWay(std::int64_t from_ns, std::int64_t to_ns) const;
   void goToSamples(const Moment& moment);
-  std::int64_t simulatedTo(const Moment& moment) const;
   static bool isSqueezed(std::int64_t own_ns, std::int64_t left_ns);
   void headForNext(const Moment& moment, const Topic& topic);
   void placeNewJoints();
@@ -291,10 +291,12 @@ class JointStatePlayer {
     double position = 0.0;  ///< rad or m
     double turns = 0.0;     ///< that drivers have left out up to then, rad
     std::int64_t stamp_ns = 0;
+    std::int64_t seen_ns = 0;     ///< stamp of the newest sample at the moment played last
     std::int64_t right_ns = 0;    ///< the joint's target is where it was then
     std::int64_t arrives_ns = 0;  ///< when it is to be where the sample says; 0: it was
     bool is_news = false;         ///< since the moment played last
   };
+  std::int64_t arrivalOf(const Said& said, bool is_news, const Moment& moment) const;
   std::vector<std::vector<Said>> said_;  ///< per instrument and joint, of those that are heard
   enum class Heard { kNever, kNow, kBefore };
   std::vector<std::vector<Heard>> heard_;  ///< per instrument and joint: since the last reset; kNow: to be placed

@@ -28,8 +28,7 @@ class CylinderDistance : public ShapeDistance {
   SignedDistance at(const Vector3& p_S) const override;
   double toRidge(const Vector3& p_S) const override {
     const double side = beyondSide(p_S), cap = beyondCap(p_S);
-    return side > 0.0 && cap > 0.0 ? std::numeric_limits<double>::infinity()
-                                   : std::abs(side - cap);  // rounded out there
+    return side > 0.0 && cap > 0.0 ? side + cap : std::abs(side - cap);
   }
   bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const override;
 

@@ -67,8 +67,8 @@ class ShapeDistance {
 
   /// Whether flat parts exist that can lie flush on a triangle, so that tissue vertices and shape corners matter.
   virtual bool hasFlatParts() const { return true; }
-  /// How much farther another smooth part of the shape is than the nearest one, where distances to both are compared by which is larger;
-  /// 0 on the ridge between their gradients. Infinite: there is no such ridge, or both are flat.
+  /// m, how far it is at least to where two smooth parts of the shape, one of them curved, are equally far and round-off tells which of their
+  /// gradients counts; 0 there. Infinite: there is no such place.
   virtual double toRidge(const Vector3& /*p_S*/) const { return std::numeric_limits<double>::infinity(); }
 
   /// Corners that are the shape's foremost points in direction `forward` (unit; see kCornerSlope), at least those in

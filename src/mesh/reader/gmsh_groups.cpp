@@ -60,7 +60,7 @@ void GmshGroups::readEntities(bool is_41) {
   in_.endLine();
   std::array<std::size_t, 4> counts{};
   for (std::size_t& count : counts) {
-    count = in_.checkedCount(in_.integer(kCount, "a number of entities"), {5, 32}, "entities");
+    count = in_.checkedCount(in_.integer(kGmshCountBytes, "a number of entities"), {5, 32}, "entities");
   }
   for (int dimension = 0; dimension < 4; ++dimension) {
     for (std::size_t i = 0; i < counts[static_cast<std::size_t>(dimension)]; ++i) {
@@ -71,8 +71,8 @@ void GmshGroups::readEntities(bool is_41) {
 
 void GmshGroups::readEntity(int dimension, int coordinates) {
   const std::int64_t tag = in_.integer(kGmshIntBytes, "an entity");
-  for (int i = 0; i < coordinates; ++i) in_.real(kDouble, "a coordinate of an entity");
-  const std::int64_t stated = in_.integer(kCount, "the number of an entity's physical groups");
+  for (int i = 0; i < coordinates; ++i) in_.real(kGmshDoubleBytes, "a coordinate of an entity");
+  const std::int64_t stated = in_.integer(kGmshCountBytes, "the number of an entity's physical groups");
   const std::size_t count = in_.checkedCount(stated, {1, kGmshIntBytes}, "physical groups");
   // Each element of the entity is noted for each of them.
   if (count > kMostGroups) {
@@ -87,7 +87,7 @@ void GmshGroups::readEntity(int dimension, int coordinates) {
     numbers_of_[{dimension, tag}].push_back(std::abs(number));
   }
   if (dimension == 0) return;
-  const std::int64_t bounding = in_.integer(kCount, "the number of an entity's boundaries");
+  const std::int64_t bounding = in_.integer(kGmshCountBytes, "the number of an entity's boundaries");
   for (std::size_t i = in_.checkedCount(bounding, {1, kGmshIntBytes}, "boundaries"); i > 0; --i)
     in_.integer(kGmshIntBytes, "a boundary");
 }

@@ -14,9 +14,9 @@
 namespace tissue_contact {
 
 // What all versions have in common, in bytes.
-constexpr int kDouble = 8;
+constexpr int kGmshDoubleBytes = 8;
 constexpr int kGmshIntBytes = 4;
-constexpr int kCount = 8;  ///< `unsigned long` (4.0) and `size_t` (4.1)
+constexpr int kGmshCountBytes = 8;  ///< `unsigned long` (4.0) and `size_t` (4.1)
 
 /// Errors are the cursor's (MeshFileCursor::fail()), with the file and the place.
 class GmshGroups {

@@ -55,7 +55,7 @@ class GmshReader {
   void readSection(const std::string& name);
   std::string nodesSection() const { return version_ == Version::k1 ? "$NOD" : "$Nodes"; }
   std::string elementsSection() const { return version_ == Version::k1 ? "$ELM" : "$Elements"; }
-  int tagBytes() const { return version_ == Version::k41 ? kCount : kGmshIntBytes; }
+  int tagBytes() const { return version_ == Version::k41 ? kGmshCountBytes : kGmshIntBytes; }
   ItemSize nodeSize() const { return {4, static_cast<std::size_t>(tagBytes()) + 3 * sizeof(double)}; }
   ItemSize elementSize() const {  // of the smallest, a point: in binary its tag and its node
     const std::size_t values = version_ == Version::k1 ? 6 : version_ == Version::k2 ? 4 : 2;
@@ -153,7 +153,7 @@ void GmshReader::readFormat() {
     in_.fail("the file type is " + std::to_string(file_type) + "; it must be 0 (ASCII) or 1 (binary): export it again");
   }
   const std::int64_t data_size = in_.textInteger("the data size");
-  if (file_type == 1 && data_size != kDouble) {
+  if (file_type == 1 && data_size != kGmshDoubleBytes) {
     in_.fail("the data size is " + std::to_string(data_size) +
              " bytes; it must be 8: save the mesh on a 64-bit machine");
   }
@@ -185,7 +185,7 @@ void GmshReader::readNodes2() {
   tags_.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     tags_.add(in_.integer(kGmshIntBytes, "a node tag"), in_);
-    contents_.nodes.push_back(readNode(in_, kDouble, i));
+    contents_.nodes.push_back(readNode(in_, kGmshDoubleBytes, i));
   }
 }
 
@@ -199,14 +199,14 @@ std::size_t GmshReader::blockCount(std::int64_t count, std::size_t left, ItemSiz
 }
 
 void GmshReader::readNodes4() {
-  const std::int64_t blocks = in_.integer(kCount, "the number of entity blocks");
-  const std::int64_t stated = in_.integer(kCount, "the number of nodes");
+  const std::int64_t blocks = in_.integer(kGmshCountBytes, "the number of entity blocks");
+  const std::int64_t stated = in_.integer(kGmshCountBytes, "the number of nodes");
   std::size_t left = in_.checkedCount(stated, nodeSize(), "nodes");
   contents_.nodes.reserve(left);
   tags_.reserve(left);
   if (version_ == Version::k41) {
-    in_.integer(kCount, "the smallest node tag");
-    in_.integer(kCount, "the largest node tag");
+    in_.integer(kGmshCountBytes, "the smallest node tag");
+    in_.integer(kGmshCountBytes, "the largest node tag");
   }
   for (std::size_t b = in_.checkedCount(blocks, kBlockHeader, "entity blocks"); b > 0; --b) {
     const std::int64_t first = in_.integer(kGmshIntBytes, "an entity");
@@ -216,7 +216,7 @@ void GmshReader::readNodes4() {
       in_.fail("entity dimension " + std::to_string(dimension) + "; it must be 0 to 3: export the mesh again");
     }
     const std::int64_t parameters = in_.integer(kGmshIntBytes, "the parametric flag") != 0 ? dimension : 0;
-    const std::int64_t block = in_.integer(kCount, "the number of nodes of a block");
+    const std::int64_t block = in_.integer(kGmshCountBytes, "the number of nodes of a block");
     const std::size_t count = blockCount(block, left, nodeSize(), "nodes");
     left -= count;
     readNodeBlock4(count, parameters);
@@ -229,11 +229,11 @@ void GmshReader::readNodes4() {
 
 void GmshReader::readNodeBlock4(std::size_t count, std::int64_t parameters) {
   const bool tags_first = version_ == Version::k41;  // 4.0 has each tag with its coordinates
-  for (std::size_t i = 0; tags_first && i < count; ++i) tags_.add(in_.integer(kCount, "a node tag"), in_);
+  for (std::size_t i = 0; tags_first && i < count; ++i) tags_.add(in_.integer(kGmshCountBytes, "a node tag"), in_);
   for (std::size_t i = 0; i < count; ++i) {
     if (!tags_first) tags_.add(in_.integer(kGmshIntBytes, "a node tag"), in_);
-    contents_.nodes.push_back(readNode(in_, kDouble, contents_.nodes.size()));
-    for (std::int64_t p = 0; p < parameters; ++p) in_.real(kDouble, "a parametric coordinate");
+    contents_.nodes.push_back(readNode(in_, kGmshDoubleBytes, contents_.nodes.size()));
+    for (std::int64_t p = 0; p < parameters; ++p) in_.real(kGmshDoubleBytes, "a parametric coordinate");
   }
 }
 
@@ -296,12 +296,12 @@ void GmshReader::readBinaryElements2(std::size_t count) {
 }
 
 void GmshReader::readElements4() {
-  const std::int64_t blocks = in_.integer(kCount, "the number of entity blocks");
-  const std::int64_t stated = in_.integer(kCount, "the number of elements");
+  const std::int64_t blocks = in_.integer(kGmshCountBytes, "the number of entity blocks");
+  const std::int64_t stated = in_.integer(kGmshCountBytes, "the number of elements");
   std::size_t left = in_.checkedCount(stated, elementSize(), "elements");
   if (version_ == Version::k41) {
-    in_.integer(kCount, "the smallest element tag");
-    in_.integer(kCount, "the largest element tag");
+    in_.integer(kGmshCountBytes, "the smallest element tag");
+    in_.integer(kGmshCountBytes, "the largest element tag");
   }
   for (std::size_t b = in_.checkedCount(blocks, kBlockHeader, "entity blocks"); b > 0; --b) {
     const std::int64_t first = in_.integer(kGmshIntBytes, "an entity");
@@ -309,7 +309,7 @@ void GmshReader::readElements4() {
     version_ == Version::k41 ? groups_.beginEntity(first, second) : groups_.beginEntity(second, first);
     const std::int64_t type = in_.integer(kGmshIntBytes, "an element type");
     const std::size_t count =
-        blockCount(in_.integer(kCount, "the number of elements of a block"), left, elementSize(), "elements");
+        blockCount(in_.integer(kGmshCountBytes, "the number of elements of a block"), left, elementSize(), "elements");
     left -= count;
     for (std::size_t i = 0; i < count; ++i) readElement(in_.integer(tagBytes(), "an element tag"), type, tagBytes());
   }

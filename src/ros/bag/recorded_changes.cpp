@@ -3,6 +3,7 @@
 #include <ros/message_traits.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -66,6 +67,31 @@ void selectTopic(const std::string& topic, BagReader& bag) {
   }
 }
 
+/// Whether a joint-state topic of the scene begins again in what was recorded by then.
+bool beginsAgain(const std::string& file, const Scene& scene, ros::Time by) {
+  const ros::Duration least(0.05);  // stamps that are late go back by less
+  std::set<std::string> topics;
+  for (const InstrumentDescription& instrument : scene.instruments) {
+    for (const JointStateTopic& topic : instrument.joint_state_topics) topics.insert(globalName(topic.name));
+  }
+  BagReader bag(file);
+  bag.select([&](const BagConnection& connection) { return topics.count(globalName(connection.topic)) > 0; });
+  std::map<std::string, ros::Time> newest;
+  bool begins_again = false;
+  bag.forEach([&](const BagMessage& message) {
+    if (message.recorded > by) return false;
+    try {
+      const ros::Time stamp = MessageReader(message.data).header().stamp;
+      ros::Time& before = newest[globalName(message.connection.topic)];
+      begins_again |= stamp + least < before;
+      before = stamp;
+    } catch (const BagError&) {  // for whoever plays it to tell
+    }
+    return !begins_again;
+  });
+  return begins_again;
+}
+
 }  // namespace
 
 RecordedChanges::RecordedChanges(const std::string& file, const std::string& topic, const Scene& scene,
@@ -87,7 +113,8 @@ RecordedChanges::RecordedChanges(const std::string& file, const std::string& top
       Change change;
       change.loop = recorded.loop;
       change.is_latched = message.recorded <= recording_begins;
-      if (change.is_latched || (is_first && message.recorded <= recording_begins + kLatchedWithin)) {
+      const bool is_soon = is_first && message.recorded <= recording_begins + kLatchedWithin;
+      if (change.is_latched || (is_soon && change.loop > 0 && !beginsAgain(file, scene_, message.recorded))) {
         first_loop_ = change.loop;
       }
       is_first = false;

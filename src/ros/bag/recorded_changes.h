@@ -25,8 +25,8 @@ class RecordedChanges {
   /// @throws std::runtime_error when the bag cannot be read, several topics have changes and none is named, the named one has none, or
   ///   a change is not one of this scene.
   /// @param recording_begins of the first joint state. A change recorded before it is a latched one: it holds from the start, whatever
-  ///   its loop, which the recording begins in. So does the first one where it is recorded soon after: a node says its changes again when
-  ///   a loop begins.
+  ///   its loop, which the recording begins in. So the first one tells its loop, too, where it is recorded soon after and no loop has begun
+  ///   meanwhile: a node says its changes again when one begins.
   RecordedChanges(const std::string& file, const std::string& topic, const Scene& scene, ros::Time recording_begins);
 
   /// Of changes to other numbers than before.

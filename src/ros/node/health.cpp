@@ -13,6 +13,7 @@
 #include "ros/conversions.h"
 #include "ros/joint_watch.h"
 #include "ros/node/diagnostic_figures.h"
+#include "tissue_contact/core/text.h"
 #include "tissue_contact/ros/environment.h"
 
 namespace tissue_contact {
@@ -318,16 +319,20 @@ void Health::tellSilence() {
 /// Under every_state nothing is played while a topic may still have something to say of that moment: for ever, where stamps go on by
 /// answers to wrenches. Empty: something was played since the last look, or nothing waits for a topic.
 std::string Health::heldText(const LiveFigures& now) {
-  const bool is_held = !now.newest_state && !now.paused && now.held > 0 && now.held == now.waiting && told_.held > 0 &&
-                       now.accepted == told_.accepted;
+  const bool is_held = !now.newest_state && !now.paused && !now.failed && now.held > 0 && now.held == now.waiting &&
+                       told_.held > 0 && now.accepted == told_.accepted;
   if (!is_held) {
     told_of_hold_ = false;
     return "";
   }
   const std::vector<std::optional<double>> heard = inbox_.heard(topics_.size());
-  const auto last = static_cast<std::size_t>(std::min_element(heard.begin(), heard.end()) - heard.begin());
-  const std::string text = std::to_string(now.held) + " joint states wait for " + topics_[last] +
-                           (heard[last] ? ", the longest silent" : ", of which none has come");
+  std::vector<std::string> silent;
+  for (std::size_t t = 0; t < topics_.size(); ++t) {
+    constexpr double kUsual_s = 1.0;
+    if (!heard[t] || steadySeconds() - *heard[t] > kUsual_s)
+      silent.push_back(topics_[t] + (heard[t] ? "" : " (never heard)"));
+  }
+  std::string text = std::to_string(now.held) + " joint states wait for another topic; silent: " + listOf(silent);
   if (!std::exchange(told_of_hold_, true)) {
     ROS_WARN_STREAM(
         text << ": under every_state a moment waits for all topics until stamps have gone on by step.max_gap_s; "

@@ -63,7 +63,7 @@ class LiveTuning {
   /// Echoes what was taken, if it changes what is simulated.
   /// @param stamp_ns of the moment played last, 0: none yet. @param loop see Changes.msg.
   void echo(const LiveNumbers& taken, std::int64_t stamp_ns, std::int64_t loop);
-  /// Says what was taken last once more, when a loop begins: so a recording knows the loop that it begins in.
+  /// Says what was taken last once more, when a loop begins or another state is loaded: so a recording knows the loop that it begins in.
   void tell(std::int64_t stamp_ns, std::int64_t loop);
 
  private:

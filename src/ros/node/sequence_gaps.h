@@ -18,12 +18,11 @@ class SequenceGaps {
   /// @param publisher its first 100 characters count.
   void note(int topic, const std::string& publisher, std::uint32_t sequence) {
     if (last_.size() > kMostPublishers) last_.clear();  // names come from outside
-    const auto [last, is_new] = last_.try_emplace({topic, publisher.substr(0, kLongestName)}, sequence);
-    // Backwards: started again, or a bag with numbers of its own. Far ahead: a bag of several publishers, whose numbers rosbag keeps.
-    if (!is_new && sequence > last->second && sequence - last->second <= kMostMissing) {
-      missing_ += sequence - last->second - 1;
-    }
-    last->second = sequence;
+    const auto [last, is_new] = last_.try_emplace({topic, publisher.substr(0, kLongestName)}, Last{sequence, false});
+    const bool goes_on = sequence > last->second.sequence;
+    // Backwards: started again, or a bag with numbers of its own; of two publishers, whose numbers rosbag keeps, it then goes ahead again.
+    if (!is_new && goes_on && !last->second.went_back) missing_ += sequence - last->second.sequence - 1;
+    last->second = {sequence, !is_new && !goes_on};
   }
 
   std::int64_t missing() const { return missing_; }
@@ -39,10 +38,14 @@ class SequenceGaps {
   }
 
  private:
-  static constexpr std::uint32_t kMostMissing = 100'000;  // at once: of a driver at 1 kHz 100 s
+  struct Last {
+    std::uint32_t sequence;
+    bool went_back;
+  };
+
   static constexpr std::size_t kMostPublishers = 1000;
   static constexpr std::size_t kLongestName = 100;
-  std::map<std::pair<int, std::string>, std::uint32_t> last_;
+  std::map<std::pair<int, std::string>, Last> last_;
   std::int64_t missing_ = 0;
 };
 

@@ -2,7 +2,6 @@
 /// Room `ros`, private: saved states in files. No ROS inside.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "tissue_contact/simulation/joint_state_player.h"

@@ -64,7 +64,7 @@ void BagRecorder::guarded(const Work& work) {
     const std::string reason = errno != 0 ? std::generic_category().message(errno) : error.what();
     // Its destructor would try to write again, throw, and so end the process; what it holds goes with that anyway.
     static_cast<void>(bag_.release());
-    throw std::runtime_error("cannot write '" + name_ + "': " + reason);
+    throw WriteError("cannot write '" + name_ + "': " + reason);
   }
 }
 

@@ -296,20 +296,22 @@ TEST(ContactDetector, RoundOffDoesNotTurnFramesAtTheRimOfACylinder) {
   instruments.push_back(makeInstrument("rod", {{CylinderGeometry{0.003, 0.02}, Pose::Identity()}}));
   const ContactDetector detector(instruments, shareSurfaces(scene.surfaces, scene.positions));
   const std::vector<std::vector<Pose>> still = {{Pose::Identity(), Pose::Identity()}};
-  const auto turned = [&](double beyond, double way) {
+  const auto turned = [&](double beyond, double way, double depth = 1e-6) {
     Contact contact;
     contact.key = {0, 0, 0, 0, {0, -1, -1}};
-    contact.p_WC = {0.0, -0.003 + 1e-6, 0.01 - 1e-6 + beyond};
+    contact.p_WC = {0.0, -0.003 + depth, 0.01 - depth + beyond};
     contact.R_WC = contactFrame(Vector3(0.0, -1.0, 0.02).normalized());
     contact.gap_m = -1e-6;
     detector.turnWithSlide(still, still, {way, 0.0, 0.0}, contact);
     return contact;
   };
-  const Contact at_rim = turned(0.0, 2e-4);
-  for (const double beyond : {-1e-12, -1e-15, 1e-15, 1e-12}) {
-    const Contact beside = turned(beyond, 2e-4);
-    EXPECT_LT((beside.R_WC - at_rim.R_WC).norm(), 1e-8) << beyond;
-    EXPECT_NEAR(beside.gap_m, at_rim.gap_m, 1e-12) << beyond;
+  for (const double depth : {1e-6, 0.0, -1e-15}) {
+    const Contact at_rim = turned(0.0, 2e-4, depth);
+    for (const double beyond : {-1e-12, -1e-15, 1e-15, 1e-12}) {
+      const Contact beside = turned(beyond, 2e-4, depth);
+      EXPECT_LT((beside.R_WC - at_rim.R_WC).norm(), 1e-8) << beyond;
+      EXPECT_NEAR(beside.gap_m, at_rim.gap_m, 1e-12) << beyond;
+    }
   }
   // A side that is the nearest face by more than the way turns by all of it: way / radius.
   EXPECT_NEAR(turned(-3e-4, 2e-4).R_WC(0, 0), 2e-4 / 0.003, 1e-3);

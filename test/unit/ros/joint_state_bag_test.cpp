@@ -261,7 +261,6 @@ TEST_F(JointStateBagTest, TypeAndDefinition) {
   expectRefused(readBytes(directory_.path("others.bag")), {kTopic, "/other"});
 }
 
-/// Names in a bag are anybody's: they neither fill a log nor steer a terminal.
 TEST_F(JointStateBagTest, OneTopicSpelledInTwoWays) {
   writeJointStates(directory_.path("plain.bag"), 3);
   const std::string name(kTopic);
@@ -272,6 +271,7 @@ TEST_F(JointStateBagTest, OneTopicSpelledInTwoWays) {
       {"plain.bag", name + " and " + name.substr(1), "spell them alike"});
 }
 
+/// Names in a bag are anybody's: they neither fill a log nor steer a terminal.
 TEST_F(JointStateBagTest, NamesInMessagesArePrintable) {
   const auto write_strings = [this](const std::vector<std::string>& topics) {
     rosbag::Bag bag(directory_.path("names.bag"), rosbag::bagmode::Write);

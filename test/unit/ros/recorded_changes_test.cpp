@@ -108,6 +108,24 @@ TEST_F(RecordedChangesTest, TheFirstOneSoonAfterTheBeginningTellsItsLoop) {
   EXPECT_EQ(modulusOf(changes.takeDue(1, 96 * kSecond, 0)), 9000.0);
 }
 
+// Then it is of that one.
+TEST_F(RecordedChangesTest, NorWhereALoopHasBegunMeanwhile) {
+  scene_ = parseScene(blockScene() + "instruments:\n" + probeEntry("probe", kTopic, "[0, 0, 0.026]"), "text scene",
+                      ownEnvironment().package_path);
+  const std::string file = directory_.path("loop.bag");
+  {
+    rosbag::Bag bag(file, rosbag::bagmode::Write);
+    std::uint32_t recorded_ns = 0;
+    for (const int stamp_ms : {100, 200, 300, 100}) {
+      bag.write(kTopic, ros::Time(4999, ++recorded_ns), jointState(stamp_ms));
+    }
+    bag.write("/node/changes", ros::Time(5000), changesOf(11, 1, {kYoung}, {7000.0}));
+  }
+  RecordedChanges changes(file, "", scene_, ros::Time(4999));
+  EXPECT_FALSE(changes.takeDue(0, 11 * kSecond, 12 * kSecond));
+  EXPECT_EQ(modulusOf(changes.takeDue(1, 11 * kSecond, 12 * kSecond)), 7000.0);
+}
+
 TEST_F(RecordedChangesTest, AStrayStampAheadBringsNoneForward) {
   const std::string file = write({{"/node/changes", changesOf(10, 0, {kYoung}, {7000.0})},
                                   {"/node/changes", changesOf(3600, 0, {kYoung}, {8000.0})}});

@@ -100,6 +100,34 @@ TEST(JointStateSavedOfTwo, GoesOnToTheSameBits) {
   EXPECT_TRUE(feed(*second, restored, order(15, 25)) == expected);
 }
 
+// A jaw whose driver shares the arm's topic, a millisecond behind it: it is on its way when the state is saved.
+TEST_F(JointStateSaved, AJointThatIsLateGoesOnItsWayOrIsThereAtAnotherTime) {
+  const auto order = [](int from, int to) {
+    Order all;
+    for (int i = from; i < to; ++i) {
+      const std::int64_t stamp = kSecond + i * 10 * kMillisecond;
+      all.emplace_back(0, arm(stamp - kMillisecond, 0.0));
+      all.emplace_back(0, jaw(stamp, -2e-4 * i));
+    }
+    return all;
+  };
+  feed(*simulator, player, order(0, 20));
+  const double at = simulator->jointPositions(0).z();
+  EXPECT_NEAR(at, -2e-4 * 18.1, 1e-12);
+  const std::string state = player.saveState();
+  restored.restoreState(state);
+  const Trace expected = feed(*simulator, player, order(20, 30));
+  EXPECT_TRUE(expected.pressed());
+  EXPECT_TRUE(feed(*other, restored, order(20, 30)) == expected);
+  for (const std::int64_t start : {kSecond / 2, 3600 * kSecond}) {
+    restored.restoreState(state);
+    restored.push(0, arm(start, 0.0));
+    restored.push(0, arm(start + 10 * kMillisecond, 0.0));
+    drain(restored);
+    EXPECT_NEAR(other->jointPositions(0).z(), -2e-4 * 19, 1e-12);
+  }
+}
+
 TEST_F(JointStateSaved, WhatWaitsIsMergedAndCountsAddUp) {
   goOn(*simulator, player, samples, 0, 10);
   const std::string state = player.saveState();
