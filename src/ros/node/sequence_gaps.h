@@ -20,9 +20,11 @@ class SequenceGaps {
     if (last_.size() > kMostPublishers) last_.clear();  // names come from outside
     const auto [last, is_new] = last_.try_emplace({topic, publisher.substr(0, kLongestName)}, Last{sequence, false});
     const bool goes_on = sequence > last->second.sequence;
-    // Backwards: started again, or a bag with numbers of its own; of two publishers, whose numbers rosbag keeps, it then goes ahead again.
-    if (!is_new && goes_on && !last->second.went_back) missing_ += sequence - last->second.sequence - 1;
-    last->second = {sequence, !is_new && !goes_on};
+    // Backwards: started again, or a bag with numbers of its own; of two publishers, whose numbers rosbag keeps, it then goes ahead again, as it
+    // may have before.
+    const std::uint32_t ahead = sequence - last->second.sequence;
+    if (!is_new && goes_on && !last->second.went_back && ahead <= kMostMissing) missing_ += ahead - 1;
+    last->second = {sequence, !is_new && sequence < last->second.sequence};
   }
 
   std::int64_t missing() const { return missing_; }
@@ -38,6 +40,7 @@ class SequenceGaps {
   }
 
  private:
+  static constexpr std::uint32_t kMostMissing = 100'000;  // at once: of a driver at 1 kHz 100 s
   struct Last {
     std::uint32_t sequence;
     bool went_back;
