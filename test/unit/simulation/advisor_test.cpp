@@ -87,11 +87,10 @@ TEST(Advisor, SaysWhatItHasChosen) {
   EXPECT_EQ(plain.advice().size(), 7U);
   EXPECT_TRUE(has(plain, "2 cells over its thickness of 10 mm"));
   // The shorter triangles are those of two sides, (6.67 + 5 + 8.33) / 3 mm: 0.5 (6.67 / 5)^1.8.
-  EXPECT_TRUE(has(
-      plain,
-      "mesh of tissue 'slab': as it is, cells of 6.7 mm (its shorter surface edges), under shapes of 5 mm "
-      "half extent (a ball's radius): expect forces to be off by some 84 % when pressed in by most "
-      "of a half extent; smaller cells help"));
+  EXPECT_TRUE(has(plain,
+                  "mesh of tissue 'slab': as it is, cells of 6.7 mm (its shorter surface edges), under shapes of 5 mm "
+                  "half extent (a ball's radius): expect forces to be off by some 84 % when pressed in by most "
+                  "of a half extent; smaller cells help"));
   EXPECT_TRUE(
       has(plain, "sleep: nodes at rest away from contacts are left out while holding them takes at most 0.1 %"));
   EXPECT_TRUE(has(plain, "'slab': corotational always"));
