@@ -26,12 +26,7 @@ std::string approachText(const Simulator& simulator, const Approach& approach, s
        << "', link '" << instrument.model().links()[static_cast<std::size_t>(link.link)].name << "', shape "
        << approach.shape + 1 << " of " << link.shapes.size() << ", to tissue '"
        << simulator.scene().tissues[static_cast<std::size_t>(approach.tissue)].name << "' at "
-       << pointText(approach.p_W) << " m; ";
-  if (approach.distance_m < 0.0) {
-    text << "it is inside the tissue, where nothing pushes it out: a tool must begin outside";
-    return text.str();
-  }
-  text << "a base moved by " << pointText(approach.distance_m * approach.normal_W)
+       << pointText(approach.p_W) << " m; a base moved by " << pointText(approach.distance_m * approach.normal_W)
        << " m would make it just touch there";
   return text.str();
 }

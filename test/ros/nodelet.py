@@ -13,8 +13,8 @@ def nodelet(*arguments):
     return harness.running([harness.program_of("nodelet", "nodelet")] + list(arguments))
 
 
-def services_of(name):
-    return [service for service, _ in rosgraph.Master("/test").getSystemState()[2] if service.startswith(name + "/")]
+def has_service(name):
+    return name in [service for service, _ in rosgraph.Master("/test").getSystemState()[2]]
 
 
 class Nodelet(harness.TestCase):
@@ -42,7 +42,7 @@ class Nodelet(harness.TestCase):
                     self.assertEqual(self.press(), expected)
                     log.wait(lambda all: any(m.name == "/manager" for m in all), "the log of the manager")  # from the next load on, all of it
                 harness.wait_until(lambda: not self.source.is_heard(), "the end of its connection")  # or the next one's would be taken for there
-                harness.wait_until(lambda: not services_of(harness.NODE), "its end in the manager")  # which loads no second one of the name
+                harness.wait_until(lambda: not has_service(harness.NODE + "/reset"), "its end in the manager")  # which loads no second one of the name
 
         advice = [m for m in log.wait(lambda all: any("all other pairs" in m.msg for m in all), "the advice, to its last line")
                   if m.msg.startswith("advisor: ")]

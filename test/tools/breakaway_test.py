@@ -142,7 +142,7 @@ class TwistTableTest(Folder):
 
 @unittest.skipIf(WITHOUT, WITHOUT)
 class StaticFrictionTest(Folder):
-    """By the command, on a coarse ring; the recording is of another mesh, shorter steps, other E and damping."""
+    """By the command, on a ring as the one that is shipped; the recording is of another mesh, shorter steps, other E and damping."""
 
     @classmethod
     def setUpClass(cls):
@@ -153,7 +153,7 @@ class StaticFrictionTest(Folder):
     def setUp(self):
         super().setUp()
         mesh = os.path.join(self.folder, "ring.msh")
-        subprocess.run([sys.executable, os.path.join(SOURCE, "scripts", "make_ring.py"), mesh, "--cells", "40", "2", "1"], check=True, timeout=DEADLINE_S)
+        subprocess.run([sys.executable, os.path.join(SOURCE, "scripts", "make_ring.py"), mesh], check=True, timeout=DEADLINE_S)
         self.scene = self.write("ring.yaml", fitted_scene.fitted_text(study.RING, {"tissues.ring.mesh.file": mesh}, self.folder, []))
         self.table = os.path.join(self.folder, "twist.csv")
         study.write_twist(self.table, self.recording)

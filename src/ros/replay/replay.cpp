@@ -324,7 +324,12 @@ class Replay {
   /// Most often a pose in the scene is wrong, so say how far and between what.
   void summarizeApproach() const {
     log_ << kPrefix << "no instrument touched tissue";
-    if (approach_.instrument >= 0) {
+    if (approach_.instrument >= 0 && approach_.distance_m < 0.0) {
+      const Instrument& tool = simulator_.instruments()[static_cast<std::size_t>(approach_.instrument)];
+      log_ << "; '" << tool.name() << "' is up to " << -approach_.distance_m
+           << " m inside it, from where nothing pushes it out: "
+           << "a tool must begin outside; check base_pose and the tissue's pose";
+    } else if (approach_.instrument >= 0) {
       log_ << "; " << approachText(simulator_, approach_, approach_ns_) << "; check base_pose and the tissue's pose";
     }
     log_ << "\n";
