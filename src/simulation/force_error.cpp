@@ -1,6 +1,7 @@
 #include "tissue_contact/simulation/force_error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -31,14 +32,65 @@ struct Touch {
   Vector3 center_W = Vector3::Zero();  ///< at rest, m, mean by force
   double slip_m = 0.0;                 ///< in the step, mean by force
   double radius_m = 0.0;
-  long nodes = 0;       ///< that carry force
-  double edge_m = 0.0;  ///< mean of the triangles around them
+  long nodes = 0;           ///< that carry force
+  double edge_m = 0.0;      ///< mean of the triangles around them
+  double softened_n = 0.0;  ///< of the force, what vertices that carry it alone take away
 };
 
+/// A node that carries force.
+struct Bearing {
+  double force_n = 0.0;
+  double at_vertex_n = 0.0;            ///< of it, by the node's own contact
+  Vector3 normal_W = Vector3::Zero();  ///< times force_n, of the shape
+};
+
+/// 4 mu / (1 - nu): dF/dd of a round patch of radius a on a half-space, over a (Sneddon, Int. J. Eng. Sci. 3 (1965) 47-57, of any shape of revolution).
+double contactModulus(const MaterialDescription& material) {
+  return 4.0 * lameParameters(material).mu / (1.0 - material.poissons_ratio);
+}
+
+/// Between vertices that lie on the shape flat triangles cut into it, by (1/24) sum over edges of dx . dn in the mean for edges dx along which its normals turn by dn (on a
+/// sphere: sum l^2 / (24 R)), as if the shape were that much less deep. N, by the triangles all of whose corners carry, each by
+/// what its corners do.
+/// @param at per node: index into `bearings`, or -1.
+double softenedByChords(const Tissue& tissue, const TissueDescription& description, const NodalVectors& x,
+                        const std::vector<int>& at, const std::vector<Bearing>& bearings) {
+  double area = 0.0, cut_n = 0.0, force_n = 0.0;
+  for (std::size_t k = 0; k < tissue.surface().size(); ++k) {
+    const Triangle& triangle = tissue.surface()[k];
+    std::array<const Bearing*, 3> corners{};
+    for (int i = 0; i < 3; ++i) {
+      const int index = at[static_cast<std::size_t>(triangle[i])];
+      if (index >= 0) corners[i] = &bearings[static_cast<std::size_t>(index)];
+    }
+    const auto carrying = 3 - std::count(corners.begin(), corners.end(), nullptr);
+    if (carrying == 0) continue;
+    area += static_cast<double>(carrying) / 3.0 * triangleArea(x, triangle);
+    if (carrying < 3) continue;
+    double depth_m = 0.0, corners_n = 0.0, vertices_n = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      const Vector3 edge = x.col(triangle[i]) - x.col(triangle[j]);
+      depth_m += edge.dot(corners[i]->normal_W.normalized() - corners[j]->normal_W.normalized()) / 24.0;
+      corners_n += corners[i]->force_n;
+      vertices_n += corners[i]->at_vertex_n;
+    }
+    const int region = tissue.surfaceRegions().empty() ? -1 : tissue.surfaceRegions()[k];
+    const MaterialDescription& material =
+        region < 0 ? description.material : description.regions[static_cast<std::size_t>(region)].material;
+    cut_n += vertices_n * contactModulus(material) * depth_m;
+    force_n += corners_n;
+  }
+  return force_n > 0.0 ? std::sqrt(area / M_PI) * cut_n / force_n : 0.0;
+}
+
+/// @param x positions, m.
 /// @param first, end contacts of the shape with the tissue.
-Touch touchOf(const Tissue& tissue, const SolvedContact* first, const SolvedContact* end) {
+Touch touchOf(const Tissue& tissue, const TissueDescription& description, const NodalVectors& x,
+              const SolvedContact* first, const SolvedContact* end) {
   Touch touch;
-  std::vector<bool> carries(static_cast<std::size_t>(tissue.nodeCount()), false);
+  std::vector<int> at(static_cast<std::size_t>(tissue.nodeCount()), -1);
+  std::vector<Bearing> bearings;
   for (const SolvedContact* contact = first; contact != end; ++contact) {
     const double force_n = contact->force_on_tissue_n.norm();
     if (!(force_n > 0.0)) continue;
@@ -46,7 +98,15 @@ Touch touchOf(const Tissue& tissue, const SolvedContact* first, const SolvedCont
       const int node = contact->contact.nodes[i];
       const double weight = contact->contact.weights[i];
       if (weight == 0.0) continue;
-      carries[static_cast<std::size_t>(node)] = true;
+      int& index = at[static_cast<std::size_t>(node)];
+      if (index < 0) {
+        index = static_cast<int>(bearings.size());
+        bearings.emplace_back();
+      }
+      Bearing& bearing = bearings[static_cast<std::size_t>(index)];
+      bearing.force_n += force_n * weight;
+      bearing.normal_W += force_n * weight * contact->contact.R_WC.col(0);
+      if (contact->contact.key.feature[1] < 0) bearing.at_vertex_n += force_n * weight;
       touch.center_W += force_n * weight * tissue.restPositions().col(node);
     }
     if (contact->state == ContactState::kKinetic) touch.slip_m += force_n * contact->slip_W.norm();
@@ -55,14 +115,14 @@ Touch touchOf(const Tissue& tissue, const SolvedContact* first, const SolvedCont
   if (!(touch.sum_n > 0.0)) return touch;
   touch.center_W /= touch.sum_n;
   touch.slip_m /= touch.sum_n;
-  touch.nodes = std::count(carries.begin(), carries.end(), true);
+  touch.nodes = static_cast<long>(bearings.size());
   const NodalVectors& rest = tissue.restPositions();
   double area = 0.0;
   double edges_m = 0.0;
   int triangles = 0;
   for (const Triangle& triangle : tissue.surface()) {
     const auto carrying = std::count_if(triangle.begin(), triangle.end(),
-                                        [&](int node) { return carries[static_cast<std::size_t>(node)]; });
+                                        [&](int node) { return at[static_cast<std::size_t>(node)] >= 0; });
     if (carrying == 0) continue;
     area += static_cast<double>(carrying) / 3.0 * triangleArea(rest, triangle);
     ++triangles;
@@ -70,6 +130,7 @@ Touch touchOf(const Tissue& tissue, const SolvedContact* first, const SolvedCont
   }
   touch.edge_m = edges_m / std::max(triangles, 1);
   touch.radius_m = std::sqrt(area / M_PI);
+  touch.softened_n = softenedByChords(tissue, description, x, at, bearings);
   return touch;
 }
 
@@ -84,13 +145,16 @@ std::vector<double> shearModuli(const TissueDescription& description) {
 double ForceErrorEstimate::total_n() const { return std::hypot(mesh_n, step_n, solver_n); }
 
 MeshErrorFactors meshErrorFactors(const ElementMaterials& materials) {
-  if (!averagesDistortion(materials)) return {1.7, 1.5, 0.5};
-  if (!averagesDilatation(materials)) return {1.3, 1.5, 0.4};
-  return {0.97, 1.8, 0.3};
+  if (!averagesDistortion(materials)) return {2.0, 0.5};
+  if (!averagesDilatation(materials)) return {2.0, 0.4};
+  return {1.2, 0.3};
 }
 
-double likelyMeshError(double recovered, const MeshErrorFactors& factors) {
-  const double share = factors.of_strain * std::pow(recovered, factors.power_of_strain);
+double likelyMeshError(double recovered, double softened, const MeshErrorFactors& factors) {
+  constexpr double kStiffUncertain = 0.5;
+  constexpr double kSoftUncertain = 0.2;
+  const double stiffened = factors.of_strain * std::pow(recovered, 1.6);
+  const double share = std::hypot(stiffened - softened, kStiffUncertain * stiffened, kSoftUncertain * softened);
   return share < 1.0 ? share : 1.0;  // not finite as well: nothing is known then
 }
 
@@ -124,14 +188,14 @@ std::vector<ForceErrorEstimate> estimateForceErrors(const Scene& scene, const st
         force_n += contacts[end].force_on_tissue_n;
       }
       if (key.instrument < 0) continue;
-      const Touch touch = touchOf(tissues[t], contacts.data() + shape, contacts.data() + end);
+      const Touch touch = touchOf(tissues[t], scene.tissues[t], x[t], contacts.data() + shape, contacts.data() + end);
       if (!(touch.radius_m > 0.0)) continue;
       sum_n += touch.sum_n;
       step += touch.sum_n * kOfTurn * touch.slip_m / touch.radius_m;
       if (!judges_mesh) continue;
       double share = likelyMeshError(recoveredStrainError(tissues[t], shearModuli(scene.tissues[t]), x[t],
                                                           touch.center_W, kRadiiLookedAt * touch.radius_m),
-                                     factors);
+                                     touch.softened_n / touch.sum_n, factors);
       const double half_extent_m = shapes.halfExtent(of_shape.instrument, of_shape.link, of_shape.shape);
       if (touch.nodes <= kFewNodes && half_extent_m > 0.0) {  // of the force found, not of the right one
         share = std::max(share, 1.0 - 1.0 / (1.0 + expectedMeshError(touch.edge_m, half_extent_m, factors)));

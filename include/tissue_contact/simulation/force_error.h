@@ -30,20 +30,19 @@ struct ForceErrorEstimate {
 /// part of all strain (neo-Hookean tissue as it comes), or neither.
 struct MeshErrorFactors {
   double of_strain;
-  double power_of_strain;
   double of_lengths;
 };
 MeshErrorFactors meshErrorFactors(const ElementMaterials& materials);
 
-/// Likely share of a contact force that is due to the mesh, from recoveredStrainError() `recovered` within four contact radii of the middle of a
-/// shape's contacts, radius sqrt(A / pi) for the rest area A of the nodes that carry force. At most 1.
+/// Likely share of a contact force that is due to the mesh: of two errors of opposite sign what does not cancel, and a part of each, hypot(e - s, e / 2, s / 5). At most 1.
 ///
-/// of_strain times a power of it: 1.7 recovered^1.5 by element, .97 recovered^1.8 where strain is averaged as said above, fitted to forces against the stored truths of the benchmark (press and drag of a ball, a recorded robot over a pad)
-/// on meshes of 288 to 13 550 nodes, which err by .6 to 350 %; 1.3 recovered^1.5 where a part of all strain is, from presses of a ball at nu .45 and .49 (force_error_test). An energy's error would be `recovered` itself. Forces of contact at vertices
-/// err by less where cells are small, since what is held at vertices only is soft while cells are stiff; and by more where the contact is
-/// smaller than a cell. Where five nodes or fewer carry a shape, what its lengths say (expectedMeshError()) counts if that is more. How well
-/// it does: doc/accuracy.md, and doc/notes/accuracy.md for fits that were tried.
-double likelyMeshError(double recovered, const MeshErrorFactors& factors);
+/// e, cells too stiff for the strain: of_strain recovered^1.6 (1.2 where strain is averaged as said above, else 2), from recoveredStrainError() `recovered` within four contact radii of the
+/// middle of a shape's contacts, radius sqrt(A / pi) for the rest area A of the nodes that carry force. s, contact too soft: `softened`, the share of the force that is lost
+/// where vertices alone carry it, since flat triangles between them cut into the shape. The force hangs on how deep that is in the mean as on the shape's depth, dF = 4 mu a / (1 - nu) dd
+/// for a contact radius a now. It is nothing new to be fitted; factor and power, half and fifth are, to 64 runs against stored truths (press and drag of a ball, partial slip, a recorded robot over a
+/// pad, a grasp) and against presses of a ball .2 to .8 of its radius deep, axially symmetric elements being the truth. Where five nodes or fewer carry a shape, what its lengths say
+/// (expectedMeshError()) counts if that is more. How well it does: doc/accuracy.md, and doc/notes/accuracy.md for fits that were tried.
+double likelyMeshError(double recovered, double softened, const MeshErrorFactors& factors);
 
 /// Likely error of the force on a shape pressed in by most of its half extent, relative, from the lengths alone: for a word of warning before
 /// anything moves. of_lengths (edge / half extent)^1.8: 0.5 by element, 0.3 averaged, 0.4 between; within a factor of two of what press and drag and the recorded robot meet on meshes of
