@@ -111,13 +111,14 @@ std::vector<int> patchesByFaces(const NodalVectors& rest, const std::vector<Tetr
   return patch_of;
 }
 
-std::vector<int> cutAtRegions(const std::vector<int>& patch_of, const std::vector<int>& regions) {
-  if (regions.empty()) return patch_of;
+std::vector<int> cutAtMaterials(const std::vector<int>& patch_of, const std::vector<int>& materials) {
+  if (materials.empty()) return patch_of;
   std::map<std::pair<int, int>, int> numbers;
   std::vector<int> cut;
   cut.reserve(patch_of.size());
   for (std::size_t e = 0; e < patch_of.size(); ++e) {
-    cut.push_back(numbers.emplace(std::pair(patch_of[e], regions[e]), static_cast<int>(numbers.size())).first->second);
+    cut.push_back(
+        numbers.emplace(std::pair(patch_of[e], materials[e]), static_cast<int>(numbers.size())).first->second);
   }
   return cut;
 }

@@ -18,9 +18,9 @@ namespace tissue_contact {
 /// continuum (Hughes, The Finite Element Method, 1987, section 4.3.7).
 std::vector<int> patchesByFaces(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra);
 
-/// Patches cut where elements belong to different regions, so that a stiff one does not lend its bulk modulus to a soft one.
+/// Patches cut where elements are of different materials, so that a stiff one does not lend its bulk modulus to a soft one.
 /// @param regions per tetrahedron; empty: one region.
-std::vector<int> cutAtRegions(const std::vector<int>& patch_of, const std::vector<int>& regions);
+std::vector<int> cutAtMaterials(const std::vector<int>& patch_of, const std::vector<int>& materials);
 
 /// The same where tetrahedra come cell by cell, `cell_size` each.
 std::vector<int> patchesByCells(std::size_t tetrahedra, int cell_size);

@@ -268,7 +268,6 @@ void setFibres(const TissueDescription& description, const std::string& source, 
 void finish(const TissueDescription& description, const Pose& X_WT, PlacedMesh& placed) {
   const std::string source = tissueLabel(description);
   setRegions(description, source, placed);
-  placed.patch_of = cutAtRegions(placed.patch_of, placed.element_regions);
   setFibres(description, source, placed);
   setSprings(description, source, placed);
   setPressed(description, source, placed);

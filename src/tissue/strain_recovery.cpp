@@ -11,7 +11,7 @@ namespace {
 
 struct StrainedElement {
   int element;
-  int region;   ///< index into shear_moduli
+  int region;   ///< index into shear_moduli of the first that is the same
   bool counts;  ///< else only its nodes' means need it
   double volume;
   Vector6 strain;  ///< xx, yy, zz and sqrt(2) times yz, zx, xy: its norm is the tensor's
@@ -28,8 +28,8 @@ Vector6 deviatoricGreenStrain(const Matrix3& D, const NodalVectors& x, const Tet
 }
 
 /// Those that count and all that share a node with them.
-std::vector<StrainedElement> strainedElements(const Tissue& tissue, const NodalVectors& x, const Vector3& center_W,
-                                              double radius_m) {
+std::vector<StrainedElement> strainedElements(const Tissue& tissue, const std::vector<double>& shear_moduli,
+                                              const NodalVectors& x, const Vector3& center_W, double radius_m) {
   const NodalVectors& rest = tissue.restPositions();
   const std::vector<Tetrahedron>& elements = tissue.tetrahedra();
   const std::vector<int>& regions = tissue.elementRegions();
@@ -42,12 +42,16 @@ std::vector<StrainedElement> strainedElements(const Tissue& tissue, const NodalV
     if (!counts[e]) continue;
     for (const int node : elements[e]) is_of_them[static_cast<std::size_t>(node)] = true;
   }
+  const auto materialOf = [&](std::size_t element) {
+    const double modulus = shear_moduli[regions.empty() ? 0 : static_cast<std::size_t>(regions[element] + 1)];
+    return static_cast<int>(std::find(shear_moduli.begin(), shear_moduli.end(), modulus) - shear_moduli.begin());
+  };
   std::vector<StrainedElement> strained;
   for (std::size_t e = 0; e < elements.size(); ++e) {
     const auto is_needed = [&](int node) { return is_of_them[static_cast<std::size_t>(node)]; };
     if (std::none_of(elements[e].begin(), elements[e].end(), is_needed)) continue;
     const Matrix3 D = edgeMatrix(rest, elements[e]);
-    strained.push_back({static_cast<int>(e), regions.empty() ? 0 : regions[e] + 1, counts[e], D.determinant() / 6.0,
+    strained.push_back({static_cast<int>(e), materialOf(e), counts[e], D.determinant() / 6.0,
                         deviatoricGreenStrain(D, x, elements[e])});
   }
   return strained;
@@ -57,7 +61,7 @@ std::vector<StrainedElement> strainedElements(const Tissue& tissue, const NodalV
 
 double recoveredStrainError(const Tissue& tissue, const std::vector<double>& shear_moduli, const NodalVectors& x,
                             const Vector3& center_W, double radius_m) {
-  const std::vector<StrainedElement> strained = strainedElements(tissue, x, center_W, radius_m);
+  const std::vector<StrainedElement> strained = strainedElements(tissue, shear_moduli, x, center_W, radius_m);
   std::vector<Vector6> mean(static_cast<std::size_t>(tissue.nodeCount()));
   std::vector<double> volume(mean.size());
   double error = 0.0;

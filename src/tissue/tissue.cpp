@@ -7,6 +7,7 @@
 
 #include "mesh/face_table.h"
 #include "tissue/attached_elasticity.h"
+#include "tissue/element_patches.h"
 #include "tissue/membrane.h"
 #include "tissue/placed_mesh.h"
 #include "tissue/stiff_parts.h"
@@ -211,6 +212,25 @@ double takeUniformDamping(std::size_t elements, ElementMaterials& materials) {
   return first;
 }
 
+/// Per element the first of the materials that is as stiff as its own and damps as it does. Empty: there is one.
+std::vector<int> stiffnessesOf(const ElementMaterials& materials) {
+  const auto isAlike = [&](std::size_t a, std::size_t b) {
+    const MaterialDescription& one = materials.materials[a];
+    const MaterialDescription& other = materials.materials[b];
+    return one.youngs_modulus_pa == other.youngs_modulus_pa && one.poissons_ratio == other.poissons_ratio &&
+           (materials.damping_s.empty() || materials.damping_s[a] == materials.damping_s[b]);
+  };
+  std::vector<int> first(materials.materials.size());
+  for (std::size_t m = 0; m < first.size(); ++m) {
+    std::size_t like = 0;
+    while (!isAlike(like, m)) ++like;
+    first[m] = static_cast<int>(like);
+  }
+  std::vector<int> of_element;
+  for (const int material : materials.of_element) of_element.push_back(first[static_cast<std::size_t>(material)]);
+  return of_element;
+}
+
 VectorX lumpedMasses(const Tissue& tissue, const ElementMaterials& materials) {
   VectorX masses = VectorX::Zero(tissue.nodeCount());
   for (std::size_t e = 0; e < tissue.tetrahedra().size(); ++e) {
@@ -299,7 +319,8 @@ void Tissue::changeMaterials(const TissueDescription& description) {
   masses_ = lumpedMasses(*this, materials);
   stiff_parts_ = findStiffParts(rest_, tetrahedra_, materials);
   if (!tetrahedra_.empty()) {
-    elasticity_ = makeVolumeElasticity(rest_, tetrahedra_, fixed_, materials, parts_->patch_of);
+    elasticity_ = makeVolumeElasticity(rest_, tetrahedra_, fixed_, materials,
+                                       cutAtMaterials(parts_->patch_of, stiffnessesOf(materials)));
   } else {
     elasticity_ = std::make_unique<Membrane>(rest_, surface_, fixed_, thickness_, materials);
     thickness_stiffness_ = thicknessStiffnessOf(*this, materials);

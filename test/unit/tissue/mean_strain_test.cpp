@@ -66,8 +66,8 @@ TEST(Patches, OrderOfNodesAndElementsDoesNotMatter) {
 }
 
 TEST(Patches, AreCutWhereRegionsMeet) {
-  EXPECT_EQ(cutAtRegions({0, 0, 0, 1, 1}, {-1, 2, -1, 2, 2}), (std::vector<int>{0, 1, 0, 2, 2}));
-  EXPECT_EQ(cutAtRegions({0, 0, 1}, {}), (std::vector<int>{0, 0, 1}));
+  EXPECT_EQ(cutAtMaterials({0, 0, 0, 1, 1}, {-1, 2, -1, 2, 2}), (std::vector<int>{0, 1, 0, 2, 2}));
+  EXPECT_EQ(cutAtMaterials({0, 0, 1}, {}), (std::vector<int>{0, 0, 1}));
 }
 
 TEST(Patches, WrongNumbersAreRefused) {
