@@ -13,12 +13,6 @@ Vector3 momentum(const VectorX& mass, const NodalVectors& v) {
   return sum;
 }
 
-double kineticEnergy(const VectorX& mass, const NodalVectors& v) {
-  double sum = 0.0;
-  for (Eigen::Index i = 0; i < v.cols(); ++i) sum += mass[i] * v.col(i).squaredNorm();
-  return 0.5 * sum;
-}
-
 /// That of the centre of mass of a free body.
 Vector3 keptVelocity(const VectorX& mass, bool is_free, const NodalVectors& v) {
   return is_free ? Vector3(momentum(mass, v) / mass.sum()) : Vector3(0.0, 0.0, 0.0);
@@ -33,32 +27,42 @@ void slowDown(const VectorX& mass, bool is_free, double share, NodalVectors& v) 
 
 void EnergyDebt::clear() {
   forces_.clear();
-  was_cut_ = false;
   owed_j_ = 0.0;
 }
 
 void EnergyDebt::begin(const NodalVectors& forces, const VectorX& mass, const Vector3& gravity_m_per_s2, bool is_free,
                        NodalVectors& v) {
-  double kinetic_j = kineticEnergy(mass, v);
   const auto nodes = static_cast<std::size_t>(v.cols());
-  if (!was_cut_ || forces_.size() != nodes) {
-    owed_j_ = 0.0;
-  } else {
-    double work_j = contact_work_j_ + dt_s_ * gravity_m_per_s2.dot(momentum(mass, v));
-    for (Eigen::Index i = 0; i < v.cols(); ++i)
-      work_j += 0.5 * dt_s_ * (forces_[static_cast<std::size_t>(i)] + forces.col(i)).dot(v.col(i));
-    owed_j_ = std::max(0.0, owed_j_ + kinetic_j - kinetic_j_ - work_j);
-    const double there_j = kinetic_j - 0.5 * mass.sum() * keptVelocity(mass, is_free, v).squaredNorm();
-    const double paid_j = std::min(owed_j_, there_j);
-    if (paid_j > 0.0) {
-      slowDown(mass, is_free, std::sqrt(1.0 - paid_j / there_j), v);
-      owed_j_ -= paid_j;
-      kinetic_j -= paid_j;
-    }
+  const bool follows = forces_.size() == nodes;
+  if (!follows) forces_.assign(nodes, Vector3::Zero());
+  // One way through memory, since it is gone in every step.
+  double twice_kinetic_j = 0.0;
+  double power_w = 0.0;  // twice that of the mean of the forces at both ends
+  Vector3 momentum = Vector3::Zero();
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    const Vector3 at = v.col(column);
+    const Vector3 force_n = forces.col(column);
+    twice_kinetic_j += mass[column] * at.squaredNorm();
+    momentum += mass[column] * at;
+    power_w += (forces_[i] + force_n).dot(at);
+    forces_[i] = force_n;
   }
-  forces_.resize(nodes);
-  for (std::size_t i = 0; i < nodes; ++i) forces_[i] = forces.col(static_cast<Eigen::Index>(i));
-  kinetic_j_ = kinetic_j;
+  const double before_j = kinetic_j_;
+  kinetic_j_ = 0.5 * twice_kinetic_j;
+  if (!follows) {
+    owed_j_ = 0.0;
+    return;
+  }
+  const double work_j = contact_work_j_ + dt_s_ * (gravity_m_per_s2.dot(momentum) + 0.5 * power_w);
+  owed_j_ = std::max(0.0, (was_cut_ ? owed_j_ : 0.0) + kinetic_j_ - before_j - work_j);
+  if (!(owed_j_ > 0.0)) return;
+  const double there_j = kinetic_j_ - 0.5 * mass.sum() * keptVelocity(mass, is_free, v).squaredNorm();
+  const double paid_j = std::min(owed_j_, there_j);
+  if (!(paid_j > 0.0)) return;
+  slowDown(mass, is_free, std::sqrt(1.0 - paid_j / there_j), v);
+  owed_j_ -= paid_j;
+  kinetic_j_ -= paid_j;
 }
 
 void EnergyDebt::finish(double dt_s, double contact_work_j, bool was_cut) {
@@ -68,13 +72,15 @@ void EnergyDebt::finish(double dt_s, double contact_work_j, bool was_cut) {
 }
 
 void EnergyDebt::carry(StateArchive& archive, Eigen::Index nodes) {
-  archive.carry(was_cut_);
-  if (!was_cut_) {
+  bool follows = !forces_.empty();
+  archive.carry(follows);
+  if (!follows) {
     if (archive.isReading()) clear();
     return;
   }
   if (archive.isReading()) forces_.assign(static_cast<std::size_t>(nodes), Vector3::Zero());
   archive.carry(forces_);
+  archive.carry(was_cut_);
   archive.carry(kinetic_j_);
   archive.carry(dt_s_);
   archive.carry(contact_work_j_);

@@ -1,5 +1,5 @@
 /// @file
-/// Room `simulation`, private: energy that steps which ended before the solver's tolerance have brought into a tissue.
+/// Room `simulation`, private: energy that steps have brought into a tissue from nothing.
 #pragma once
 
 #include <vector>
@@ -13,9 +13,10 @@ namespace tissue_contact {
 /// its own changes (its spin is not kept).
 void slowDown(const VectorX& mass, bool is_free, double share, NodalVectors& v);
 
-/// Implicit steps are stable once they are solved. What a few iterations reach may hold more energy than the step before and what did work
-/// since, and steps that pass it on grow without bound. So after a step that was cut short its balance is made up (doc/method.md, "When a
-/// step ends"), and what there is too much is taken from the velocities, as far as they go, in this step or later ones until one is solved.
+/// Implicit steps are stable once they are solved, linear ones. What a few iterations reach may hold more energy than the step before and what did work
+/// since, as may one that is solved to the tolerance where a stiff body turns, since turning on the spot is stretch to the step, with forces far larger than those
+/// that drive it; and steps that pass it on grow without bound. So the balance of each step is made up (doc/method.md, "When a
+/// step ends"), and what there is too much is taken from the velocities, as far as they go; of a step that was cut short also in later ones until one is solved.
 class EnergyDebt {
  public:
   /// Nothing is owed, and the next step has none before it.
@@ -31,17 +32,18 @@ class EnergyDebt {
              NodalVectors& v);
 
   /// The step that began ends.
-  /// @param contact_work_j by contacts on the tissue in it. @param was_cut before the tolerance; else the rest plays no part.
+  /// @param contact_work_j by contacts on the tissue in it. @param was_cut before the tolerance: what is owed then stays so.
   void finish(double dt_s, double contact_work_j, bool was_cut);
 
   /// @param nodes of the tissue.
   void carry(StateArchive& archive, Eigen::Index nodes);
 
  private:
-  std::vector<Vector3> forces_;  ///< per node, where the last step began, N; keeps its memory when it is cleared
-  double kinetic_j_ = 0.0;       ///< as it began
-  double dt_s_ = 0.0;            ///< of it
-  double contact_work_j_ = 0;    ///< in it
+  std::vector<Vector3>
+      forces_;  ///< per node, where the last step began, N; empty: there was none. Keeps its memory when it is cleared
+  double kinetic_j_ = 0.0;     ///< as it began
+  double dt_s_ = 0.0;          ///< of it
+  double contact_work_j_ = 0;  ///< in it
   bool was_cut_ = false;
   double owed_j_ = 0.0;
 };

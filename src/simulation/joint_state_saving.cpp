@@ -37,7 +37,7 @@ void JointStatePlayer::forgetSamples() {
   epoch_ = 0;
 }
 
-const char* JointStatePlayer::stateTitle() { return "tissue_contact state 7"; }
+const char* JointStatePlayer::stateTitle() { return "tissue_contact state 8"; }
 
 std::string JointStatePlayer::saveState() {
   StateArchive archive(stateTitle());

@@ -270,9 +270,9 @@ void Simulator::Implementation::moveTissues(double dt) {
     const bool was_cut = report.stop != StopReason::kTolerance;
     if (was_cut) {
       for (MovingTissue& tissue : moving) tissue.keepElements(dt);
-      findContactWork();
     }
-    for (std::size_t t = 0; t < moving.size(); ++t) moving[t].move(dt, was_cut ? contact_work_j[t] : 0.0, was_cut);
+    findContactWork();
+    for (std::size_t t = 0; t < moving.size(); ++t) moving[t].move(dt, contact_work_j[t], was_cut);
     return;
   }
   report.discarded = true;

@@ -80,7 +80,7 @@ struct Simulator::Implementation {
   double deadline_s = std::numeric_limits<double>::infinity();  ///< of the solver, see setSolverDeadline()
   double prompt_s = std::numeric_limits<double>::infinity();
   std::vector<int> touched_nodes;      ///< scratch
-  std::vector<double> contact_work_j;  ///< per tissue, by the contacts of a step that was cut short
+  std::vector<double> contact_work_j;  ///< per tissue, by the contacts of a step
   TouchedPlaces touched_places;
   std::vector<double>
       approach_m;  ///< per tissue: how near a resting shape must be for the mesh to be refined; < 0: it never is
