@@ -145,16 +145,15 @@ std::vector<double> shearModuli(const TissueDescription& description) {
 double ForceErrorEstimate::total_n() const { return std::hypot(mesh_n, step_n, solver_n); }
 
 MeshErrorFactors meshErrorFactors(const ElementMaterials& materials) {
-  if (!averagesDistortion(materials)) return {2.0, 0.5};
-  if (!averagesDilatation(materials)) return {2.0, 0.4};
-  return {1.2, 0.3};
+  if (!averagesDistortion(materials)) return {2.2, 0.5};
+  if (!averagesDilatation(materials)) return {2.2, 0.4};
+  return {0.97, 0.3};
 }
 
 double likelyMeshError(double recovered, double softened, const MeshErrorFactors& factors) {
-  constexpr double kStiffUncertain = 0.5;
-  constexpr double kSoftUncertain = 0.2;
-  const double stiffened = factors.of_strain * std::pow(recovered, 1.6);
-  const double share = std::hypot(stiffened - softened, kStiffUncertain * stiffened, kSoftUncertain * softened);
+  constexpr double kUncertain = 0.6;
+  const double stiffened = factors.of_strain * std::pow(recovered, 1.7);
+  const double share = std::hypot(stiffened - softened, kUncertain * stiffened);
   return share < 1.0 ? share : 1.0;  // not finite as well: nothing is known then
 }
 

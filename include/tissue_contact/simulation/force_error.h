@@ -34,12 +34,12 @@ struct MeshErrorFactors {
 };
 MeshErrorFactors meshErrorFactors(const ElementMaterials& materials);
 
-/// Likely share of a contact force that is due to the mesh: of two errors of opposite sign what does not cancel, and a part of each, hypot(e - s, e / 2, s / 5). At most 1.
+/// Likely share of a contact force that is due to the mesh: of two errors of opposite sign what does not cancel, and a part of the first, hypot(e - s, .6 e). At most 1.
 ///
-/// e, cells too stiff for the strain: of_strain recovered^1.6 (1.2 where strain is averaged as said above, else 2), from recoveredStrainError() `recovered` within four contact radii of the
+/// e, cells too stiff for the strain: of_strain recovered^1.7 (.97 where strain is averaged as said above, else 2.2), from recoveredStrainError() `recovered` within four contact radii of the
 /// middle of a shape's contacts, radius sqrt(A / pi) for the rest area A of the nodes that carry force. s, contact too soft: `softened`, the share of the force that is lost
 /// where vertices alone carry it, since flat triangles between them cut into the shape. The force hangs on how deep that is in the mean as on the shape's depth, dF = 4 mu a / (1 - nu) dd
-/// for a contact radius a now. It is nothing new to be fitted; factor and power, half and fifth are, to 64 runs against stored truths (press and drag of a ball, partial slip, a recorded robot over a
+/// for a contact radius a now; nothing in s is fitted. Factors, power and .6 are, to 71 runs against stored truths (press and drag of a ball, partial slip, a recorded robot over a
 /// pad, a grasp) and against presses of a ball .2 to .8 of its radius deep, axially symmetric elements being the truth. Where five nodes or fewer carry a shape, what its lengths say
 /// (expectedMeshError()) counts if that is more. How well it does: doc/accuracy.md, and doc/notes/accuracy.md for fits that were tried.
 double likelyMeshError(double recovered, double softened, const MeshErrorFactors& factors);

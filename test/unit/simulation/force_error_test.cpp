@@ -80,7 +80,7 @@ TEST(ForceError, OfDeepPressesKnowsThatVerticesAreSoft) {
     const double found_n = std::abs(simulator.wrench(0).force.z() - truth_n);
     const ForceErrorEstimate& expected = simulator.forceErrors()[0];
     EXPECT_GT(found_n, 0.02 * truth_n) << depth_mm;
-    EXPECT_GT(expected.mesh_n, 0.5 * found_n) << depth_mm;
+    EXPECT_GT(expected.mesh_n, 0.4 * found_n) << depth_mm;  // .43 of it at .8 of the radius; .17 by the strain alone
     EXPECT_LT(expected.mesh_n, 2.0 * found_n) << depth_mm;
   }
 }
@@ -285,15 +285,15 @@ TEST(ForceError, AskingForItChangesNothing) {
   }
 }
 
-constexpr MeshErrorFactors kByElement = {2.0, 0.5};
-constexpr MeshErrorFactors kAveraged = {1.2, 0.3};
+constexpr MeshErrorFactors kByElement = {2.2, 0.5};
+constexpr MeshErrorFactors kAveraged = {0.97, 0.3};
 
 TEST(LikelyMeshError, IsAShareOfTheForce) {
   for (const MeshErrorFactors& factors : {kByElement, kAveraged}) {
-    const double stiffened = factors.of_strain * std::pow(0.04, 1.6);
-    EXPECT_NEAR(likelyMeshError(0.04, 0.0, factors), std::sqrt(1.25) * stiffened, 1e-15);
-    EXPECT_NEAR(likelyMeshError(0.0, 0.03, factors), std::sqrt(1.04) * 0.03, 1e-15);
-    EXPECT_NEAR(likelyMeshError(0.04, stiffened, factors), std::sqrt(0.29) * stiffened, 1e-15);  // opposite signs
+    const double stiffened = factors.of_strain * std::pow(0.04, 1.7);
+    EXPECT_NEAR(likelyMeshError(0.04, 0.0, factors), std::sqrt(1.36) * stiffened, 1e-15);
+    EXPECT_NEAR(likelyMeshError(0.0, 0.03, factors), 0.03, 1e-15);
+    EXPECT_NEAR(likelyMeshError(0.04, stiffened, factors), 0.6 * stiffened, 1e-15);  // opposite signs
     EXPECT_EQ(likelyMeshError(0.0, 0.0, factors), 0.0);
     EXPECT_EQ(likelyMeshError(5.0, 0.0, factors), 1.0);
     EXPECT_EQ(likelyMeshError(std::numeric_limits<double>::quiet_NaN(), 0.0, factors), 1.0);
