@@ -8,7 +8,8 @@ import os
 import subprocess
 import tempfile
 
-COLUMNS = ["instrument", "static_contacts", "kinetic_contacts", "discarded", "force_x_n", "force_y_n", "force_z_n", "torque_x_nm",
+DOUBTS = ["discarded", "jumped", "implausible_load", "inverted_elements"]  # where they are not 0, the force is not to be trusted
+COLUMNS = ["instrument", "static_contacts", "kinetic_contacts", *DOUBTS, "force_x_n", "force_y_n", "force_z_n", "torque_x_nm",
            "torque_y_nm", "torque_z_nm", "force_error_n", "solver_error_n", "simulated_s"]  # of a replay's CSV, that are looked at
 
 
@@ -63,10 +64,12 @@ class Measures:
         self.impulse = {"force_n": 0.0, "torque_nm": 0.0}
         self.squares = {"force_error_n": 0.0, "solver_error_n": 0.0}
         self.contact_s = 0.0
-        self.slips = self.discarded = 0
+        self.slips = 0
+        self.doubts = dict.fromkeys(DOUBTS, 0)  # intervals
 
-    def add(self, _, held, sliding, discarded, *numbers):
+    def add(self, _, held, sliding, *numbers):
         """Of COLUMNS."""
+        doubts, numbers = numbers[:len(DOUBTS)], numbers[len(DOUBTS):]
         *numbers, simulated_s = map(float, numbers)
         # Not of stamps: a pause is simulated as step.max_gap_s. 0 again after a reset.
         interval = simulated_s - self.before_s if self.before_s is not None and simulated_s > self.before_s else 0.0
@@ -77,7 +80,8 @@ class Measures:
         held, sliding = int(held), int(sliding)
         self.slips += self.was_held and not held and sliding > 0
         self.was_held = held > 0
-        self.discarded += int(discarded)
+        for name, value in zip(DOUBTS, doubts):
+            self.doubts[name] += interval > 0.0 and int(value) > 0  # without a step a row repeats what was told before
         if held or sliding:
             self.contact_s += interval
             for name, error in zip(self.squares, numbers[6:]):
@@ -91,7 +95,7 @@ class Measures:
             "peak_torque_nm": self.peak["torque_nm"], "mean_torque_nm": over_contact(self.impulse["torque_nm"]),
             "angular_impulse_nm_s": self.impulse["torque_nm"], "contact_time_s": self.contact_s, "slips": self.slips,
             "likely_error_n": math.sqrt(over_contact(self.squares["force_error_n"])),
-            "solver_error_n": math.sqrt(over_contact(self.squares["solver_error_n"])), "discarded": self.discarded}
+            "solver_error_n": math.sqrt(over_contact(self.squares["solver_error_n"])), **self.doubts}
 
 
 MEASURES = list(Measures().result())

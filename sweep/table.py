@@ -7,7 +7,7 @@ import sys
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path.insert(0, os.path.join(os.path.dirname(HERE), "scripts"))
-from replays import MEASURES
+from replays import DOUBTS, MEASURES
 from whole_file import whole_file
 
 SHOWN = [("peak_force_n", "peak force, N"), ("impulse_n_s", "impulse, N s"), ("contact_time_s", "time in contact, s"), ("likely_error_n", "likely error, N")]
@@ -40,7 +40,19 @@ def write_table(folder, study, keyed, results):
     failed = [results[key]["error"] for key, _ in keyed if "error" in results[key]]
     if failed:
         print("sweep: %d variants were refused, the first: %s" % (len(failed), failed[0]))
+    print(doubts_text(keyed, results), end="")
     return files + write_parquet(files[0], os.path.join(folder, "table.parquet"))
+
+
+def doubts_text(keyed, results):
+    """A line on variants whose forces are not all to be trusted; empty: there are none."""
+    def is_in_doubt(key):
+        return any(measures[name] for measures in results[key].get("instruments", {}).values() for name in DOUBTS)
+    found = [number for number, (key, _) in enumerate(keyed) if is_in_doubt(key)]
+    if not found:
+        return ""
+    return ("sweep: %d of %d variants have forces that are not to be trusted (columns %s of the table), the first: variant %d; see what the "
+            "replay says of it\n" % (len(found), len(keyed), ", ".join(DOUBTS), found[0]))
 
 
 def write_parquet(table, file):

@@ -83,19 +83,40 @@ class StudyTest(unittest.TestCase):
 
 
 class MeasuresTest(unittest.TestCase):
+    HEAD = ("stamp_s,instrument,force_x_n,force_y_n,force_z_n,torque_x_nm,torque_y_nm,torque_z_nm,static_contacts,kinetic_contacts,discarded,jumped,"
+            "implausible_load,inverted_elements,force_error_n,solver_error_n,simulated_s")
+
     def test_of_a_force_that_is_known(self):
         from replays import measured
-        lines = ["stamp_s,instrument,force_x_n,force_y_n,force_z_n,torque_x_nm,torque_y_nm,torque_z_nm,static_contacts,kinetic_contacts,discarded,"
-                 "force_error_n,solver_error_n,simulated_s"]
+        lines = [self.HEAD]
         states = [(0, 0), (2, 0), (1, 1), (0, 2), (0, 2), (1, 0), (0, 1), (0, 0)]  # slips where none holds any more: twice
         for i, (held, sliding) in enumerate(states):
             force = 5.0 if held or sliding else 0.0
             stamp = 1700000000 + 0.1 * i + (3600 if i > 3 else 0)  # a pause, which is simulated as .1 s
-            lines.append("%.9f,probe,%g,%g,0,0,0,%g,%d,%d,0,0.2,0.1,%.17g" % (stamp, 0.6 * force, 0.8 * force, 0.01 * force, held, sliding, 0.1 * i))
+            lines.append("%.9f,probe,%g,%g,0,0,0,%g,%d,%d,0,0,0,0,0.2,0.1,%.17g" % (stamp, 0.6 * force, 0.8 * force, 0.01 * force, held, sliding, 0.1 * i))
         result = measured("\n".join(lines) + "\n")["probe"]
         for name, value in {"peak_force_n": 5.0, "mean_force_n": 5.0, "impulse_n_s": 3.0, "peak_torque_nm": 0.05, "angular_impulse_nm_s": 0.03,
                             "contact_time_s": 0.6, "slips": 2, "likely_error_n": 0.2, "solver_error_n": 0.1, "discarded": 0}.items():
             self.assertAlmostEqual(result[name], value, delta=1e-9, msg=name)
+
+    def test_forces_that_are_not_to_be_trusted_are_told(self):
+        """The table had nothing of 85 intervals with forces that no tissue bears."""
+        from replays import MEASURES, measured
+        from table import doubts_text
+        lines = [self.HEAD]
+        # Without a step (the same time) a row repeats what was told.
+        for simulated_s, doubts in [(0, "0,0,0,0"), (1, "0,1,1,12"), (1, "0,0,1,12"), (2, "0,0,1,0"), (3, "1,0,1,3"), (4, "0,0,0,0")]:
+            lines.append("%d,probe,0,0,0,0,0,0,0,1,%s,0,0,%d" % (simulated_s, doubts, simulated_s))
+        bad = measured("\n".join(lines) + "\n")
+        for name, value in {"discarded": 1, "jumped": 1, "implausible_load": 3, "inverted_elements": 2}.items():
+            self.assertEqual(bad["probe"][name], value, name)
+            self.assertIn(name, MEASURES)
+        good = measured("\n".join([self.HEAD, lines[1], lines[-1]]) + "\n")
+        keyed = [("a", None), ("b", None), ("c", None), ("b", None)]
+        results = {"a": {"instruments": good}, "b": {"instruments": bad}, "c": {"error": "no such bag"}}
+        self.assertIn("2 of 4 variants have forces that are not to be trusted", doubts_text(keyed, results))
+        self.assertIn("the first: variant 1;", doubts_text(keyed, results))
+        self.assertEqual(doubts_text(keyed[:1] + keyed[2:3], results), "")
 
 
 class ReplayerTest(unittest.TestCase):
