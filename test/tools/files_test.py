@@ -267,9 +267,28 @@ class FilesTest(unittest.TestCase):
 
     # ------------------------------------------------------------------ the scripts
 
-    def make_bag(self, output, table=None):
+    def make_bag(self, output, table=None, *options):
         table = table or os.path.join(SOURCE, "config", "grasp_path.csv")
-        return run([sys.executable, os.path.join(SOURCE, "scripts", "make_joint_bag.py"), table, output, "--topic", "/a"])
+        return run([sys.executable, os.path.join(SOURCE, "scripts", "make_joint_bag.py"), table, output, "--topic", "/a", *options])
+
+    def test_a_sampled_motion_keeps_its_speed(self):
+        """It came to rest at every row: of 10 mm/s became 0 to 15 mm/s, twenty times a second."""
+        import rosbag
+        rows = {0.05: "sampled.csv", 0.5: "corners.csv"}
+        for apart, name in rows.items():
+            self.write(name, ("time_s,x\n" + "".join("%g,%.9g\n" % (apart * i, 0.01 * apart * i) for i in range(5))).encode())
+        for name, options, straight in [("sampled.csv", [], True), ("sampled.csv", ["--smooth"], False), ("corners.csv", [], False),
+                                        ("corners.csv", ["--linear"], True)]:
+            with self.subTest(name=name, options=options):
+                done = self.make_bag(self.path("speed.bag"), self.path(name), *options)
+                self.assertEqual(done.returncode, 0, done)
+                self.assertEqual("straight from row to row" in done.stdout, straight and not options)
+                with rosbag.Bag(self.path("speed.bag")) as bag:
+                    x = [message.position[0] for _, message, _ in bag.read_messages()]
+                speeds = [500 * (b - a) for a, b in zip(x, x[1:])]
+                self.assertAlmostEqual(sum(speeds) / len(speeds), 0.01, delta=1e-9)
+                self.assertAlmostEqual(max(speeds), 0.01 if straight else 0.015, delta=1e-4)
+                self.assertAlmostEqual(min(speeds), 0.01 if straight else 0.0, delta=2e-3)
 
     def test_scripts_write_whole_files(self):
         bag = self.write("out.bag")
