@@ -34,9 +34,16 @@ std::string leadText(const std::string& topic, double lead_s, double max_gap_s) 
 
 }  // namespace
 
-JointWatch::JointWatch(const Simulator& simulator, const JointStatePlayer& player)
-    : simulator_(simulator), player_(player), topics_(player.topics().size()), seen_(simulator.instruments().size()) {
+JointWatch::JointWatch(const Simulator& simulator, const JointStatePlayer& player, double longest_silence_s)
+    : simulator_(simulator),
+      player_(player),
+      topics_(player.topics().size()),
+      seen_(simulator.instruments().size()),
+      silence_(longest_silence_s) {
+  std::size_t joints = 0;
   for (std::size_t i = 0; i < seen_.size(); ++i) {
+    first_numbers_.push_back(joints);
+    joints += simulator.instruments()[i].model().joints().size();
     for (const JointStateTopic& described : simulator.scene().instruments[i].joint_state_topics) {
       const auto at = std::find(player.topics().begin(), player.topics().end(), described.name);
       topics_[static_cast<std::size_t>(at - player.topics().begin())].listeners.push_back(static_cast<int>(i));
@@ -44,10 +51,15 @@ JointWatch::JointWatch(const Simulator& simulator, const JointStatePlayer& playe
   }
 }
 
-void JointWatch::note(int topic, const JointStateSample& sample) {
+std::size_t JointWatch::numberOf(int instrument, int joint) const {
+  return first_numbers_[static_cast<std::size_t>(instrument)] + static_cast<std::size_t>(joint);
+}
+
+void JointWatch::note(int topic, const JointStateSample& sample, double now_s) {
   if (sample.names.size() != sample.positions.size()) return;  // the player refuses it
   Topic& heard = topics_[static_cast<std::size_t>(topic)];
   if (sample.names != heard.last_names) noteNames(heard, sample.names);
+  silence_.note(static_cast<std::size_t>(topic), now_s, heard.joints);
   for (const Known& known : heard.known) {
     const auto i = static_cast<std::size_t>(known.instrument);
     const double position = sample.positions[known.place];
@@ -61,6 +73,7 @@ void JointWatch::note(int topic, const JointStateSample& sample) {
 void JointWatch::noteNames(Topic& heard, const std::vector<std::string>& names) {
   heard.last_names = names;
   heard.known.clear();
+  heard.joints.clear();
   for (const int i : heard.listeners) {
     Seen& seen = seen_[static_cast<std::size_t>(i)];
     std::set<int> known_here;
@@ -70,6 +83,7 @@ void JointWatch::noteNames(Topic& heard, const std::vector<std::string>& names) 
         seen.joints.insert(joint);
         if (known_here.insert(joint).second) {
           heard.known.push_back({k, i, joint});  // a message may name one a million times
+          heard.joints.push_back(numberOf(i, joint));
         } else {
           seen.twice.insert(joint);
         }
@@ -102,6 +116,8 @@ std::vector<std::string> JointWatch::findings() const {
     if (line.empty()) line = silenceText(t);
     if (!line.empty()) lines.push_back(std::move(line));
   }
+  for (const std::string& line : silentTexts(silence_.longest(), true))
+    lines.push_back(line + "; they stood still, with what they pressed");
   return lines;
 }
 
@@ -119,8 +135,43 @@ std::vector<std::string> JointWatch::takeNews(double now_s) {
     lines.push_back(leadText(player_.topics()[t], topics_[t].lead_s, simulator_.scene().step.max_gap_s));
     topics_[t].told_lead = !lines.back().empty();
   }
+  takeSilences(now_s, lines);
   lines.erase(std::remove(lines.begin(), lines.end(), std::string()), lines.end());
   return lines;
+}
+
+void JointWatch::takeSilences(double now_s, std::vector<std::string>& lines) {
+  constexpr double kLook_s = 0.2;
+  if (looked_s_ && now_s >= *looked_s_ && now_s - *looked_s_ < kLook_s) return;
+  looked_s_ = now_s;
+  silent_joints_.clear();
+  for (const std::string& text : silentTexts(silence_.now(), false))
+    silent_joints_ += (silent_joints_.empty() ? "" : "; ") + text;
+  for (const std::string& text : silentTexts(silence_.takeNew(), false))
+    lines.push_back(
+        text +
+        ": they stay where they were, and the forces of what they move go on. Has a driver ended? See `rostopic echo`");
+}
+
+/// A sentence for those of an instrument that fell silent on one topic together.
+/// @param is_over the recording is.
+std::vector<std::string> JointWatch::silentTexts(const std::vector<JointSilence::Silent>& silent, bool is_over) const {
+  std::vector<std::string> texts;
+  std::map<std::string, std::vector<std::string>> names;  // joints by what is said of them
+  std::vector<std::string> order;
+  for (const JointSilence::Silent& one : silent) {
+    const auto next = std::upper_bound(first_numbers_.begin(), first_numbers_.end(), one.joint);
+    const auto i = static_cast<std::size_t>(next - first_numbers_.begin()) - 1;
+    const Instrument& instrument = simulator_.instruments()[i];
+    std::ostringstream text;
+    text << std::setprecision(3) << "for " << (is_over ? one.silent_s : std::floor(one.silent_s))
+         << " s no joint state on " << player_.topics()[one.topic] << ", where others " << (is_over ? "came" : "come")
+         << ", " << (is_over ? "named" : "has named") << " these joints of '" << instrument.name() << "': ";
+    if (names.count(text.str()) == 0) order.push_back(text.str());
+    names[text.str()].push_back(instrument.model().joints()[one.joint - first_numbers_[i]].name);
+  }
+  for (const std::string& text : order) texts.push_back(text + listOf(names[text]));
+  return texts;
 }
 
 /// Empty where names are as they should be.

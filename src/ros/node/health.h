@@ -61,6 +61,7 @@ class Health {
   void noteReset();    ///< the simulation began anew, or with another state
   void noteSnapshotsDropped(std::int64_t dropped);
   void notePolicy(bool newest_state);
+  void noteSilentJoints(const std::string& text);               ///< JointWatch::silentJoints()
   void setMaxLag(double max_lag_s) { max_lag_s_ = max_lag_s; }  ///< in place of the scene's
 
   /// The part of a Status that LiveFigures have.
@@ -74,7 +75,7 @@ class Health {
 
   /// Summary and counts. ERROR when a step gave no finite answer since the last reset, or when since the last call
   /// the lag was far over its bound or joint states came by two clocks; WARN when it was over it, forces were such as no tissue bears, refined cells
-  /// were longer than asked for, steps were lengthened to hold the lag, a topic that only updates is ahead of the others, one has fallen silent, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their
+  /// were longer than asked for, steps were lengthened to hold the lag, a topic that only updates is ahead of the others, one has fallen silent, or a joint on one, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their
   /// iterations are counted but are no alarm: a fixed budget per step is how the solver keeps real time. The log says
   /// once what to change when the machine does not keep up.
   /// @param missing see Receiver::missing().

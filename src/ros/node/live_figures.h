@@ -32,7 +32,8 @@ struct LiveFigures {
   std::int64_t wrenches = 0;
   std::int64_t snapshots_dropped = 0;  ///< meshes, contacts, status, markers not published: nobody took them in time
   std::string last_not_converged = "never";
-  std::string ahead;  ///< of a topic that only updates, and what to do about it; empty: none is (aheadText())
+  std::string ahead;          ///< of a topic that only updates, and what to do about it; empty: none is (aheadText())
+  std::string silent_joints;  ///< of which none comes any longer, while others do on their topic; empty: all come
   std::int64_t implausible = 0;  ///< intervals that ended with loads that no tissue bears
   std::string last_implausible = "never";
   double law_error = 0.0;           ///< of the last interval, likely and relative

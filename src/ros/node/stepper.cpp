@@ -33,7 +33,7 @@ Stepper::Stepper(Simulator& simulator, JointStatePlayer& player, JointStateInbox
       pacing_(simulator.scene().step.max_lag_s),
       receipts_(player.topics().size()),
       awaited_(player, simulator.scene().step.max_gap_s),
-      joint_watch_(simulator, player),
+      joint_watch_(simulator, player, longestSilence(simulator.scene().step.max_gap_s)),
       requests_([&inbox] { inbox.wake(); }) {
   simulator_.setStepObserver([this] { noteStep(); });
   player_.setLimits(limits(0));
@@ -117,8 +117,9 @@ void Stepper::takeReceived() {
 }
 
 void Stepper::push(ReceivedState state) {
-  joint_watch_.note(state.topic, state.sample);
+  joint_watch_.note(state.topic, state.sample, state.received_s);
   for (const std::string& line : joint_watch_.takeNews(state.received_s)) ROS_WARN_STREAM(line);
+  health_.noteSilentJoints(joint_watch_.silentJoints());
   player_.push(state.topic, std::move(state.sample));
   awaited_.noteReceipt(state.topic, state.received_s);
 }

@@ -19,6 +19,11 @@ std::string secondsText(double seconds) { return std::to_string(static_cast<long
 
 }  // namespace
 
+double longestSilence(double max_gap_s) {
+  constexpr double kUsual_s = 2.0;
+  return std::max(kUsual_s, max_gap_s);
+}
+
 TopicSilence::TopicSilence(std::vector<std::string> topics, std::vector<bool> triggers, double longest_s)
     : topics_(topics.size()), longest_s_(longest_s) {
   for (std::size_t t = 0; t < topics_.size(); ++t) {

@@ -9,6 +9,9 @@
 
 namespace tissue_contact {
 
+/// How long a driver may be silent, s: slower ones than 2 s are rare, and a busy machine holds none up for as long.
+double longestSilence(double max_gap_s);
+
 /// A tool whose driver has died stays where it was, and its forces go on. Not thread-safe.
 class TopicSilence {
  public:

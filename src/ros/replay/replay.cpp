@@ -60,7 +60,7 @@ class Replay {
         scene_(loadReplayedScene(options, publish_)),
         simulator_(scene_, bagEnvironment(scene_, options.bag_file, options.urdf_file)),
         player_(simulator_),
-        joint_watch_(simulator_, player_),
+        joint_watch_(simulator_, player_, scene_.step.max_gap_s),
         findings_(simulator_, log, kPrefix) {
     requireModelsKept(options, simulator_);
     for (const Advice& advice : simulator_.advice()) {
@@ -137,7 +137,7 @@ class Replay {
     const auto take = [&](int topic, JointStateSample sample, ros::Time recorded) {
       played_s_ = recorded.toSec() - window.from.toSec();  // a ros::Duration ends after 68 years
       recorded_ = recorded;
-      joint_watch_.note(topic, sample);
+      joint_watch_.note(topic, sample, 1e-9 * static_cast<double>(sample.stamp_ns));
       player_.push(topic, std::move(sample));
       playAll();
     };

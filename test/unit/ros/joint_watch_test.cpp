@@ -26,12 +26,12 @@ const char kRobot[] =
 class JointWatchOfOneArm : public testing::Test {
  protected:
   void hear(const std::vector<std::string>& names, const std::vector<double>& positions) {
-    watch.note(0, {1, names, positions});
+    watch.note(0, {1, names, positions}, 1.0);
   }
 
   Simulator simulator = makeSimulator(blockScene() + onlyBall("[0, 0, 0.5]"), {{"probe", kRobot}});
   JointStatePlayer player{simulator};
-  JointWatch watch{simulator, player};
+  JointWatch watch{simulator, player, 1.0};
 };
 
 TEST_F(JointWatchOfOneArm, UsualStatesAreNoFinding) {
@@ -97,7 +97,7 @@ class JointWatchOfAnArmAndAJaw : public testing::Test {
     drain();
   }
   void hear(int topic, const JointStateSample& sample) {
-    watch.note(topic, sample);
+    watch.note(topic, sample, 1e-9 * static_cast<double>(sample.stamp_ns));
     player.push(topic, sample);
     drain();
   }
@@ -111,7 +111,7 @@ class JointWatchOfAnArmAndAJaw : public testing::Test {
           "joint_state_topics: [/arm/js, /arm/jaw/js], base_pose: {position_m: [0, 0, 0.5]}}\n",
       {{"probe", kRobot}});
   JointStatePlayer player{simulator};
-  JointWatch watch{simulator, player};
+  JointWatch watch{simulator, player, 1.0};
 };
 
 TEST_F(JointWatchOfAnArmAndAJaw, OneThatKeepsUpIsNoFinding) {
@@ -142,6 +142,35 @@ TEST_F(JointWatchOfAnArmAndAJaw, OneThatEndsBeforeTheOtherIsToldAtTheEnd) {
 TEST_F(JointWatchOfOneArm, AJawThatWasNotRecordedIsNoFinding) {
   hear({"x", "y"}, {0.1, 0.0});
   EXPECT_EQ(watch.findings(), std::vector<std::string>());
+}
+
+/// x and y at 250 Hz and z at 100 Hz from drivers of their own on one topic, from 1 s on. The one of z ends after 1.2 s, and its force went
+/// on at 0.1475 N, where 0 was right, with "running" and no word.
+TEST_F(JointWatchOfOneArm, AJointWhoseDriverEndsOnASharedTopicIsTold) {
+  std::vector<std::string> told;
+  const auto hearAt = [&](int ms, const std::vector<std::string>& names) {
+    watch.note(0, {1000000LL * ms, names, std::vector<double>(names.size(), 0.1)}, 1e-3 * ms);
+    for (const std::string& line : watch.takeNews(1e-3 * ms)) told.push_back(line);
+  };
+  for (int ms = 1000; ms <= 4000; ++ms) {
+    if (ms % 4 == 0) hearAt(ms, {"x", "y"});
+    if (ms % 10 == 0 && ms < 2200) hearAt(ms, {"z"});
+    if (ms == 2900) {
+      EXPECT_EQ(told, std::vector<std::string>());
+    }
+  }
+  ASSERT_EQ(told.size(), 1U) << "once";
+  for (const char* words : {"for 1 s no joint state on /js, where others come, has named", "'probe': z", "driver"}) {
+    EXPECT_NE(told[0].find(words), std::string::npos) << words << " in: " << told[0];
+  }
+  EXPECT_EQ(watch.silentJoints().find("for 1 s no joint state on /js"), 0U) << watch.silentJoints();
+  const std::vector<std::string> lines = watch.findings();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_NE(lines[0].find("for 1.81 s no joint state on /js, where others came, named"), std::string::npos) << lines[0];
+  for (int ms = 4004; ms < 4400; ms += 4) hearAt(ms, {"x", "y", "z"});
+  EXPECT_EQ(watch.silentJoints(), "");
+  EXPECT_EQ(watch.findings().size(), 1U) << "it was silent all the same";
+  EXPECT_EQ(told.size(), 1U);
 }
 
 }  // namespace joint_watch_test
