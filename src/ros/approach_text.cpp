@@ -1,7 +1,9 @@
 #include "ros/approach_text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <vector>
 
 #include "tissue_contact/core/text.h"
 
@@ -17,6 +19,18 @@ std::string pointText(const Vector3& p) {
 }
 
 }  // namespace
+
+bool touchesTissue(const Simulator& simulator) {
+  const std::vector<SolvedContact>& contacts = simulator.contacts();
+  return std::any_of(contacts.begin(), contacts.end(), [](const SolvedContact& contact) {
+    return contact.contact.key.instrument >= 0 && contact.state != ContactState::kOpen;
+  });
+}
+
+bool beganInContact(const Simulator& simulator, const Approach& start) {
+  constexpr double kJustTouching_m = 1e-4;  // as far as anybody measures a pose
+  return simulator.stepCount() == 1 && start.distance_m < -kJustTouching_m && touchesTissue(simulator);
+}
 
 std::string approachText(const Simulator& simulator, const Approach& approach, std::int64_t stamp_ns) {
   const Instrument& instrument = simulator.instruments()[static_cast<std::size_t>(approach.instrument)];

@@ -4,6 +4,7 @@ import os
 import signal
 
 import rospy
+from rosgraph_msgs.msg import Log
 from std_srvs.srv import Trigger
 
 import faults
@@ -71,6 +72,30 @@ class Services(harness.TestCase):
             self.assertEqual(self.bits(wrenches, 60), first + first)
 
     def test_a_state_goes_on_in_another_process(self):
+            told = statuses.wait(lambda all: any(b.header.stamp < a.header.stamp for a, b in zip(all, all[1:])), "a status after the reset")
+            self.assertEqual({status.resets for status in told}, {0})  # time did not go back, it was asked for
+
+    def test_a_start_in_contact_is_told_once_each(self):
+        """What the tool did to the tissue before is missing, and nothing said so."""
+        samples = harness.press(60)[25:]
+        with harness.node(harness.SCENE):
+            wrenches = harness.wrenches()
+            log = harness.Listener("/rosout", Log)
+
+            def said():
+                return [m.msg for m in log.messages if "touches tissue at its first joint state" in m.msg]
+            source = harness.JointSource()
+            source.send_all(samples)
+            self.bits(wrenches, 35)
+            log.wait(lambda _: len(said()) == 1, "the warning")
+            self.call("reset")
+            source.send_all(samples)
+            self.bits(wrenches, 70)
+            log.wait(lambda _: len(said()) == 2, "the warning after the reset")
+            self.call("reset")
+            source.send_all(harness.press(20))
+            self.bits(wrenches, 90)
+            self.assertEqual(len(said()), 2)
         samples = harness.press(60)
         state = self.path("press.state")
         with harness.node(harness.SCENE) as process:

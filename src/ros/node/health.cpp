@@ -244,7 +244,13 @@ void Health::noteReset() {
   const std::lock_guard<std::mutex> lock(mutex_);
   figures_.broken = false;
   figures_.ahead.clear();
-  figures_.resets = player_.resets();
+}
+
+void Health::tellBegunInContact() {
+  if (!contacts_at_first_.pass()) return;
+  ROS_WARN_STREAM(
+      "an instrument touches tissue at its first joint state, and what it did to it before is missing: it is "
+      "taken as undeformed there; begin, or reset, before it touches");
 }
 
 void Health::noteSnapshotsDropped(std::int64_t dropped) {

@@ -57,8 +57,9 @@ class Health {
   void noteForceErrors(std::int64_t stamp_ns);
 
   void notePaused(bool paused);
-  void noteFailure();  ///< the stepping thread ends
-  void noteReset();    ///< the simulation began anew, or with another state
+  void noteFailure();         ///< the stepping thread ends
+  void noteReset();           ///< the simulation began anew, or with another state
+  void tellBegunInContact();  ///< beganInContact(): warns, seldom
   void noteSnapshotsDropped(std::int64_t dropped);
   void notePolicy(bool newest_state);
   void noteSilentJoints(const std::string& text);               ///< JointWatch::silentJoints()
@@ -114,7 +115,8 @@ class Health {
   std::array<Throttle, kVerdictCount> refusals_;
   std::function<std::string(int topic)> publishers_;
   Throttle gaps_;
-  Throttle resets_{3};  // short recordings in a loop
+  Throttle resets_{3};             // short recordings in a loop
+  Throttle contacts_at_first_{3};  // as resets
   Throttle resumptions_;
   Throttle jumps_;
   Throttle implausible_loads_;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "ros/approach_text.h"
 #include "ros/node/state_file.h"
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/ros/environment.h"
@@ -151,6 +152,7 @@ bool Stepper::playNext() {
     if (is_moment) joint_watch_.notePlayed();
     const std::optional<Receipt> receipt = is_moment ? receipts_.take(played->stamp_ns) : std::nullopt;
     if (health_.note(*played, steps, pacing_.stepCost())) publish(*played, receipt, steps, step_time_s);
+    if (is_moment && simulator_.stepCount() == 0) simulator_.lowerClosestApproach(start_);
     if (receipt) {
       pacing_.notePlayed(receipt->received_s);
       choosePolicy(*played, *receipt);
@@ -183,6 +185,7 @@ void Stepper::passOver(std::size_t waiting) {
 void Stepper::beginAnew() {
   receipts_ = ReceiptTimes(player_.topics().size());
   awaited_ = AwaitedTopics(player_, simulator_.scene().step.max_gap_s);
+  start_ = Approach();
   played_stamp_ns_ = player_.time().value_or(0);
   chooser_.startAgain();
   health_.noteReset();
@@ -295,7 +298,13 @@ double Stepper::pace() {
 void Stepper::noteStep() {
   const double now_s = steadySeconds();
   pacing_.noteStep(now_s);
+  if (simulator_.stepCount() == 1) noteStart();
   if (newest_state_) simulator_.setSolverDeadline(pacing_.deadline(now_s), pacing_.promptDeadline(now_s));
+}
+
+void Stepper::noteStart() {
+  if (beganInContact(simulator_, start_)) health_.tellBegunInContact();
+  start_ = Approach();
 }
 
 }  // namespace tissue_contact

@@ -70,6 +70,7 @@ class Stepper {
   void awaitStates();
   double pace();
   void noteStep();
+  void noteStart();
   void passOver(std::size_t waiting);
   void beginAnew();
   std::string now() const;
@@ -89,6 +90,7 @@ class Stepper {
   ReceiptTimes receipts_;
   AwaitedTopics awaited_;
   JointWatch joint_watch_;
+  Approach start_;  ///< of instruments that were placed, before the first step
   bool newest_state_ = false;
   double newest_received_s_ = 0.0;  ///< of the last state handed to the player
   std::int64_t played_stamp_ns_ = 0;

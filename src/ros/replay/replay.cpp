@@ -209,12 +209,11 @@ class Replay {
   void stepTaken() {
     dumpIfWanted();
     if (!touched_) {
-      for (const SolvedContact& contact : simulator_.contacts()) {
-        touched_ |= contact.contact.key.instrument >= 0 && contact.state != ContactState::kOpen;
-      }
-      if (touched_ && options_.from_s > 0.0 && simulator_.stepCount() == 1) {
-        log_ << kPrefix << "warning: an instrument touches tissue where --from begins, and what it did to it before is "
-             << "missing; begin before it touches\n";
+      touched_ = touchesTissue(simulator_);
+      if (beganInContact(simulator_, approach_)) {
+        log_ << kPrefix << "warning: an instrument touches tissue where "
+             << (options_.from_s > 0.0 ? "--from" : "the recording") << " begins, and what it did to it before is "
+             << "missing: it is taken as undeformed there; begin before it touches\n";
       }
     }
     if (progress_) progress_->at(played_s_, wallTime());
