@@ -70,12 +70,14 @@ bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
   }
   figures_.accepted = player_.count(Verdict::kAccepted);
   figures_.merged = player_.merged();
-  figures_.resets = player_.resets();
   figures_.gaps = player_.gaps();
   held_by_player_ = player_.waiting();
   figures_.step_cost_s = step_cost_s;
   if (!accepted) return false;
-  if (played.was_reset) figures_.broken = false;
+  if (played.was_reset) {
+    figures_.broken = false;
+    ++figures_.resets;  // not those that were asked for, which the player counts too
+  }
   played_stamp_ns_ = played.stamp_ns;
   figures_.ahead = ahead;
   if (!not_converged.empty()) figures_.last_not_converged = not_converged;
@@ -292,6 +294,7 @@ void Health::addTo(Status& status) const {
   const auto count = [](std::int64_t value) { return static_cast<std::uint64_t>(value); };
   status.policy = figures.newest_state ? Status::POLICY_NEWEST_STATE : Status::POLICY_EVERY_STATE;
   status.lag = figures.lag_s;
+  status.resets = count(figures.resets);
   status.real_time_factor = figures.real_time_factor;
   status.joint_states_received = count(figures.received);
   status.joint_states_dropped = count(figures.dropped);

@@ -21,7 +21,7 @@ struct LiveFigures {
   std::int64_t accepted = 0;  ///< stepped to
   std::int64_t merged = 0;    ///< into the motion to a newer one
   std::array<std::int64_t, kVerdictCount> by_verdict{};
-  std::int64_t resets = 0;
+  std::int64_t resets = 0;  ///< since time went backwards
   std::int64_t gaps = 0;
   std::int64_t jumps = 0;          ///< intervals in which an instrument moved too far for sub-stepping
   std::int64_t not_finite = 0;     ///< intervals whose result was not finite
