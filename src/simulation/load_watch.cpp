@@ -196,15 +196,20 @@ std::string implausibleLoadText(const Simulator& simulator) {
   text << "tissue '" << simulator.tissues()[load.tissue].name() << "' cannot bear what " << by << " does to it at ("
        << load.p_W.x() << ", " << load.p_W.y() << ", " << load.p_W.z() << ") m: ";
   if (load.inverted_elements > 0) text << load.inverted_elements << " elements turned inside out, ";
-  const bool is_for_large_strain = simulator.scene().tissues[load.tissue].material.model == ElasticModel::kNeoHookean;
   text << "mean contact pressure " << load.pressure_pa << " Pa at a Young's modulus of " << load.modulus_pa
-       << " Pa; the forces are not to be trusted. Check where the tool is (base_pose, joint_names, units), and whether "
-          "the "
-          "log told of flat elements in the mesh there; deep or wide motion needs "
+       << " Pa; the forces are not to be trusted. ";
+  if (simulator.report().stop == StopReason::kTimeBudget) {
+    text << "The solver had no time to finish this step (" << simulator.report().iterations
+         << " iterations), which does this by itself: let the machine keep up first, by fewer nodes, a larger "
+            "step.max_lag_s or solver.time_budget_s; if it is told all the same, check where the tool is";
+    return text.str();
+  }
+  const bool is_for_large_strain = simulator.scene().tissues[load.tissue].material.model == ElasticModel::kNeoHookean;
+  text << "Check where the tool is (base_pose, joint_names, units), and whether the log told of flat elements in the "
+          "mesh there; deep or wide motion needs "
        << (is_for_large_strain ? "" : "material.model neo_hookean and ")
        << "smaller cells under the tool, and edges turn elements inside out with any: forces that stay the same with "
-          "smaller "
-          "cells are right";
+          "smaller cells are right";
   if (load.instrument >= 0 && mayBeJaws(simulator.instruments()[load.instrument])) {
     text << "; if jaws close on it, compliant_joints limits what they squeeze with";
   }

@@ -191,7 +191,7 @@ class Live(harness.TestCase):
             self.assertGreater(count, 50 / harness.SLOWNESS)
         self.assertGreaterEqual(max(d.status[0].level for d in seen["diagnostics"]), faults.WARN)
         said = [line for line in seen["log"] if "does not keep up" in line]
-        self.assertEqual(len(said), 1, seen["log"])
+        self.assertTrue(1 <= len(said) <= 5, seen["log"])  # again where steps cost several times as much
         for words in ["ms", "steps per second", "mesh", "max_step_s", "time_budget_s"]:
             self.assertIn(words, said[0])
         self.assertGreater(max(w.wrench.force.z for w in seen["wrenches"]), 0.02)  # it did press

@@ -78,7 +78,7 @@ class Health {
   /// the lag was far over its bound or joint states came by two clocks; WARN when it was over it, forces were such as no tissue bears, refined cells
   /// were longer than asked for, steps were lengthened to hold the lag, a topic that only updates is ahead of the others, one has fallen silent, or a joint on one, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their
   /// iterations are counted but are no alarm: a fixed budget per step is how the solver keeps real time. The log says
-  /// once what to change when the machine does not keep up.
+  /// what to change when the machine does not keep up (KeepUpNews).
   /// @param missing see Receiver::missing().
   void fill(std::int64_t missing, diagnostic_updater::DiagnosticStatusWrapper& status);
 
@@ -141,7 +141,8 @@ class Health {
   // The diagnostics thread's alone.
   LiveFigures told_;
   bool told_of_hold_ = false;  ///< the present one
-  bool advised_ = false;
+  KeepUpNews keep_up_news_;
+  double reset_told_until_s_ = 0.0;        ///< that time went backwards
   const std::vector<std::string> topics_;  ///< as people know them
   TopicSilence silence_;
 };

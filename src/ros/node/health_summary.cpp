@@ -103,8 +103,8 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   };
   const bool waits_for_topic = waits(now) || waits(told_);  // not for want of time; or did, and what was held is late
   if (!(now.step_cost_s > 0.0)) return;                     // in the first step
-  if (advised_ || now.paused || waits_for_topic || (lag == LagVerdict::kWithinBound && !is_strained)) return;
-  advised_ = true;
+  if (now.paused || waits_for_topic || (lag == LagVerdict::kWithinBound && !is_strained)) return;
+  if (!keep_up_news_.take(now.step_cost_s, nodes_)) return;
   ROS_WARN_STREAM("does not keep up: " << keepUpAdvice(now, simulator_.scene().step.max_step_s, max_lag_s_, nodes_));
 }
 

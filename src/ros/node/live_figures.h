@@ -82,6 +82,19 @@ double longestStep(bool newest_state, double max_step_s);
 /// @param nodes of all tissues.
 std::string keepUpAdvice(const LiveFigures& figures, double max_step_s, double max_lag_s, int nodes);
 
+/// When keepUpAdvice() is news: at first, and when steps cost, or nodes are, several times what they were when it was told last, such as after
+/// the first contact. A few times at the most.
+class KeepUpNews {
+ public:
+  /// Of a machine that does not keep up. @return whether it is to be told now.
+  bool take(double step_cost_s, int nodes);
+
+ private:
+  int told_ = 0;
+  double step_cost_s_ = 0.0;  ///< told last
+  int nodes_ = 0;
+};
+
 /// "joint states: 100 received, 90 accepted, ...; 90 wrenches; largest lag 0.012 s".
 std::string countsLine(const LiveFigures& figures);
 

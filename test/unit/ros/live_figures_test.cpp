@@ -136,6 +136,21 @@ TEST(KeepUpAdvice, HasTheFiguresAndWhatToChange) {
                  {"0.2 s of work per second", "something else", "3.5 s", "42 joint states wait", "newest_state"});
 }
 
+/// It was told once, of a step of 0.3 ms before the first contact ("That fits"), and not again at 30 ms.
+TEST(KeepUpNews, IsToldAgainWhenStepsCostOrNodesAreSeveralTimesAsMuchButNotForEver) {
+  KeepUpNews news;
+  EXPECT_TRUE(news.take(0.0003, 1000));
+  EXPECT_FALSE(news.take(0.0003, 1000));
+  EXPECT_FALSE(news.take(0.0008, 1000)) << "the machine is busy";
+  EXPECT_TRUE(news.take(0.03, 1000));
+  EXPECT_FALSE(news.take(0.0003, 1000)) << "it was worse";
+  EXPECT_FALSE(news.take(0.03, 2000));
+  EXPECT_TRUE(news.take(0.03, 5000)) << "refined";
+  int told = 0;
+  for (double cost_s = 0.05; cost_s < 1e9; cost_s *= 10.0) told += static_cast<int>(news.take(cost_s, 5000));
+  EXPECT_EQ(told, 2);
+}
+
 TEST(CountsLine, NamesEveryCount) {
   LiveFigures figures;
   figures.received = 100;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <string>
 
 #include "support/refusal.h"
@@ -17,10 +18,11 @@ namespace load_watch_test {
 constexpr double kModulus = 5000.0;
 
 /// A 5 mm sphere 1 mm above the middle of a block of 60 x 60 x 20 mm with cells of 10 mm, fixed below.
-Simulator makeScene(const std::string& model = "neo_hookean", const std::string& regions = "") {
+Simulator makeScene(const std::string& model = "neo_hookean", const std::string& regions = "",
+                    const std::function<double()>& clock = nullptr) {
   return makeSimulator(blockScene("[0.06, 0.06, 0.02]", "[6, 6, 2]", "poissons_ratio: 0.4, model: " + model) + regions +
                            onlyBall("[0, 0, 0.026]"),
-                       {{"probe", probeUrdf(0.005)}});
+                       {{"probe", probeUrdf(0.005)}}, clock);
 }
 
 /// The node of the surface nearest to the middle of the upper face.
@@ -234,6 +236,20 @@ TEST(LoadWatch, APressIsPlausibleAndAToolThroughTheBaseIsNot) {
     }
     EXPECT_TRUE(flagged) << model;
   }
+}
+
+/// It told to check the place of the tool and to take smaller cells, which make a machine that does not keep up worse.
+TEST(LoadWatch, AStepThatHadNoTimeIsToldToHaveNoneNotToBeMisplaced) {
+  Simulator simulator = makeScene("corotational", "", [] { return 1.0; });
+  simulator.advance(0.2, {Vector3(0.0, 0.0, -0.004)});
+  simulator.setSolverDeadline(0.0);  // over
+  for (int i = 1; i <= 60 && !simulator.report().implausible_load.found; ++i)
+    simulator.advance(0.02, {Vector3(0.0, 0.0, -0.004 - 0.001 * i)});
+  ASSERT_TRUE(simulator.report().implausible_load.found);
+  ASSERT_EQ(simulator.report().stop, StopReason::kTimeBudget);
+  const std::string text = implausibleLoadText(simulator);
+  expectContains(text, {"'block'", "no time to finish this step", "step.max_lag_s", "fewer nodes"});
+  EXPECT_EQ(text.find("smaller cells"), std::string::npos) << text;
 }
 
 }  // namespace load_watch_test
