@@ -13,6 +13,7 @@ class TimeBackwards(unittest.TestCase):
         wrenches = harness.wrenches()
         meshes = harness.Listener("/tissue_contact/block/mesh", TissueMesh)
         statuses = harness.Listener("/tissue_contact/status", Status)
+        diagnostics = harness.diagnostics()
         log = harness.Listener("/rosout", Log)
         source = harness.JointSource()
         samples = harness.press()[:50]  # ends while pressing: the next loop must not inherit that
@@ -37,6 +38,8 @@ class TimeBackwards(unittest.TestCase):
         self.assertEqual(len(warnings), 2, warnings)
         self.assertIn(harness.TOPIC, warnings[0])
         self.assertIn("reset", warnings[0])
+        # "running" was all that /diagnostics had of it.
+        diagnostics.wait(lambda all: any("time went backwards: the scene was reset" in s.message for m in all for s in m.status), "the reset told")
 
 
 if __name__ == "__main__":

@@ -76,7 +76,7 @@ class Health {
 
   /// Summary and counts. ERROR when a step gave no finite answer since the last reset, or when since the last call
   /// the lag was far over its bound or joint states came by two clocks; WARN when it was over it, forces were such as no tissue bears, refined cells
-  /// were longer than asked for, steps were lengthened to hold the lag, a topic that only updates is ahead of the others, one has fallen silent, or a joint on one, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their
+  /// were longer than asked for, steps were lengthened to hold the lag, time went backwards in the last seconds, a topic that only updates is ahead of the others, one has fallen silent, or a joint on one, a joint state was refused or dropped, or a gap or jump was cut short. Steps that used up their
   /// iterations are counted but are no alarm: a fixed budget per step is how the solver keeps real time. The log says
   /// what to change when the machine does not keep up (KeepUpNews).
   /// @param missing see Receiver::missing().

@@ -95,7 +95,11 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   }
   const std::string troubles =
       is_troubled && status.level != Level::ERROR ? "joint states refused or dropped, or motion cut short" : "";
-  for (const std::string& also : {troubles, now.ahead, silence_.summary(), now.silent_joints, heldText(now)}) {
+  constexpr double kResetTold_s = 5.0;  // whoever looks a little later is to see why forces began anew
+  if (now.resets > told_.resets) reset_told_until_s_ = steadySeconds() + kResetTold_s;
+  const std::string reset =
+      steadySeconds() < reset_told_until_s_ ? "time went backwards: the scene was reset to its start" : "";
+  for (const std::string& also : {reset, troubles, now.ahead, silence_.summary(), now.silent_joints, heldText(now)}) {
     if (!now.failed && !now.paused && !also.empty()) status.mergeSummary(Level::WARN, also);
   }
   const auto waits = [](const LiveFigures& then) {
