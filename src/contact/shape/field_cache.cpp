@@ -12,7 +12,7 @@
 namespace tissue_contact {
 namespace {
 
-constexpr std::uint64_t kFormat = 3;  // raise it when the samples or this file change
+constexpr std::uint64_t kFormat = 4;  // raise it when the samples or this file change
 constexpr std::uintmax_t kMostFieldBytes = 256u << 20;
 constexpr const char* kExtension = ".field";
 

@@ -11,6 +11,61 @@
 namespace tissue_contact {
 namespace {
 
+/// Whether a straight line comes upon a triangle otherwise than at its rim: there the inside may begin or end.
+class Plate {
+ public:
+  /// @param tolerance what is nearer than this to the plane lies in it, and to the rim at the rim, m.
+  Plate(const std::array<Vector3, 3>& corners, const Vector3& normal, double tolerance)
+      : corners_(corners), normal_(normal), tolerance_(tolerance) {
+    for (std::size_t k = 0; k < 3; ++k) inward_[k] = normal.cross(corners[(k + 1) % 3] - corners[k]).normalized();
+  }
+
+  double height(const Vector3& p) const { return normal_.dot(p - corners_[0]); }
+
+  /// Of the part of a segment that lies in the plane, whether any is clear of the rim.
+  bool isMetBy(const Vector3& from, const Vector3& to) const {
+    double first = 0.0;
+    double last = 1.0;
+    const double start = height(from);
+    const double end = height(to);
+    clip(start + tolerance_, end + tolerance_, first, last);
+    clip(tolerance_ - start, tolerance_ - end, first, last);
+    for (std::size_t k = 0; k < 3 && first <= last; ++k) {
+      clip(inward_[k].dot(from - corners_[k]) - tolerance_, inward_[k].dot(to - corners_[k]) - tolerance_, first, last);
+    }
+    return first <= last;
+  }
+
+  /// Whether a segment goes through, from well on one side to well on the other.
+  bool isPiercedBy(const Vector3& from, const Vector3& to) const {
+    const double start = height(from);
+    const double end = height(to);
+    if (!(std::min(start, end) < -tolerance_ && std::max(start, end) > tolerance_)) return false;
+    const Vector3 p = from + start / (start - end) * (to - from);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!(inward_[k].dot(p - corners_[k]) >= 0.0)) return false;
+    }
+    return true;
+  }
+
+ private:
+  /// Leaves of a segment what has a value >= 0, which is linear along it.
+  static void clip(double at_start, double at_end, double& first, double& last) {
+    if (at_start < 0.0 && at_end < 0.0) {
+      last = -1.0;
+    } else if (at_start < 0.0) {
+      first = std::max(first, at_start / (at_start - at_end));
+    } else if (at_end < 0.0) {
+      last = std::min(last, at_start / (at_start - at_end));
+    }
+  }
+
+  const std::array<Vector3, 3>& corners_;
+  Vector3 normal_;
+  double tolerance_;
+  std::array<Vector3, 3> inward_;  ///< per edge, in the plane
+};
+
 class OuterSurface {
  public:
   OuterSurface(const WindingTree& tree, double finest) : tree_(tree), finest_(finest) {}
@@ -25,7 +80,8 @@ class OuterSurface {
     const double longest = edges[at];
     // Four points tell little of a triangle that is long beside what it may pass through.
     constexpr double kTold = 16.0;
-    if (longest < finest_ || ((outer == 0 || outer == 4) && longest < kTold * finest_)) {
+    const bool is_told = (outer == 0 || outer == 4) && longest < kTold * finest_;
+    if (longest < finest_ || (is_told && !isMet(corners, normal))) {
       if (outer == 0) return;
       for (const Vector3& corner : corners) points_.push_back(corner);
       return;
@@ -47,7 +103,7 @@ class OuterSurface {
   int outerPoints(const std::array<Vector3, 3>& corners, const Vector3& normal) const {
     const Vector3 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     const auto isOuter = [&](const Vector3& p) {
-      const Vector3 aside = 0.02 * finest_ * normal;
+      const Vector3 aside = kAside * finest_ * normal;
       return !(tree_.isInside(p + aside) && tree_.isInside(p - aside));
     };
     int count = isOuter(middle) ? 1 : 0;
@@ -55,9 +111,48 @@ class OuterSurface {
     return count;
   }
 
+  /// Whether the mesh comes upon the inside of a triangle anywhere: what four points tell need not hold beyond. Once a mesh that passes
+  /// through itself all over has taken some seconds, the points are believed.
+  bool isMet(const std::array<Vector3, 3>& corners, const Vector3& normal) {
+    const Plate plate(corners, normal, kAside * finest_);
+    Eigen::AlignedBox3d box;
+    for (const Vector3& corner : corners) box.extend(corner);
+    waiting_.assign(1, 0);
+    while (!waiting_.empty() && looks_left_ > 0) {
+      --looks_left_;
+      const TriangleTree::Node& node = tree_.triangles().nodes()[waiting_.back()];
+      waiting_.pop_back();
+      if (!node.box.intersects(box)) continue;
+      if (node.triangle < 0) {
+        waiting_.push_back(node.children + 1);
+        waiting_.push_back(node.children);
+      } else if (meets(tree_.triangles().corners(node.triangle), plate, corners)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// A triangle of the mesh and a piece of another, or of the same.
+  bool meets(const Vector3* other, const Plate& plate, const std::array<Vector3, 3>& corners) const {
+    const std::array<Vector3, 3> others = {other[0], other[1], other[2]};
+    const Vector3 normal = triangleNormal(others[0], others[1], others[2]);
+    if (normal.isZero(0.0)) return false;
+    const Plate other_plate(others, normal, kAside * finest_);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (plate.isMetBy(others[k], others[(k + 1) % 3])) return true;
+      if (other_plate.isPiercedBy(corners[k], corners[(k + 1) % 3])) return true;
+    }
+    return false;
+  }
+
+  static constexpr double kAside = 0.02;  // of the finest
+
   const WindingTree& tree_;
   double finest_;
   std::vector<Vector3> points_;
+  std::vector<int> waiting_;
+  int looks_left_ = 50000000;  ///< at boxes and triangles
 };
 
 }  // namespace

@@ -25,6 +25,8 @@ class WindingTree {
   /// the inside see half a turn less; walls are the likelier.
   bool isInside(const Vector3& p) const { return std::abs(windingNumber(p)) > 0.4; }
 
+  const TriangleTree& triangles() const { return triangles_; }
+
  private:
   struct Dipole {
     Vector3 centre = Vector3::Zero();       ///< of the area

@@ -162,6 +162,48 @@ TEST(MeshField, AsksWhetherTheScaleIsRightWhereAToolIsTooLargeOrTooSmall) {
   EXPECT_NE(asked(1e-3).find("it is 4e-05 m long; is it in metres already? then give it scale 1"), std::string::npos);
 }
 
+/// Axis-aligned between two corners, 12 triangles.
+TriangleMesh boxBetween(const Vector3& low, const Vector3& high) {
+  TriangleMesh box = boxMesh(0.5 * (high - low), 1);
+  box.vertices.colwise() += 0.5 * (low + high);
+  return box;
+}
+
+/// A plate of 22 x 22 x 4 mm above a base of 40 mm, all parts closed.
+/// @param pillars under every place that the four points of a triangle of the plate look at, mm from and to.
+TriangleMesh plateWithPillars(double from, double to) {
+  TriangleMesh tool = boxBetween({-0.011, -0.011, 0.008}, {0.011, 0.011, 0.012});
+  append(tool, boxBetween({-0.02, -0.02, -0.02}, {0.02, 0.02, -0.01}), Vector3::Zero());
+  for (const auto& [aside, half] : {std::pair(0.01, 0.0025), std::pair(0.011 / 3.0, 0.0015)}) {
+    for (const double x : {-aside, aside}) {
+      for (const double y : {-aside, aside}) {
+        append(tool, boxBetween({x - half, y - half, from}, {x + half, y + half, to}), Vector3::Zero());
+      }
+    }
+  }
+  return tool;
+}
+
+// The upper and lower faces of the plate were gone: 2.88 mm instead of 1 above its middle, -2.93 instead of -0.5 inside, and "not
+// closed: an opening about 7.03 mm wide".
+TEST(MeshField, FacesThatPartsPassThroughStay) {
+  const TriangleMesh through = plateWithPillars(-0.012, 0.02);
+  EXPECT_EQ(openingIn(through, "plate.stl"), "");
+  const auto field = fieldOf(through);
+  const double spacing = field->grid.spacing;
+  EXPECT_NEAR(field->grid.at({0.0, 0.0, 0.013}).distance, 0.001, 0.1 * spacing);
+  EXPECT_NEAR(field->grid.at({0.0, 0.0, 0.0115}).distance, -0.0005, 0.1 * spacing);
+  EXPECT_NEAR(field->grid.at({0.0, 0.0075, 0.0075}).distance, 0.0005, 0.1 * spacing);
+}
+
+// As above where the pillars stand on the base and carry the plate, whose lower face they only touch.
+TEST(MeshField, FacesThatPartsStandOnStay) {
+  const TriangleMesh carried = plateWithPillars(-0.01, 0.008);
+  EXPECT_EQ(openingIn(carried, "plate.stl"), "");
+  const auto field = fieldOf(carried);
+  EXPECT_NEAR(field->grid.at({0.0, 0.0, 0.0075}).distance, 0.0005, 0.1 * field->grid.spacing);
+}
+
 /// Without the triangles that lie wholly in a box.
 TriangleMesh withoutTrianglesIn(const Eigen::AlignedBox3d& box, TriangleMesh mesh) {
   const auto is_in = [&](const Triangle& t) {
