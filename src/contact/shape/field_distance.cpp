@@ -20,16 +20,28 @@ FieldDistance::FieldDistance(std::shared_ptr<const MeshField> field)
     : field_(std::move(field)),
       centre_(0.5 * (field_->low + field_->high)),
       half_(0.5 * (field_->high - field_->low)),
-      size_(half_.maxCoeff()) {}
+      size_(half_.maxCoeff()),
+      is_turned_(!field_->R_SG.isIdentity(0.0)) {}
+
+Vector3 FieldDistance::halfExtents(const Matrix3& R_WS) const {
+  if (!is_turned_) return R_WS.cwiseAbs() * half_;
+  const Matrix3 R_WG = R_WS * field_->R_SG;
+  return R_WG.cwiseAbs() * half_;
+}
+
+Vector3 FieldDistance::boxCentre() const { return is_turned_ ? Vector3(field_->R_SG * centre_) : centre_; }
 
 const TriangleMesh* FieldDistance::drawn() const {
-  if (!drawn_) drawn_ = fieldSurface(field_->grid, kDrawnTriangles);
+  if (drawn_) return &*drawn_;
+  drawn_ = fieldSurface(field_->grid, kDrawnTriangles);
+  if (is_turned_) drawn_->vertices = NodalVectors(field_->R_SG * drawn_->vertices);
   return &*drawn_;
 }
 
 SignedDistance FieldDistance::at(const Vector3& p_S) const {
   if (!p_S.allFinite()) return {std::numeric_limits<double>::quiet_NaN(), Vector3::UnitX()};
-  const GridSample here = field_->grid.at(p_S);
+  GridSample here = field_->grid.at(is_turned_ ? Vector3(field_->R_SG.transpose() * p_S) : p_S);
+  if (is_turned_) here.gradient = Vector3(field_->R_SG * here.gradient);
   const double length = here.gradient.norm();
   constexpr double kNone = 1e-9;  // deepest inside: every direction is as good as another
   return {here.distance, length > kNone ? Vector3(here.gradient / length) : Vector3::UnitX()};
@@ -47,6 +59,18 @@ void FieldDistance::foremostCorners(const Vector3& forward, const Eigen::Aligned
 }
 
 bool FieldDistance::closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const {
+  if (!is_turned_) return closestInGrid(triangle, margin, result);
+  const Matrix3& R_SG = field_->R_SG;
+  const TrianglePoints turned(R_SG.transpose() * triangle.corners[0], R_SG.transpose() * triangle.corners[1],
+                              R_SG.transpose() * triangle.corners[2]);
+  if (!closestInGrid(turned, margin, result)) return false;
+  GradientSet gradients;
+  for (int i = 0; i < result.gradients.count(); ++i) gradients.add(R_SG * result.gradients[i]);
+  result.gradients = gradients;
+  return true;
+}
+
+bool FieldDistance::closestInGrid(const TrianglePoints& triangle, double margin, ClosestPoint& result) const {
   Eigen::AlignedBox3d around;
   for (const Vector3& p : triangle.corners) around.extend(p);
   const Eigen::AlignedBox3d box(Vector3(centre_ - half_), Vector3(centre_ + half_));

@@ -19,8 +19,8 @@ class FieldDistance : public ShapeDistance {
   explicit FieldDistance(std::shared_ptr<const MeshField> field);
 
   double size() const override { return size_; }
-  Vector3 halfExtents(const Matrix3& R_WS) const override { return R_WS.cwiseAbs() * half_; }
-  Vector3 boxCentre() const override { return centre_; }
+  Vector3 halfExtents(const Matrix3& R_WS) const override;
+  Vector3 boxCentre() const override;
   SignedDistance at(const Vector3& p_S) const override;
   double edgeRadius() const override { return field_->grid.spacing; }
   const TriangleMesh* drawn() const override;
@@ -31,10 +31,14 @@ class FieldDistance : public ShapeDistance {
   bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const override;
 
  private:
+  /// Triangle and gradients in the frame of the grid.
+  bool closestInGrid(const TrianglePoints& triangle, double margin, ClosestPoint& result) const;
+
   std::shared_ptr<const MeshField> field_;
-  Vector3 centre_;
+  Vector3 centre_;  ///< of the box around the mesh, in the frame of the grid
   Vector3 half_;
   double size_;
+  bool is_turned_;                             ///< the grid lies across the shape's axes
   mutable std::optional<TriangleMesh> drawn_;  ///< made when first asked for: a replay draws nothing
 };
 

@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "contact/shape/field_cache.h"
+#include "contact/shape/grid_axes.h"
 #include "contact/shape/sample_distance.h"
+#include "contact/shape/surface_points.h"
+#include "contact/shape/thin_parts.h"
 #include "mesh/mesh_checks.h"
 #include "mesh/nodes.h"
 #include "mesh/surface/outer_surface.h"
@@ -36,7 +39,7 @@ TriangleMesh usablePart(const TriangleMesh& mesh) {
 }
 
 /// Vertices that are tips of the solid; a pit is none.
-std::vector<MeshTip> tipsOf(const TriangleMesh& mesh, const DistanceGrid& grid) {
+std::vector<MeshTip> tipsOf(const TriangleMesh& mesh, const DistanceGrid& grid, const Matrix3& R_SG) {
   constexpr double kNarrow = 0.866;  // cosine
   constexpr double kAside = 5.0;     // spacings along the axis: inside behind a tip, outside before it
   std::vector<MeshTip> ends(static_cast<std::size_t>(mesh.vertices.cols()));
@@ -57,7 +60,12 @@ std::vector<MeshTip> tipsOf(const TriangleMesh& mesh, const DistanceGrid& grid) 
     if (tip.edges.size() < 6 || std::any_of(tip.edges.begin(), tip.edges.end(), is_wide)) continue;
     tip.p_S = mesh.vertices.col(static_cast<Eigen::Index>(v));
     const Vector3 aside = kAside * grid.spacing * axis.normalized();
-    if (grid.at(tip.p_S + aside).distance < 0.0 && grid.at(tip.p_S - aside).distance > 0.0) tips.push_back(tip);
+    if (!(grid.at(tip.p_S + aside).distance < 0.0 && grid.at(tip.p_S - aside).distance > 0.0)) continue;
+    if (!R_SG.isIdentity(0.0)) {
+      tip.p_S = R_SG * tip.p_S;
+      for (Vector3& edge : tip.edges) edge = R_SG * edge;
+    }
+    tips.push_back(tip);
   }
   return tips;
 }
@@ -70,34 +78,13 @@ void requireInside(const DistanceGrid& grid, const std::string& name) {
       "that touches tissue must be a closed solid");
 }
 
-/// Points spread evenly over the triangles (additive recurrence of the plastic number, folded into each triangle).
-/// @param visit gets a point, its share of the area and the triangle.
-template <typename Visit>
-void eachPoint(const TriangleMesh& mesh, double points, const Visit& visit) {
-  const auto corner = [&](const Triangle& t, int k) -> Vector3 { return mesh.vertices.col(t[k]); };
-  double total = 0.0;
-  for (const Triangle& t : mesh.triangles) total += triangleArea(mesh.vertices, t);
-  double u = 0.5;
-  double v = 0.5;
-  for (const Triangle& t : mesh.triangles) {
-    const double share = triangleArea(mesh.vertices, t) / total;
-    const int count = static_cast<int>(std::ceil(points * share));
-    for (int i = 0; i < count; ++i) {
-      u = std::fmod(u + 0.7548776662466927, 1.0);
-      v = std::fmod(v + 0.5698402909980532, 1.0);
-      const bool fold = u + v > 1.0;
-      const double a = fold ? 1.0 - u : u;
-      const double b = fold ? 1.0 - v : v;
-      visit(corner(t, 0) + a * (corner(t, 1) - corner(t, 0)) + b * (corner(t, 2) - corner(t, 0)), share / count, t);
-    }
-  }
-}
-
 void measureDeviation(const TriangleMesh& outer, double points, MeshField& field) {
   std::vector<std::pair<double, double>> found;  // deviation, share of the area
   double squares = 0.0;
+  const ThinParts thin(outer, field.grid, points);
   eachPoint(outer, points, [&](const Vector3& p, double share, const Triangle&) {
-    const double deviation = std::abs(field.grid.at(p).distance);
+    // Where nothing is left of a part, the distance is small all around the mesh, but not to what is left.
+    const double deviation = std::max(std::abs(field.grid.at(p).distance), thin.lostAt(p));
     found.emplace_back(deviation, share);
     squares += deviation * deviation * share;
   });
@@ -109,23 +96,6 @@ void measureDeviation(const TriangleMesh& outer, double points, MeshField& field
   }
   field.largest_deviation = found.back().first;
   field.rms_deviation = std::sqrt(squares);
-}
-
-/// Share of the mesh's area behind which the grid has next to nothing of the solid, half a spacing and one deep: walls thinner than about a
-/// spacing, which fall between the samples.
-double thinShare(const TriangleMesh& mesh, const DistanceGrid& grid) {
-  constexpr double kPoints = 5000.0;
-  constexpr double kSolid = 0.25;  // spacings; behind a flat face half a spacing deep the distance is .5
-  double thin = 0.0;
-  eachPoint(mesh, kPoints, [&](const Vector3& p, double share, const Triangle& t) {
-    const Vector3 normal = triangleNormal(mesh.vertices.col(t[0]), mesh.vertices.col(t[1]), mesh.vertices.col(t[2]));
-    double lowest = 0.0;
-    for (const double depth : {-1.0, -0.5, 0.5, 1.0}) {  // triangles may look either way
-      lowest = std::min(lowest, grid.valueAt(p + depth * grid.spacing * normal));
-    }
-    if (lowest > -kSolid * grid.spacing) thin += share;
-  });
-  return thin;
 }
 
 /// Says how far a long preparation has come.
@@ -166,32 +136,42 @@ MeshField build(const TriangleMesh& mesh, const std::string& name, const MeshPre
 }
 
 /// Across an opening of the mesh, wherever one is wider than the samples tell apart.
-void reportJump(const std::string& name, const DistanceGrid& grid, const MeshPreparation& preparation) {
-  const FieldJump jump = widestJump(grid);
+void reportJump(const std::string& name, const MeshField& field, const MeshPreparation& preparation) {
+  const FieldJump jump = widestJump(field.grid);
   if (!preparation.say || !(jump.width_m > 0.0)) return;
+  const Vector3 p_S = field.R_SG * jump.p_S;
   std::array<char, 384> text{};
   std::snprintf(
       text.data(), text.size(),
       ": not closed: at (%.4g, %.4g, %.4g) m of its frame, scaled, is an opening about %.3g mm wide, the widest if "
       "there are more; inside and outside meet there and the distance jumps, so tissue that gets there is pushed "
       "suddenly and to a side of the opening; fill it in the mesh, or use a closed mesh or a box, cylinder or sphere",
-      jump.p_S.x(), jump.p_S.y(), jump.p_S.z(), 1e3 * jump.width_m);
+      p_S.x(), p_S.y(), p_S.z(), 1e3 * jump.width_m);
   preparation.say("mesh " + name + text.data());
 }
 
 /// Tissue goes through walls that the samples do not hold, without a force.
-void reportThin(const std::string& name, const TriangleMesh& mesh, const DistanceGrid& grid,
+void reportThin(const std::string& name, const TriangleMesh& mesh, const MeshField& field,
                 const MeshPreparation& preparation) {
   constexpr double kMuch = 0.2;  // edges of blades and small parts make some per cent
-  const double thin = thinShare(mesh, grid);
-  if (!(thin > kMuch)) return;
-  std::array<char, 384> text{};
+  constexpr double kPoints = 20000.0;
+  const ThinParts thin(mesh, field.grid, kPoints);
+  const ThinParts::Part part = thin.largest(mesh);
+  if (!(thin.share() > kMuch) && !(part.share > 0.0)) return;
+  std::array<char, 192> where{};
+  const Vector3 p_S = field.R_SG * part.p_S;
+  if (part.share > 0.0) {
+    std::snprintf(where.data(), where.size(),
+                  " (%.2g %% together, around (%.4g, %.4g, %.4g) m of its frame, scaled, where it is %.3g mm thick)",
+                  100.0 * part.share, p_S.x(), p_S.y(), p_S.z(), 1e3 * part.thickness_m);
+  }
+  std::array<char, 640> text{};
   std::snprintf(
       text.data(), text.size(),
-      ": behind %.0f %% of its surface is less than about %.3g mm of it, one spacing of the grid: tissue goes "
-      "through walls as thin as that, with too little force or none; make them thicker in the mesh, or build "
-      "them of boxes, cylinders or shorter meshes, whose grids are finer",
-      100.0 * thin, 1e3 * grid.spacing);
+      ": behind %.2g %% of its surface%s is less than about %.3g mm of it, one spacing of the grid: tissue goes "
+      "through walls as thin as that, with too little force or none; make them thicker in the mesh, or give them "
+      "as shapes of their own: boxes, cylinders or shorter meshes, whose grids are finer",
+      100.0 * thin.share(), where.data(), 1e3 * field.grid.spacing);
   preparation.say("mesh " + name + text.data());
 }
 
@@ -206,8 +186,8 @@ void report(const std::string& name, std::size_t triangles, const TriangleMesh& 
                 triangles, grid.size[0], grid.size[1], grid.size[2], 1e3 * grid.spacing, 1e3 * field.largest_deviation,
                 1e3 * field.rms_deviation, 1e3 * field.median_deviation);
   preparation.say("mesh " + name + text.data() + origin);
-  reportJump(name, grid, preparation);
-  reportThin(name, mesh, grid, preparation);
+  reportJump(name, field, preparation);
+  reportThin(name, mesh, field, preparation);
   constexpr double kLargeTool = 2.0;   // m
   constexpr double kSmallTool = 1e-3;  // m
   const double extent = (field.high - field.low).maxCoeff();
@@ -222,17 +202,22 @@ void report(const std::string& name, std::size_t triangles, const TriangleMesh& 
 
 std::shared_ptr<const MeshField> prepareMeshField(const TriangleMesh& original, const std::string& name,
                                                   MeshPreparation& preparation, double sample_count) {
-  const TriangleMesh mesh = usablePart(original);
+  TriangleMesh mesh = usablePart(original);
+  const Matrix3 R_SG = gridAxes(mesh);
+  const bool is_turned = !R_SG.isIdentity(0.0);
+  if (is_turned) mesh.vertices = NodalVectors(R_SG.transpose() * mesh.vertices);
   const std::string key = fieldKey(mesh, sample_count);
   auto field = std::make_shared<MeshField>();
   if (readField(preparation.cache_directory, key, *field)) {
-    field->tips = tipsOf(mesh, field->grid);
+    if (is_turned) field->R_SG = R_SG;
+    field->tips = tipsOf(mesh, field->grid, R_SG);
     report(name, original.triangles.size(), mesh, *field, "from the cache", preparation);
     return field;
   }
   const double start = preparation.clock ? preparation.clock() : 0.0;
   *field = build(mesh, name, preparation, sample_count);
-  field->tips = tipsOf(mesh, field->grid);
+  if (is_turned) field->R_SG = R_SG;
+  field->tips = tipsOf(mesh, field->grid, R_SG);
   std::array<char, 64> took{"built"};
   if (preparation.clock) std::snprintf(took.data(), took.size(), "built in %.1f s", preparation.clock() - start);
   const std::string trouble = writeField(preparation.cache_directory, key, *field);

@@ -18,12 +18,15 @@ struct MeshTip {
   std::vector<Vector3> edges;  ///< unit, from the tip
 };
 
+/// Grid, box and deviations are in the frame G of the grid, about the same origin as the shape's frame S.
 struct MeshField {
-  std::vector<MeshTip> tips;  ///< not in the cache
+  Matrix3 R_SG = Matrix3::Identity();  ///< axes of the grid (gridAxes()); not in the cache
+  std::vector<MeshTip> tips;           ///< in S; not in the cache
   DistanceGrid grid;
   Vector3 low = Vector3::Zero();  ///< corners of the mesh's bounding box, m
   Vector3 high = Vector3::Zero();
-  /// Distance from the points of the mesh's outer surface to the shape, m, weighted by area.
+  /// Distance from the points of the mesh's outer surface to the shape, m, weighted by area; of a part that
+  /// fell between the samples, to what is left.
   double largest_deviation = 0.0;
   double rms_deviation = 0.0;
   double median_deviation = 0.0;

@@ -150,12 +150,22 @@ class Sampler {
 
 }  // namespace
 
+namespace {
+
+double paddingAround(const Vector3& extent) { return 0.2 * extent.minCoeff() + 0.005 * extent.maxCoeff(); }
+
+}  // namespace
+
+Vector3 paddedExtent(const NodalVectors& vertices) {
+  const Vector3 extent = vertices.rowwise().maxCoeff() - vertices.rowwise().minCoeff();
+  return extent.array() + 2.0 * paddingAround(extent);
+}
+
 GridPlan planGrid(const TriangleMesh& mesh, double sample_count) {
   const Vector3 low = mesh.vertices.rowwise().minCoeff();
   const Vector3 high = mesh.vertices.rowwise().maxCoeff();
   const Vector3 extent = high - low;
-  // Room for the contacts of the next step; beyond it distances are lower bounds.
-  const double padding = 0.2 * extent.minCoeff() + 0.005 * extent.maxCoeff();
+  const double padding = paddingAround(extent);
   GridPlan plan;
   plan.spacing = std::cbrt((extent.array() + 2.0 * padding).prod() / sample_count);
   // Two more spacings: the spline ends one inside the samples, and its values beside a flat face need one.

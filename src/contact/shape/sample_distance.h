@@ -18,6 +18,9 @@ struct GridPlan {
   std::array<int, 3> blocks{};      ///< of kBlock samples along each axis
 };
 
+/// Edges of the box around vertices, m, with room for the contacts of the next step; beyond it distances are lower bounds.
+Vector3 paddedExtent(const NodalVectors& vertices);
+
 /// @param sample_count about how many samples the grid may have; it may get some tenths more.
 GridPlan planGrid(const TriangleMesh& mesh, double sample_count);
 

@@ -382,7 +382,10 @@ TEST(MeshField, EveryMeshOfTheDvrkBecomesAShape) {
       if (line.find("less than about") != std::string::npos) thin.insert(name);
     };
     const auto field = prepareMeshField(loadTriangleMesh(entry.path().string(), Vector3::Ones()), name, preparation);
-    EXPECT_LT(field->rms_deviation, 0.11 * field->grid.spacing);
+    // Of sheet metal there are parts of which nothing is left: 7 mm of outer_yaw.dae.
+    if (thin.count(name) == 0) {
+      EXPECT_LT(field->rms_deviation, 0.11 * field->grid.spacing);
+    }
     EXPECT_EQ(widestJump(field->grid).width_m, 0.0);
     ++count;
   }
