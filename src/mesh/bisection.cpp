@@ -210,8 +210,11 @@ bool Bisection::cut(int element, std::size_t most_nodes) {
 /// Collects the elements around an edge. @return one of them whose longest edge is another; -1: none.
 int Bisection::firstWithLonger(const std::array<int, 2>& edge) {
   ring_.clear();
-  for (const int other : uncut_at_[edge[0]]) {
-    if (!contains(elements_[other].nodes, edge[1])) continue;
+  // One node of a star has all of its elements, the other a few. Both name those of the edge in the same order.
+  const bool first_has_fewer = uncut_at_[edge[0]].size() <= uncut_at_[edge[1]].size();
+  const int other_end = edge[first_has_fewer ? 1 : 0];
+  for (const int other : uncut_at_[edge[first_has_fewer ? 0 : 1]]) {
+    if (!contains(elements_[other].nodes, other_end)) continue;
     if (elements_[other].longest != edge) return other;
     ring_.push_back(other);
   }
@@ -229,7 +232,7 @@ void Bisection::cutRing(const std::array<int, 2>& edge) {
     const int place = elements_[whole].place;
     for (const int node : nodes) {
       std::vector<int>& there = uncut_at_[node];
-      there.erase(std::find(there.begin(), there.end(), whole));
+      there.erase(std::lower_bound(there.begin(), there.end(), whole));
     }
     const int first_child = add(replaced(nodes, edge[1], middle), place, outerOfHalf(nodes, outer, edge[0]));
     elements_[whole].first_child = first_child;

@@ -111,7 +111,7 @@ class Bisection {
   std::vector<Vector3> x_;
   std::vector<std::array<int, 2>> parents_;                ///< of nodes beyond the unrefined ones
   std::vector<Element> elements_;                          ///< unrefined ones first; children after their parents
-  std::vector<std::vector<int>> uncut_at_;                 ///< per node: elements of the mesh as it is
+  std::vector<std::vector<int>> uncut_at_;                 ///< per node: elements of the mesh as it is, ascending
   std::vector<int> ring_, waiting_;                        ///< scratch
   int patches_ = 0;                                        ///< written so far
   std::vector<int> element_place_of_, triangle_place_of_;  ///< of what is written so far

@@ -5,6 +5,8 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <unordered_map>
+#include <utility>
 
 #include "core/disjoint_sets.h"
 #include "mesh/edge_table.h"
@@ -113,9 +115,11 @@ void requireManifold(const TriangleMesh& mesh, const EdgeTable& edges, const std
                               "Select > All by Trait > Non Manifold)");
 }
 
-/// Neighbours along borders of each vertex that lies on one.
-std::multimap<int, int> bordersOf(const EdgeTable& edges) {
-  std::multimap<int, int> borders;
+/// Border edges from each of their ends to the other.
+using Borders = std::set<std::pair<int, int>>;
+
+Borders bordersOf(const EdgeTable& edges) {
+  Borders borders;
   for (const EdgeTable::Edge& edge : edges) {
     if (edge.count != 1) continue;
     borders.emplace(edge.nodes[0], edge.nodes[1]);
@@ -125,31 +129,35 @@ std::multimap<int, int> bordersOf(const EdgeTable& edges) {
 }
 
 /// Takes an edge that begins at `from` out of `borders`. @return where it ends.
-int takeBorder(std::multimap<int, int>& borders, int from) {
-  const auto step = borders.find(from);
+int takeBorder(Borders& borders, int from) {
+  const auto step = borders.lower_bound({from, 0});
   const int to = step->second;
   borders.erase(step);
-  auto back = borders.lower_bound(to);
-  while (back->second != from) ++back;
-  borders.erase(back);
+  borders.erase({to, from});
   return to;
 }
 
 /// Loops of border edges, none through a vertex twice. As no edge has more than two triangles, borders lead on at every vertex.
 std::vector<std::vector<int>> borderLoops(const EdgeTable& edges) {
-  std::multimap<int, int> borders = bordersOf(edges);
+  Borders borders = bordersOf(edges);
   std::vector<std::vector<int>> loops;
   std::vector<int> way;
+  std::unordered_map<int, std::ptrdiff_t> place_of;  // on the way: a border may have as many vertices as the mesh
   while (!borders.empty() || way.size() > 1) {
-    if (way.empty()) way.push_back(borders.begin()->first);
+    if (way.empty()) {
+      way.push_back(borders.begin()->first);
+      place_of = {{way.front(), 0}};
+    }
     const int to = takeBorder(borders, way.back());
-    const auto met = std::find(way.begin(), way.end(), to);
-    if (met == way.end()) {
+    const auto [met, is_new] = place_of.emplace(to, way.size());
+    if (is_new) {
       way.push_back(to);
       continue;
     }
-    loops.emplace_back(met, way.end());
-    way.erase(met + 1, way.end());
+    const auto begin = way.begin() + met->second;
+    loops.emplace_back(begin, way.end());
+    for (auto left = begin + 1; left != way.end(); ++left) place_of.erase(*left);
+    way.erase(begin + 1, way.end());
     if (way.size() == 1) way.clear();
   }
   return loops;
@@ -171,13 +179,17 @@ void refuseOpen(const TriangleMesh& mesh, const std::vector<std::vector<int>>& l
                 const std::string& source) {
   std::size_t large = 0;
   const std::vector<int>* widest = nullptr;
+  double widest_m = -1.0;
   for (const std::vector<int>& loop : loops) {
-    if (widthOf(mesh, loop) > allowed_m) ++large;
-    if (widest == nullptr || widthOf(mesh, loop) > widthOf(mesh, *widest)) widest = &loop;
+    const double width_m = widthOf(mesh, loop);
+    if (width_m > allowed_m) ++large;
+    if (!(width_m > widest_m)) continue;
+    widest = &loop;
+    widest_m = width_m;
   }
   if (large == 0) return;
   throw std::invalid_argument(source + ": it is open: " + counted(large, "hole") + ", the widest " +
-                              millimetres(widthOf(mesh, *widest)) + " across at " + placeText(middleOf(mesh, *widest)) +
+                              millimetres(widest_m) + " across at " + placeText(middleOf(mesh, *widest)) +
                               "; holes up to three cells (" + millimetres(allowed_m) +
                               ") are closed, larger ones are yours to close (Blender: Fill; MeshLab: Close Holes), or "
                               "use the surface as it is as a `shell`");

@@ -53,6 +53,7 @@ Crossings findCrossings(const TriangleMesh& mesh) {
       if (other <= t || shareVertex(mesh.triangles[t], mesh.triangles[other])) continue;
       const auto place = crossing(tree.corners(t), tree.corners(other));
       if (place && found.count++ == 0) found.place = *place;
+      if (found.count > Crossings::kMost) return found;
     }
   }
   return found;
@@ -61,7 +62,8 @@ Crossings findCrossings(const TriangleMesh& mesh) {
 std::string crossingText(const Crossings& crossings) {
   std::ostringstream text;
   text.precision(3);
-  text << "it passes through itself; " << crossings.count << (crossings.count == 1 ? " pair" : " pairs")
+  text << "it passes through itself; " << (crossings.count > Crossings::kMost ? "more than " : "")
+       << std::min(crossings.count, Crossings::kMost) << (crossings.count == 1 ? " pair" : " pairs")
        << " of triangles cross, the first at (" << crossings.place.transpose()
        << ") m; repair it there (Blender: 3D Print Toolbox; MeshLab: Remove Self Intersecting Faces, then Close Holes)";
   return text.str();

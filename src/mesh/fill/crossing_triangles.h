@@ -12,7 +12,9 @@ namespace tissue_contact {
 
 /// Pairs of triangles without a common vertex that cross each other.
 struct Crossings {
-  std::size_t count = 0;
+  /// No more are counted: of thousands of parts that pass through each other all pairs cross.
+  static constexpr std::size_t kMost = 10000;
+  std::size_t count = 0;            ///< kMost + 1: more than kMost
   Vector3 place = Vector3::Zero();  ///< of the first, m
 };
 Crossings findCrossings(const TriangleMesh& mesh);
