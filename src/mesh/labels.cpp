@@ -107,8 +107,9 @@ MemberRegion membersOf(const CellDataRegion& region, const MeshLabels& labels, c
     names.push_back(data.name);
     if (data.name != region.name) continue;
     std::vector<Vector3> places;
-    for (std::size_t e = 0; e < data.values.size(); ++e) {
-      if (data.values[e] == region.value) addPlaces(mesh.positions, mesh.tetrahedra[e], places);
+    for (std::size_t e = 0; e < labels.volume_of.size(); ++e) {
+      if (data.values[static_cast<std::size_t>(labels.volume_of[e])] == region.value)
+        addPlaces(mesh.positions, mesh.tetrahedra[e], places);
     }
     const std::string label = "cell data " + inQuotes(region.name) + " = " + twoDigits(region.value);
     if (!places.empty()) return members(label, std::move(places));

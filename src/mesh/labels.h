@@ -24,11 +24,12 @@ struct MeshLabels {
   };
   struct CellData {
     std::string name;
-    std::vector<double> values;  ///< per tetrahedron
+    std::vector<double> values;  ///< per volume of the file
   };
   NodalVectors nodes;  ///< of the file, with those that no tetrahedron uses, m
   std::vector<Group> groups;
   std::vector<CellData> cell_data;
+  std::vector<int> volume_of;  ///< per tetrahedron: the volume of the file that it is, or a part of
 };
 
 /// Whether any of them is a group or cell data.

@@ -158,26 +158,21 @@ void requireConvex(const NodalVectors& positions, const std::vector<Tetrahedron>
       "tetrahedra, for instance with ParaView's filter Tetrahedralize");
 }
 
-/// The volumes as tetrahedra, and what is said per volume said per tetrahedron.
-std::vector<Tetrahedron> splitVolumes(MeshFileContents& contents, const NodalVectors& positions,
-                                      const std::string& file) {
+/// The volumes as tetrahedra.
+/// @param volume_of gets, per tetrahedron, which volume it is a part of. Data stay those of volumes: there may be any number.
+std::vector<Tetrahedron> splitVolumes(const MeshFileContents& contents, const NodalVectors& positions,
+                                      const std::string& file, std::vector<int>& volume_of) {
   std::vector<Tetrahedron> tetrahedra;
   tetrahedra.reserve(contents.volumes.size());
-  std::vector<std::size_t> end_of;
-  end_of.reserve(contents.volumes.size());
-  for (const ElementCorners& corners : contents.volumes) {
+  volume_of.clear();
+  for (std::size_t volume = 0; volume < contents.volumes.size(); ++volume) {
+    const ElementCorners& corners = contents.volumes[volume];
     const std::size_t begin = tetrahedra.size();
     addTetrahedra(corners, tetrahedra);
-    if (cornerCount(corners) != 4) requireConvex(positions, tetrahedra, begin, end_of.size(), file);
-    end_of.push_back(tetrahedra.size());
+    if (cornerCount(corners) != 4) requireConvex(positions, tetrahedra, begin, volume, file);
+    volume_of.resize(tetrahedra.size(), static_cast<int>(volume));
   }
   if (tetrahedra.empty()) throw std::invalid_argument("mesh file '" + file + "': all of its volumes have collapsed");
-  for (MeshLabels::CellData& data : contents.cell_data) {
-    std::vector<double> values;
-    values.reserve(tetrahedra.size());
-    for (std::size_t i = 0; i < end_of.size(); ++i) values.resize(end_of[i], data.values[i]);
-    data.values = std::move(values);
-  }
   return tetrahedra;
 }
 
@@ -232,9 +227,10 @@ TetMesh loadTetMesh(const MeshDescription& description, const MeshPreparation& p
   requireSize(contents, description.file);
   const std::vector<int> merged = treatCoincidentNodes(description, contents);
   TetMesh mesh{columnsOf(contents.nodes), {}};
-  mesh.tetrahedra = splitVolumes(contents, mesh.positions, description.file);
+  std::vector<int> volume_of;
+  mesh.tetrahedra = splitVolumes(contents, mesh.positions, description.file, volume_of);
   if (labels != nullptr) {
-    *labels = {mesh.positions * description.scale_m_per_unit, {}, std::move(contents.cell_data)};
+    *labels = {mesh.positions * description.scale_m_per_unit, {}, std::move(contents.cell_data), std::move(volume_of)};
     for (const MeshFileContents::Group& group : contents.groups) labels->groups.push_back(splitGroup(group));
   }
   std::vector<int> needless = std::move(contents.between_corners);
