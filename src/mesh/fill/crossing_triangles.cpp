@@ -1,6 +1,7 @@
 #include "mesh/fill/crossing_triangles.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <sstream>
 #include <vector>
@@ -17,7 +18,9 @@ std::optional<Vector3> crossing(const Vector3& from, const Vector3& to, const Ve
   const Vector3 v = c[2] - c[0];
   const Vector3 p = way.cross(v);
   const double determinant = u.dot(p);
-  if (determinant == 0.0) return std::nullopt;  // parallel, or without area
+  // Parallel but for round-off, or without area. In one plane, as of a tube's strips, where the rest would be noise.
+  constexpr double kParallel = 1e-9;
+  if (std::abs(determinant) <= kParallel * way.norm() * u.norm() * v.norm()) return std::nullopt;
   const Vector3 s = (from - c[0]) / determinant;
   const double a = s.dot(p);
   const Vector3 q = s.cross(u);

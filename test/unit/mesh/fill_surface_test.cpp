@@ -383,6 +383,28 @@ TEST(CrossingTriangles, AreCountedWithAPlace) {
 }
 
 // Of 5000 tetrahedra around one point they took 57 s to count, and days of the largest file that is read.
+// The strips of a tube are flat along it: triangles in one plane whose determinant is round-off. 26 pairs of these were told to cross.
+TEST(CrossingTriangles, OfATubeThereAreNone) {
+  constexpr int kAround = 36;
+  constexpr int kAlong = 20;
+  const Matrix3 R = Eigen::AngleAxisd(0.7, Vector3(1.0, 2.0, -1.0).normalized()).toRotationMatrix();
+  TriangleMesh tube;
+  tube.vertices.resize(3, kAround * (kAlong + 1));
+  for (int i = 0; i < tube.vertices.cols(); ++i) {
+    const double angle = 2.0 * M_PI * (i % kAround) / kAround;
+    tube.vertices.col(i) = R * Vector3(0.01 * std::cos(angle), 0.01 * std::sin(angle), 0.0037 * (i / kAround));
+  }
+  for (int k = 0; k < kAlong; ++k) {
+    for (int i = 0; i < kAround; ++i) {
+      const int next = (i + 1) % kAround;
+      const int a = k * kAround + i, b = k * kAround + next, c = a + kAround, d = b + kAround;
+      tube.triangles.push_back({a, b, d});
+      tube.triangles.push_back({a, d, c});
+    }
+  }
+  EXPECT_EQ(findCrossings(tube).count, 0u);
+}
+
 TEST(CrossingTriangles, AreNotCountedBeyondABound) {
   std::vector<Vector3> points;
   std::vector<Triangle> triangles;
