@@ -51,7 +51,7 @@ void DelassusSystem::addContact(Eigen::Index c) {
   if (!can_move) {
     problem_.q.segment<3>(3 * c).setZero();
   } else {
-    problem_.W(3 * c, 3 * c) += row.normal_compliance;
+    problem_.W.diagonal().segment<3>(3 * c) += compliancesOf(row);
   }
 }
 

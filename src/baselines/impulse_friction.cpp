@@ -13,6 +13,7 @@ void applyFriction(const ContactProblem& problem, const ContactRow& row, Vector3
     const BodySystem& body = problem.bodies[at.body];
     if (!(*body.fixed)[at.node]) mobility += at.weight * at.weight / body.mass[at.node];
   }
+  if (mobility > 0.0) mobility += row.tangential_compliance;
   const Vector2 sliding = relativeVelocity(row, v).tail<2>();
   const double speed = sliding.norm();
   if (!(mobility > 0.0) || !(speed > 0.0)) return;

@@ -99,6 +99,7 @@ void ContactMemory::giveSlots(const Contact* fresh, std::size_t first, std::size
 void ContactMemory::recall(const std::vector<Contact>& contacts, const std::vector<double>& reach_m,
                            std::vector<SolvedContact>& inherited) {
   inherited.resize(contacts.size());
+  frictions_W_.assign(contacts.size(), Vector3::Zero());
   continued_.assign(remembered_.size(), false);
   unmatched_.clear();
   std::size_t old = 0;
@@ -107,7 +108,7 @@ void ContactMemory::recall(const std::vector<Contact>& contacts, const std::vect
     inherited[c].contact = contacts[c];
     while (old < remembered_.size() && keyBefore(remembered_[old].contact, contacts[c])) ++old;
     if (old < remembered_.size() && remembered_[old].contact.key == contacts[c].key) {
-      inherit(old, inherited[c]);
+      inherit(old, c, inherited);
     } else {
       unmatched_.push_back(c);
     }
@@ -115,7 +116,10 @@ void ContactMemory::recall(const std::vector<Contact>& contacts, const std::vect
   inheritNearest(reach_m, inherited);
 }
 
-void ContactMemory::inherit(std::size_t old, SolvedContact& contact) {
+void ContactMemory::inherit(std::size_t old, std::size_t index, std::vector<SolvedContact>& inherited) {
+  SolvedContact& contact = inherited[index];
+  const Vector3 n = remembered_[old].contact.R_WC.col(0);
+  frictions_W_[index] = remembered_[old].force_on_tissue_n - n * n.dot(remembered_[old].force_on_tissue_n);
   continued_[old] = true;
   contact.state = remembered_[old].state;
   contact.force_on_tissue_n = remembered_[old].force_on_tissue_n;
@@ -138,7 +142,7 @@ void ContactMemory::inheritNearest(const std::vector<double>& reach_m, std::vect
   });
   for (const Candidate& pair : candidates_) {
     if (!continued_[pair.old] && inherited[pair.contact].state == ContactState::kOpen) {
-      inherit(pair.old, inherited[pair.contact]);
+      inherit(pair.old, pair.contact, inherited);
     }
   }
 }

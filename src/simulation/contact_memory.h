@@ -40,6 +40,9 @@ class ContactMemory {
   void recall(const std::vector<Contact>& contacts, const std::vector<double>& reach_m,
               std::vector<SolvedContact>& inherited);
 
+  /// Of a contact of the last recall(): the tangential force on the tissue of the one it continues, N, world frame; no match: 0.
+  const Vector3& frictionBefore(std::size_t contact) const { return frictions_W_[contact]; }
+
   static constexpr int kKeptPoints =
       3;  ///< with the fresh one: as many as a face can need to be held flat, and one more
 
@@ -52,7 +55,7 @@ class ContactMemory {
   /// become open: nobody inherits from them.
   /// @param fresh null: none was detected on the feature.
   void giveSlots(const Contact* fresh, std::size_t first, std::size_t end);
-  void inherit(std::size_t old, SolvedContact& contact);
+  void inherit(std::size_t old, std::size_t contact, std::vector<SolvedContact>& inherited);
   void inheritNearest(const std::vector<double>& reach_m, std::vector<SolvedContact>& inherited);
 
   struct Candidate {
@@ -61,6 +64,7 @@ class ContactMemory {
     std::size_t old;
   };
   std::vector<SolvedContact> remembered_;  ///< sorted by key
+  std::vector<Vector3> frictions_W_;       ///< per contact of the last recall()
   std::vector<bool> continued_;            ///< per remembered contact: by one of this step
   std::vector<Contact> kept_;
   std::vector<std::size_t> unmatched_;

@@ -230,6 +230,7 @@ void Simulator::Implementation::retune() {
     if (followers[t]) followers[t]->goOn();
     is_other_body = true;
   }
+  if (is_other_body) contacts.setMaterials(scene.tissues);
   if (takeFriction(changed, scene)) friction = FrictionTable(scene, instruments, tissues);
   if (takeSolver(changed.solver, scene.solver)) {
     solver = makeContactSolver(scene.solver, clock);

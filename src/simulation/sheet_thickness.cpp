@@ -3,12 +3,37 @@
 #include <algorithm>
 #include <tuple>
 
+#include "tissue_contact/mesh/triangle_mesh.h"
+#include "tissue_contact/tissue/element_materials.h"
+
 namespace tissue_contact {
+namespace {
+
+/// Per node, N/m: what half the thickness resists with in simple shear over the node's share of the area at rest.
+VectorX shearStiffnessOf(const Tissue& tissue, const TissueDescription& description) {
+  VectorX stiffness = VectorX::Zero(tissue.nodeCount());
+  for (std::size_t t = 0; t < tissue.surface().size(); ++t) {
+    const int region = tissue.surfaceRegions().empty() ? -1 : tissue.surfaceRegions()[t];
+    const double G = lameParameters(region < 0 ? description.material : description.regions[region].material).mu;
+    const double third = triangleArea(tissue.restPositions(), tissue.surface()[t]) / 3.0;
+    for (const int node : tissue.surface()[t]) stiffness[node] += G * third / (0.5 * tissue.thickness());
+  }
+  return stiffness;
+}
+
+}  // namespace
 
 SheetThickness::SheetThickness(const std::vector<Tissue>& tissues)
     : tissues_(tissues), any_sheet_(std::any_of(tissues.begin(), tissues.end(), [](const Tissue& tissue) {
         return tissue.thicknessStiffness().size() > 0;
       })) {}
+
+void SheetThickness::setMaterials(const std::vector<TissueDescription>& descriptions) {
+  shear_stiffness_.resize(tissues_.size());
+  for (std::size_t t = 0; t < tissues_.size(); ++t) {
+    if (tissues_[t].thickness() > 0.0) shear_stiffness_[t] = shearStiffnessOf(tissues_[t], descriptions[t]);
+  }
+}
 
 void SheetThickness::prepare(const std::vector<SolvedContact>& contacts) {
   if (!any_sheet_) return;
@@ -23,7 +48,7 @@ void SheetThickness::prepare(const std::vector<SolvedContact>& contacts) {
   std::sort(pressed_.begin(), pressed_.end(),
             [&](const Pressed& one, const Pressed& other) { return order(one) < order(other); });
 
-  stiffnesses_.assign(contacts.size(), {0.0, 0.0});
+  stiffnesses_.assign(contacts.size(), {});
   for (auto begin = pressed_.cbegin(); begin != pressed_.cend();) {
     const auto end = std::find_if(begin, pressed_.cend(), [&](const Pressed& one) {
       return std::tie(one.tissue, one.node, one.by) != std::tie(begin->tissue, begin->node, begin->by);
@@ -33,8 +58,12 @@ void SheetThickness::prepare(const std::vector<SolvedContact>& contacts) {
   }
   compliances_.resize(contacts.size());
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    compliances_[c] = 0.0;
-    for (const double stiffness : stiffnesses_[c]) compliances_[c] += stiffness > 0.0 ? 1.0 / stiffness : 0.0;
+    compliances_[c] = SheetCompliance();
+    for (const Stiffness& stiffness : stiffnesses_[c]) {
+      if (!(stiffness.normal > 0.0)) continue;
+      compliances_[c].normal += 1.0 / stiffness.normal;
+      compliances_[c].tangential += 1.0 / stiffness.tangential;
+    }
   }
 }
 
@@ -57,10 +86,14 @@ void SheetThickness::add(const SolvedContact& solved, std::size_t contact, int s
 void SheetThickness::divide(std::vector<Pressed>::const_iterator begin, std::vector<Pressed>::const_iterator end) {
   double pressing = 0.0;
   for (auto one = begin; one != end; ++one) pressing += one->presses ? one->weight : 0.0;
-  const double stiffness = tissues_[begin->tissue].thicknessStiffness()[begin->node];
+  const double normal = tissues_[begin->tissue].thicknessStiffness()[begin->node];
+  const double tangential = shear_stiffness_[begin->tissue][begin->node];
   for (auto one = begin; one != end; ++one) {
     const double sum = one->presses ? pressing : pressing + one->weight;
-    stiffnesses_[one->contact][one->side] += stiffness * one->weight / std::max(sum, 1.0);
+    const double share = one->weight / std::max(sum, 1.0);
+    Stiffness& stiffness = stiffnesses_[one->contact][one->side];
+    stiffness.normal += normal * one->weight / std::max(sum, 1.0);
+    stiffness.tangential += tangential * share;
   }
 }
 

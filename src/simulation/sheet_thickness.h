@@ -1,6 +1,6 @@
 /// @file
 /// Room `simulation`, private: how far sheets give way through their thickness where something presses them. Contacts of a
-/// step in; a compliance for each out.
+/// step in; compliances for each out.
 #pragma once
 
 #include <array>
@@ -11,20 +11,31 @@
 
 namespace tissue_contact {
 
+/// Of one contact, m/N: what the sheets on both its sides give way; 0: volumes touch.
+struct SheetCompliance {
+  double normal = 0.0;
+  double tangential = 0.0;  ///< in shear
+};
+
 /// Without it jaws that close to less than the thickness of a sheet between them would ask for what no force can do.
 /// What half the thickness resists with over a node's share of the area, Tissue::thicknessStiffness(), is divided among the
 /// contacts of one shape, or other tissue, that press there, by their weights: so plates over all of a sheet meet
 /// (lambda + 2 mu) A (1 - d / t) at the distance d. Linear: with a law that stiffens to the end jaws with real meshes press single
-/// nodes with all they have. No allocation once vectors have grown; nothing is done where all tissues are volumes.
+/// nodes with all they have. Likewise tangentially what half the thickness resists with in simple shear, G A / (t / 2): two tools that hold
+/// the same nodes would have friction that only their order in the scene decides between them. No allocation once vectors have grown; nothing is done where all tissues are volumes.
 class SheetThickness {
  public:
   explicit SheetThickness(const std::vector<Tissue>& tissues);
 
+  /// To be called before prepare(), and when materials change. @param descriptions of the tissues.
+  void setMaterials(const std::vector<TissueDescription>& descriptions);
+
   /// @param contacts of the step, with the forces of the step before.
   void prepare(const std::vector<SolvedContact>& contacts);
 
-  /// Of the contact of that index, m/N: what the sheets on both its sides give way; 0: volumes touch.
-  double complianceOf(std::size_t contact) const { return any_sheet_ ? compliances_[contact] : 0.0; }
+  SheetCompliance complianceOf(std::size_t contact) const {
+    return any_sheet_ ? compliances_[contact] : SheetCompliance();
+  }
 
  private:
   /// A sheet's node as one contact presses it.
@@ -42,9 +53,14 @@ class SheetThickness {
 
   const std::vector<Tissue>& tissues_;
   bool any_sheet_ = false;
-  std::vector<Pressed> pressed_;                    ///< scratch
-  std::vector<std::array<double, 2>> stiffnesses_;  ///< scratch: per contact and side, N/m; 0: no sheet
-  std::vector<double> compliances_;
+  std::vector<Pressed> pressed_;          ///< scratch
+  std::vector<VectorX> shear_stiffness_;  ///< per tissue and node, N/m: G A / (t / 2); empty: a volume
+  struct Stiffness {
+    double normal = 0.0;
+    double tangential = 0.0;
+  };
+  std::vector<std::array<Stiffness, 2>> stiffnesses_;  ///< scratch: per contact and side, N/m; 0: no sheet
+  std::vector<SheetCompliance> compliances_;
 };
 
 }  // namespace tissue_contact

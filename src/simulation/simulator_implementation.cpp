@@ -49,6 +49,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       wrenches(instruments.size()),
       load_watch(scene, tissues) {
   requireMethodForLaws(scene);
+  contacts.setMaterials(scene.tissues);
   atEntry("step.max_step_s", [&] { requirePositive("step.max_step_s", scene.step.max_step_s, "s"); });
   atEntry("advisor.sleep_error", [&] { requireNonNegative("advisor.sleep_error", scene.advisor.sleep_error); });
   if (!scene.tissue_pairs.empty()) {

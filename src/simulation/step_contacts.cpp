@@ -162,6 +162,8 @@ void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, doubl
       row.u_tool.tail<2>() += u_besides_[c];
     }
     solution.impulses[c] = dt * (R_WC.transpose() * before.force_on_tissue_n);
+    row.u_tool.tail<2>() +=
+        row.tangential_compliance * dt * (R_WC.rightCols<2>().transpose() * memory_.frictionBefore(c));
     solution.states[c] = before.state;
   }
   land(solution.v, dt, rows);
@@ -231,12 +233,13 @@ void StepContacts::placeRow(std::size_t index, double dt, ContactRow& row) const
     row.u_tool.setZero();
     half_extent = edges_.finer(contact);
   }
-  const double compliance = thickness_.complianceOf(index);
-  row.normal_compliance = compliance / (dt * dt);
+  const SheetCompliance compliance = thickness_.complianceOf(index);
+  row.normal_compliance = compliance.normal / (dt * dt);
+  row.tangential_compliance = compliance.tangential / (dt * dt);
   // A sheet that is squeezed is no deeper than its force makes it.
   const double force = std::max(contact.R_WC.col(0).dot(contacts_[index].force_on_tissue_n), 0.0);
   const double depth = row.gap_m < 0.0 ? std::max(-row.gap_m - settling_.depth(key), 0.0) : -row.gap_m;
-  row.required_u_n = std::min(depth / dt, half_extent / kRecoveryTime_s + compliance * force / dt);
+  row.required_u_n = std::min(depth / dt, half_extent / kRecoveryTime_s + compliance.normal * force / dt);
 }
 
 std::optional<double> StepContacts::weakestNetForce(int tissue, const std::vector<Vector3>& impulses, double dt) {
@@ -269,7 +272,7 @@ Vector3 StepContacts::slipOf(std::size_t c, const ContactProblem& problem, const
   const ContactState before = contacts_[c].state;
   const bool held = solution.states[c] == ContactState::kStatic;
   const bool lands = before == ContactState::kOpen;
-  Vector2 u_t = relativeVelocity(problem.contacts[c], solution.v).tail<2>();
+  Vector2 u_t = slidingVelocity(problem.contacts[c], solution.v, solution.impulses[c]);
   if (!held || !lands) u_t += u_besides_[c];
   Vector3 slip = problem.dt_s * (tangents * u_t);
   if (!held) return slip;

@@ -43,6 +43,8 @@ class StepContacts {
                const SurfaceEdges& edges);
 
   void clear();  ///< no contacts and no history
+  /// To be called before the first step, and when materials change. @param descriptions of the tissues.
+  void setMaterials(const std::vector<TissueDescription>& descriptions) { thickness_.setMaterials(descriptions); }
 
   /// Begins a step with the contacts that `detector` has found (sorted by key): adds the points that are kept and lets
   /// each contact inherit.

@@ -132,7 +132,7 @@ void CholeskyRelaxation::prepareContact(const ContactProblem& problem, std::size
   }
   local.W = row.R_WC.transpose() * W_W * row.R_WC;
   if (local.W(0, 0) > 0.0) {
-    local.W(0, 0) += row.normal_compliance;
+    local.W.diagonal() += compliancesOf(row);
     return;
   }
   solution.impulses[contact].setZero();

@@ -16,6 +16,7 @@ Vector3 ContactCorrector::correct(const ContactProblem& problem, std::size_t con
   ContactState& state = solution.states[contact];
   Vector3 q = u - W * impulse;
   q[0] += row.normal_compliance * impulse[0] - row.required_u_n;
+  q.tail<2>() += row.tangential_compliance * impulse.tail<2>();
   const ContactAnswer answer = solve(contact, W, q, row.law, row.was_sliding, state);
   Vector3 change = answer.impulse - impulse;
   impulse = answer.impulse;

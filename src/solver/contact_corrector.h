@@ -42,7 +42,7 @@ class ContactCorrector {
   }
 
   /// The same for a contact of a step, whose impulse and state are set.
-  /// @param W local operator J P^-1 J' with the compliance of the row, 1/kg.
+  /// @param W local operator J P^-1 J' with the compliances of the row, 1/kg.
   /// @param u relative velocity with the present impulse, m/s.
   /// @return the change of the impulse, contact frame, N s.
   Vector3 correct(const ContactProblem& problem, std::size_t contact, const Matrix3& W, const Vector3& u,

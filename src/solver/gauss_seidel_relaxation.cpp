@@ -130,7 +130,7 @@ void GaussSeidelRelaxation::prepareContacts(const ContactProblem& problem, Conta
       solution.states[c] = ContactState::kOpen;
       continue;
     }
-    W_[c](0, 0) += row.normal_compliance;
+    W_[c].diagonal() += compliancesOf(row);
     const Vector3 impulse_W = row.R_WC * solution.impulses[c];
     for (int a = 0; a < row.node_count; ++a) {
       const RowNode& at = row.nodes[a];

@@ -124,7 +124,7 @@ Residuals computeResiduals(const ContactProblem& problem, const ContactSolution&
     worsen(worst.complementarity_w, std::abs(force[0] * (u_n - row.required_u_n)));
     if (state == ContactState::kOpen) continue;
     const Vector2 friction = force.tail<2>();
-    const Vector2 sliding = u.tail<2>();
+    const Vector2 sliding = u.tail<2>() + row.tangential_compliance * solution.impulses[c].tail<2>();
     worsen(worst.cone_violation_n, frictionExcess(row.law, force, state != ContactState::kStatic || row.was_sliding));
     if (state == ContactState::kStatic) {
       worsen(worst.static_slip_m_per_s, sliding.norm());

@@ -62,7 +62,7 @@ struct DelassusReport {
 DelassusReport solveDelassus(const DelassusProblem& problem, const SolverDescription& description,
                              DelassusSolution& solution);
 
-/// A step's problem with its bodies eliminated by sparse Cholesky: W = J A^-1 J' with normal compliances, q = J A^-1 b - u_tool - required_u_n
+/// A step's problem with its bodies eliminated by sparse Cholesky: W = J A^-1 J' with the rows' compliances, q = J A^-1 b - u_tool - required_u_n
 /// n. Contacts on nodes that cannot move get zero rows (q too): r = 0, open.
 /// @throws std::runtime_error naming the body whose A is not positive definite.
 /// @throws std::invalid_argument for more than kMostDenseContacts.

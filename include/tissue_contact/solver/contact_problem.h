@@ -2,8 +2,8 @@
 /// Room `solver`: the contact problem of one step. Linear systems of the tissues and contact rows in; velocities,
 /// impulses and states out.
 ///
-///   A v = b + J' lambda,   u = J v - u_tool,   0 <= lambda_n  _|_  u_n + C lambda_n + gap/dt >= 0,   Coulomb friction per
-///   contact, C: normal_compliance of its row.
+///   A v = b + J' lambda,   u = J v - u_tool + C lambda,   0 <= lambda_n  _|_  u_n + gap/dt >= 0,   Coulomb friction per contact by
+///   u_t, C: diagonal, normal_compliance and twice tangential_compliance of its row.
 #pragma once
 
 #include <array>
@@ -58,8 +58,11 @@ struct ContactRow {
   /// u_n + normal_compliance * lambda_n must be at least this, m/s: -gap/dt, limited when penetrating deeply.
   double required_u_n = 0.0;
   double normal_compliance = 0.0;  ///< 1/kg: c / dt^2 where a sheet gives way through its thickness by c, m/N
+  /// Likewise where it shears, in both tangential directions: what is stuck has u_t + tangential_compliance * lambda_t = 0, what slides
+  /// does so along that. u_tool has what the force of the step before shears it by, so that only a change of force moves it.
+  double tangential_compliance = 0.0;
   /// Velocity of the instrument's material point, contact frame, m/s; tangentially with what the simulation lets the
-  /// contact do besides (a landing, a slip taken back).
+  /// contact do besides (a landing, a slip taken back, a sheet's shear).
   Vector3 u_tool = Vector3::Zero();
   CoulombLaw law;
   bool was_sliding = false;  ///< it was kinetic at the end of the previous step
@@ -67,6 +70,11 @@ struct ContactRow {
   /// until the forces of each are known.
   int pair = 0;
 };
+
+/// Of the directions of its frame, 1/kg: what its sheets add to the diagonal of its local operator.
+inline Vector3 compliancesOf(const ContactRow& row) {
+  return {row.normal_compliance, row.tangential_compliance, row.tangential_compliance};
+}
 
 struct ContactProblem {
   double dt_s = 0.0;
@@ -107,6 +115,12 @@ inline Vector3 tissueVelocity(const ContactRow& row, const std::vector<NodalVect
 /// Relative velocity u = J v - u_tool of a contact in its frame, m/s.
 inline Vector3 relativeVelocity(const ContactRow& row, const std::vector<NodalVectors>& v) {
   return row.R_WC.transpose() * tissueVelocity(row, v) - row.u_tool;
+}
+
+/// How fast a contact slides, contact frame, m/s: without what a sheet shears by.
+/// @param impulse of the contact, contact frame, N s.
+inline Vector2 slidingVelocity(const ContactRow& row, const std::vector<NodalVectors>& v, const Vector3& impulse) {
+  return relativeVelocity(row, v).tail<2>() + row.tangential_compliance * impulse.tail<2>();
 }
 
 }  // namespace tissue_contact
