@@ -11,50 +11,16 @@
 #include "contact/narrow_phase.h"
 #include "contact/shape/shape_union.h"
 #include "contact/tolerances.h"
+#include "contact/touching_shapes.h"
 #include "contact/vertex_contact.h"
 #include "mesh/mesh_checks.h"
 #include "mesh/surface/moving_surface.h"
 #include "mesh/surface/triangle_geometry.h"
 #include "tissue_contact/core/check.h"
-#include "tissue_contact/core/entry_error.h"
 
 namespace tissue_contact {
 
-/// One shape of one instrument's touching link. With linkage, as GCC asks of a member's type in a file that another includes (unity builds).
-struct TouchingShape {
-  int instrument;
-  int contact_link;  // index into Instrument::contactLinks()
-  int shape;         // index into ContactLink::shapes
-  int link;          // index into RobotModel::links()
-  Pose X_LS;
-  std::unique_ptr<ShapeDistance> distance;
-  double half_extent;  ///< smallest, m
-};
-
 namespace {
-
-/// Of the smaller half extent of two shapes: the radius of the ball that fills the groove between them. Jaws keep their
-/// outline, and the groove of two parallel cylinders its walls at 48 degrees and more, which no friction below 1.1 locks.
-constexpr double kGrooveRadius = 0.5;
-
-std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instruments,
-                                          const MeshPreparation& preparation) {
-  ShapeDistances distances(preparation);
-  std::vector<TouchingShape> result;
-  for (std::size_t i = 0; i < instruments.size(); ++i) {
-    const std::vector<ContactLink>& links = instruments[i].contactLinks();
-    for (std::size_t l = 0; l < links.size(); ++l) {
-      for (std::size_t s = 0; s < links[l].shapes.size(); ++s) {
-        const CollisionShape& shape = links[l].shapes[s];
-        auto distance = atEntry(elementOf(elementOf("instruments", i) + ".contact_links", l),
-                                [&] { return distances.make(shape); });
-        result.push_back({static_cast<int>(i), static_cast<int>(l), static_cast<int>(s), links[l].link, shape.X_LS,
-                          std::move(distance), smallestHalfExtent(shape)});
-      }
-    }
-  }
-  return result;
-}
 
 Eigen::AlignedBox3d boxAround(const ShapeDistance& shape, const Pose& X_WS, double margin) {
   const Vector3 centre = X_WS * shape.boxCentre();
@@ -74,8 +40,8 @@ struct ContactDetector::Implementation {
   std::vector<ShapeContact> found;
   int pinched = 0;  ///< contacts left out by the last detect(), because there is no room for them
 
-  void detectPair(MovingSurface& surface, const TouchingShape& shape, const Pose& X_WS, double margin, bool lets_under,
-                  std::vector<Contact>& contacts);
+  void detectPair(MovingSurface& surface, const TouchingShape& shape, const Pose& X_WS, double margin,
+                  const ShapesBeside* beside, std::vector<Contact>& contacts);
   double deepestGroove(const TouchingShape& shape, const std::vector<Pose>& X_WL) const;
   bool fitBetweenShapes(const TouchingShape& shape, const std::vector<std::vector<Pose>>& X_WL, Contact& contact) const;
   double surfaceDistance(MovingSurface& surface, const TouchingShape& shape, const Pose& X_WS, double bound,
@@ -120,8 +86,9 @@ void ContactDetector::detect(const std::vector<NodalVectors>& positions, const s
     for (const TouchingShape& shape : self.shapes) {
       const auto first = static_cast<std::ptrdiff_t>(contacts.size());
       const double groove = self.deepestGroove(shape, X_WL[shape.instrument]);
-      self.detectPair(surface, shape, X_WL[shape.instrument][shape.link] * shape.X_LS, margin_m + groove, groove == 0.0,
-                      contacts);
+      const OtherShapes others(self.shapes, shape, X_WL[shape.instrument]);
+      self.detectPair(surface, shape, X_WL[shape.instrument][shape.link] * shape.X_LS, margin_m + groove,
+                      groove > 0.0 ? &others : nullptr, contacts);
       if (self.shapes.size() == 1) continue;
       const auto is_none = [&](Contact& contact) {
         const bool has_room = self.fitBetweenShapes(shape, X_WL, contact);
@@ -133,14 +100,15 @@ void ContactDetector::detect(const std::vector<NodalVectors>& positions, const s
   }
 }
 
-/// @param lets_under not where another shape of the instrument closes the way below.
+/// @param beside of the instrument's other shapes; null: none is near this one.
 void ContactDetector::Implementation::detectPair(MovingSurface& surface, const TouchingShape& shape, const Pose& X_WS,
-                                                 double margin, bool lets_under, std::vector<Contact>& contacts) {
+                                                 double margin, const ShapesBeside* beside,
+                                                 std::vector<Contact>& contacts) {
   const Eigen::AlignedBox3d box = boxAround(*shape.distance, X_WS, margin + surface.halfThickness());
   if (!surface.box().intersects(box)) return;
   surface.overlapping(box, candidates);
   if (candidates.empty()) return;
-  narrow_phase.findContacts(*shape.distance, X_WS, surface, candidates, margin, found, lets_under);
+  narrow_phase.findContacts(*shape.distance, X_WS, surface, candidates, margin, found, beside);
   for (const ShapeContact& one : found) {
     Contact& contact = contacts.emplace_back();
     contact.key = {surface.tissue(), shape.instrument, shape.contact_link, shape.shape, one.feature, one.corner, 0, -1,
@@ -250,7 +218,8 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
     const VertexContact vertex(*shape.distance, surface, key.feature[0], inShape, normalOf);
     const bool is_vertex = key.feature[1] < 0 && key.corner < 0;
     const Vector3 own = here.normal;
-    if (is_vertex && groove == 0.0) here = vertex.leaves(here);
+    const OtherShapes others(implementation_->shapes, shape, X_WL[shape.instrument]);
+    if (is_vertex) here = vertex.leaves(here, groove > 0.0 ? &others : nullptr);
     const double gap = here.distance - surface.halfThickness();
     const auto faces = [&](int triangle) { return here.normal.dot(normalOf(triangle)) < -kFacing; };
     if (!(gap <= margin_m + groove) || (surface.isVolume() && !surface.anyTriangleOf(key.feature, faces))) return false;

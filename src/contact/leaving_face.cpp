@@ -3,7 +3,7 @@
 namespace tissue_contact {
 
 SignedDistance leavingFace(const ShapeDistance& shape, const Vector3& p_S, const VertexSurroundings& around,
-                           const SignedDistance& here) {
+                           const SignedDistance& here, const ShapesBeside* beside) {
   constexpr double kAcross = 0.8;      // cosine; an edge turns the normal by as much
   constexpr double kFacesSide = -0.7;  // cosine: a triangle that the side pushes
   constexpr double kInset = 1e-3;      // of the shape's smallest half extent: far enough inside to tell in from out
@@ -26,6 +26,7 @@ SignedDistance leavingFace(const ShapeDistance& shape, const Vector3& p_S, const
   const Vector3 end = from + inside * along;
   const Vector3 normal = shape.at(end).normal;
   if (normal.dot(inward) < kAcross || normal.dot(here.normal) > kAcross) return here;
+  if (beside != nullptr && beside->closeWay(p_S, end)) return here;
   if (here.distance > 0.0) return {std::numeric_limits<double>::infinity(), normal};
   return {std::max(normal.dot(p_S - end), here.distance), normal};
 }

@@ -28,6 +28,14 @@ struct VertexSurroundings {
   }
 };
 
+/// What else of a tool there is beside a shape.
+class ShapesBeside {
+ public:
+  virtual ~ShapesBeside() = default;
+  /// Whether any of it is near the way between two points of the shape's frame, m.
+  virtual bool closeWay(const Vector3& p_S, const Vector3& end_S) const = 0;
+};
+
 /// A tool with edges (box, cylinder, mesh) that slides over a surface meets the next vertex sideways: it stands before the tool's side, a little
 /// above its lower face. The side is nearer, but the surface there runs under the tool; a real one, which has points between its vertices,
 /// passes below the edge. Pushed by the side, vertices are carried ahead: flat tools 12 mm wide, .1 to .4 mm deep in cells of 2 mm, were
@@ -37,9 +45,10 @@ struct VertexSurroundings {
 /// begins with a jump.
 /// @param p_S the vertex, of a volume, in the shape's frame, m.
 /// @param here the shape's distance there.
+/// @param beside asked whether it closes the way to that face, so that nothing leaves there; null: there is nothing.
 /// @returns that face's normal and gap; an infinite one where the vertex is still outside, beside the shape, and nothing
 ///   need hold it; else `here`.
 SignedDistance leavingFace(const ShapeDistance& shape, const Vector3& p_S, const VertexSurroundings& around,
-                           const SignedDistance& here);
+                           const SignedDistance& here, const ShapesBeside* beside = nullptr);
 
 }  // namespace tissue_contact

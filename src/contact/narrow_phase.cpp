@@ -55,9 +55,9 @@ void NarrowPhase::makeRoom(const MovingSurface& surface) {
 
 void NarrowPhase::findContacts(const ShapeDistance& shape, const Pose& X_WS, const MovingSurface& surface,
                                const std::vector<int>& candidates, double margin, std::vector<ShapeContact>& contacts,
-                               bool lets_under) {
-  call_ = {&shape,     &surface, X_WS.linear().transpose(), X_WS.translation(), margin + surface.halfThickness(),
-           lets_under, &contacts};
+                               const ShapesBeside* beside) {
+  call_ = {&shape, &surface, X_WS.linear().transpose(), X_WS.translation(), margin + surface.halfThickness(),
+           beside, &contacts};
   ++call_index_;
   makeRoom(surface);
   contacts.clear();
@@ -115,7 +115,7 @@ const NarrowPhase::NodeCache& NarrowPhase::measureVertex(int triangle, int corne
   const auto normal = [this](int other) -> const Vector3& { return triangleNormalOf(other); };
   const VertexContact vertex(*call_.shape, *call_.surface, node, position, normal);
   const bool is_near = here.distance <= call_.margin;
-  const SignedDistance left = is_near && call_.lets_under ? vertex.leaves(here) : here;
+  const SignedDistance left = is_near ? vertex.leaves(here, call_.beside) : here;
   const bool touches = add(triangle, Vector3::Unit(corner), -1, left.normal, left.distance);
   if (touches && left.normal == here.normal) {
     ShapeContact& contact = call_.contacts->back();

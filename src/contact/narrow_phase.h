@@ -27,6 +27,7 @@
 #include <limits>
 #include <vector>
 
+#include "contact/leaving_face.h"
 #include "contact/shape/shape_distance.h"
 #include "mesh/surface/moving_surface.h"
 #include "tissue_contact/core/types.h"
@@ -52,10 +53,10 @@ class NarrowPhase {
   /// @param candidates its triangles to look at, ascending.
   /// @param margin m.
   /// @param contacts overwritten, sorted by feature and corner. No allocation once the vectors have grown.
-  /// @param lets_under whether vertices beside an edge may pass below it (leaving_face.h).
+  /// @param beside what may keep vertices beside an edge from passing below it (leaving_face.h); null: nothing.
   void findContacts(const ShapeDistance& shape, const Pose& X_WS, const MovingSurface& surface,
                     const std::vector<int>& candidates, double margin, std::vector<ShapeContact>& contacts,
-                    bool lets_under = true);
+                    const ShapesBeside* beside = nullptr);
 
  private:
   struct NodeCache {
@@ -75,7 +76,7 @@ class NarrowPhase {
     Matrix3 R_SW;
     Vector3 p_WS;
     double margin = 0.0;  ///< from the triangles themselves
-    bool lets_under = false;
+    const ShapesBeside* beside = nullptr;
     std::vector<ShapeContact>* contacts = nullptr;
   };
 

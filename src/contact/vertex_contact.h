@@ -22,14 +22,15 @@ class VertexContact {
                 const Normal& normal)
       : shape_(shape), surface_(surface), node_(node), position_(position), normal_(normal) {}
 
-  /// The face through which the vertex leaves the shape (leaving_face.h). @param here the shape's distance at it.
-  SignedDistance leaves(const SignedDistance& here) const {
+  /// The face through which the vertex leaves the shape (leaving_face.h, which see for `beside`).
+  /// @param here the shape's distance at it.
+  SignedDistance leaves(const SignedDistance& here, const ShapesBeside* beside) const {
     if (!shape_.hasFlatParts() || !surface_.isVolume()) return here;
     VertexSurroundings around;
     eachTriangle([&](int triangle, const std::array<Vector3, 3>& corners) {
       around.add(position_(node_), corners, normal_(triangle), here.normal);
     });
-    return leavingFace(shape_, position_(node_), around, here);
+    return leavingFace(shape_, position_(node_), around, here, beside);
   }
 
   /// Mean normal of the shape over what the vertex stands for (nodal_normal.h).

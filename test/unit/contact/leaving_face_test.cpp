@@ -91,6 +91,49 @@ TEST(LeavingFace, BelowTheToolNothingChanges) {
   }
 }
 
+class Beside : public ShapesBeside {
+ public:
+  explicit Beside(bool closes) : closes_(closes) {}
+  bool closeWay(const Vector3& p_S, const Vector3& end_S) const override {
+    from_S = p_S;
+    to_S = end_S;
+    ++asked;
+    return closes_;
+  }
+
+  mutable Vector3 from_S = Vector3::Zero();
+  mutable Vector3 to_S = Vector3::Zero();
+  mutable int asked = 0;
+
+ private:
+  const bool closes_;
+};
+
+// Only where another shape is near the way below, not where there is one at all.
+TEST(LeavingFace, WhatClosesTheWayBelowKeepsTheSide) {
+  for (const Tool& tool : tools()) {
+    for (const double x : {0.00601, 0.00599}) {
+      const Beside near(true);
+      const Beside far(false);
+      const auto left_by = [&](const Beside& beside, double above) {
+        const Vector3 p(x, 0.0, -0.002 + above);
+        const SignedDistance here = tool.shape->at(p);
+        VertexSurroundings around;
+        around.add(p, {p, p + kEdge * Vector3::UnitX(), p + kEdge * Vector3::UnitY()}, Vector3::UnitZ(), here.normal);
+        return leavingFace(*tool.shape, p, around, here, &beside);
+      };
+      EXPECT_NEAR(left_by(near, kAbove).distance, x - 0.006, 1e-15) << tool.name;
+      EXPECT_LT(left_by(far, kAbove).normal.z(), -0.99) << tool.name;
+      for (const Beside* const beside : {&near, &far}) {
+        EXPECT_EQ(beside->from_S.z(), -0.002 + kAbove) << tool.name;
+        EXPECT_NEAR(beside->to_S.z(), -0.002, 1e-8) << tool.name;
+      }
+      left_by(far, 0.6 * kEdge);
+      EXPECT_EQ(far.asked, 1) << tool.name << ": what stays anyway is not asked for";
+    }
+  }
+}
+
 // Where it is round the nearest point is the one that holds, however the surface lies.
 TEST(LeavingFace, WhatIsRoundHasNoEdges) {
   const auto ball = makeSphereDistance(0.005);
