@@ -43,6 +43,9 @@ class ImpulseFriction : public IterativePredictorCorrector {
     }
     return report;
   }
+  double impulseLacking(const ContactProblem&, const ContactSolution&) override {
+    return 0.0;
+  }  // it is to lack friction
 
  private:
   ContactProblem frictionless_;

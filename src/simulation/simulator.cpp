@@ -1,5 +1,6 @@
 #include "tissue_contact/simulation/simulator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -68,8 +69,8 @@ std::vector<Advice> Simulator::advice() const {
 void Simulator::reset() { implementation_->reset(); }
 
 void Simulator::carry(StateArchive& archive) {
-  if (!archive.isReading() && implementation_->retuned)
-    forceErrors();  // and residuals: of the numbers of the step before
+  if (!archive.isReading())
+    forceErrors();  // and residuals: of the numbers of the step before, and of the solver that forgets
   implementation_->carry(archive);
 }
 
@@ -169,7 +170,11 @@ const std::vector<ForceErrorEstimate>& Simulator::forceErrors() const {
   Implementation& all = *implementation_;
   if (all.force_errors) return *all.force_errors;
   const double defect_n_s = residuals().net_defect_n_s;
-  const double unbalanced_n = defect_n_s == 0.0 ? 0.0 : defect_n_s / all.problem.dt_s;  // no step yet: no length of it
+  const bool cut_short = all.report.stop != StopReason::kTolerance && !all.problem.contacts.empty();
+  const double lacking_n_s = cut_short ? all.solver->impulseLacking(all.problem, all.solution) : 0.0;
+  const double missing_n_s = std::max(defect_n_s, lacking_n_s);  // each tells some of the other
+  const double unbalanced_n =
+      missing_n_s == 0.0 ? 0.0 : missing_n_s / all.problem.dt_s;  // no step yet: no length of it
   std::vector<MomentumRate> momentum_rates;
   for (const MovingTissue& tissue : all.moving) momentum_rates.push_back(tissue.momentumRate());
   all.force_errors = estimateForceErrors(all.scene, all.tissues, all.x, all.contacts.solved(), all.touched_places,

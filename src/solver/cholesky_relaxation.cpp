@@ -34,6 +34,7 @@ class CholeskyRelaxation : public Relaxation {
   void beginPasses(const ContactSolution& solution) override;
   void contactPass(const ContactProblem& problem, ContactCorrector& corrector, ContactSolution& solution) override;
   void finish(const ContactProblem& problem, ContactSolution& solution) override;
+  bool resumePasses(const ContactProblem& problem, const ContactSolution& solution) override;
   void reset() override { bodies_.clear(); }
 
  private:
@@ -60,6 +61,7 @@ class CholeskyRelaxation : public Relaxation {
   double loads_ = 0.0;               ///< |b|, N s
   double left_ = 0.0;                ///< defect that the last relaxation of this step left, N s
   MomentumDefect met_;               ///< by the last relaxation
+  bool lost_compliances_ = false;    ///< in finish(), with an old factor
   bool fresh_ = false;               ///< all factors are of this step: to renew them would change nothing
 };
 
@@ -219,7 +221,17 @@ void CholeskyRelaxation::beginPasses(const ContactSolution& solution) {
 }
 
 void CholeskyRelaxation::finish(const ContactProblem& problem, ContactSolution& solution) {
+  const bool was_fresh = fresh_;
   relaxSafely(problem, solution);
+  lost_compliances_ = fresh_ != was_fresh;
+}
+
+/// Not with a factor of the last moment: to make its compliances would change the bits of steps to come.
+bool CholeskyRelaxation::resumePasses(const ContactProblem& problem, const ContactSolution& solution) {
+  const bool is_of_step = bodies_.size() == problem.bodies.size() && contacts_.size() == problem.contacts.size();
+  if (!is_of_step || lost_compliances_) return false;
+  beginPasses(solution);
+  return true;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -160,6 +161,29 @@ bool IterativePredictorCorrector::correctContacts(const ContactProblem& problem,
     change = pass(problem, solution);
   }
   return had_settled;
+}
+
+/// Passes go on from the answer, until they bring little or for so many.
+double IterativePredictorCorrector::impulseLacking(const ContactProblem& problem, const ContactSolution& solution) {
+  constexpr int kMostPasses = 20;
+  if (problem.contacts.empty() || solution.states.size() != problem.contacts.size()) return 0.0;
+  if (!relaxation_->resumePasses(problem, solution)) return 0.0;
+  further_ = solution;
+  double change = pass(problem, further_);
+  double before = std::numeric_limits<double>::infinity();
+  for (int passes = 1; passes < kMostPasses && !settled(problem, further_, change, before, kPassShare); ++passes) {
+    before = change;
+    change = pass(problem, further_);
+  }
+  std::map<int, Vector3> lacking;  // by pair
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+    const ContactRow& row = problem.contacts[c];
+    lacking.try_emplace(row.pair, Vector3::Zero()).first->second +=
+        row.R_WC * (further_.impulses[c] - solution.impulses[c]);
+  }
+  double sum = 0.0;
+  for (const auto& of_pair : lacking) sum += of_pair.second.norm();
+  return sum;
 }
 
 SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, ContactSolution& solution) {

@@ -44,6 +44,7 @@ class IterativePredictorCorrector : public ContactSolver {
 
   /// Allocates only when a problem is larger than before or a factor is renewed.
   SolverReport solve(const ContactProblem& problem, ContactSolution& solution) override;
+  double impulseLacking(const ContactProblem& problem, const ContactSolution& solution) override;
   void setDeadline(double clock_s, double prompt_s) override;
   void reset() override { relaxation_->reset(); }
 
@@ -68,6 +69,7 @@ class IterativePredictorCorrector : public ContactSolver {
   ContactCorrector corrector_;
   ContactMomentum momentum_;
   ConvergenceForecast forecast_;
+  ContactSolution further_;      ///< scratch of impulseLacking()
   std::vector<Vector3> before_;  ///< impulses before the last pass, per contact, contact frame, N s
   /// What contacts bring a body.
   struct Brought {

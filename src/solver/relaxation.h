@@ -41,6 +41,10 @@ class Relaxation {
   /// Ends a step: brings v in line with the impulses.
   virtual void finish(const ContactProblem& /*problem*/, ContactSolution& /*solution*/) {}
 
+  /// Whether passes can go on after finish() to see what contacts lack, since they meet the velocities that impulses really bring; begins them
+  /// then. Neither they nor this change the answers of later steps, nor v.
+  virtual bool resumePasses(const ContactProblem& /*problem*/, const ContactSolution& /*solution*/) { return false; }
+
   virtual void reset() {}
 };
 

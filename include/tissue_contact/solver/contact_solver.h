@@ -33,6 +33,15 @@ class ContactSolver {
   /// @throws std::invalid_argument when either is not infinite and there is no clock.
   virtual void setDeadline([[maybe_unused]] double clock_s, [[maybe_unused]] double prompt_s) {}
 
+  /// What is still missing from the impulses of the last solve() for the contact laws, as far as it can tell, N s: of each pair
+  /// (ContactRow::pair) in all, magnitudes added over the pairs. 0 where what is left is in the momentum (Residuals::net_defect_n_s), and
+  /// after reset(). Costs up to twenty passes over the contacts.
+  /// @param problem, solution of the last solve().
+  virtual double impulseLacking([[maybe_unused]] const ContactProblem& problem,
+                                [[maybe_unused]] const ContactSolution& solution) {
+    return 0.0;
+  }
+
   /// Forgets what it carries from step to step (factors, caches): the next answer depends on its arguments alone.
   virtual void reset() {}
 };
