@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "contact/conforming_gap.h"
+#include "contact/least_width.h"
 #include "contact/narrow_phase.h"
 #include "contact/shape/shape_union.h"
 #include "contact/tolerances.h"
@@ -34,6 +35,7 @@ struct ContactDetector::Implementation {
   std::vector<TouchingShape> shapes;
   SharedSurfaces surfaces;
   std::vector<std::size_t> link_counts;  ///< per instrument
+  std::vector<double> thicknesses_m;     ///< per tissue: of a sheet, or of the layer that a volume is at most, at rest
   NarrowPhase narrow_phase;
   std::vector<int> candidates;
   std::vector<double> least;  ///< scratch: bounds of their distances, m
@@ -53,7 +55,10 @@ ContactDetector::ContactDetector(const std::vector<Instrument>& instruments, Sha
     : implementation_(std::make_unique<Implementation>()) {
   implementation_->shapes = touchingShapes(instruments, preparation);
   implementation_->surfaces = std::move(surfaces);
-  for (const MovingSurface& surface : *implementation_->surfaces) implementation_->narrow_phase.makeRoom(surface);
+  for (const MovingSurface& surface : *implementation_->surfaces) {
+    implementation_->narrow_phase.makeRoom(surface);
+    implementation_->thicknesses_m.push_back(surface.isVolume() ? leastWidth(surface) : 2.0 * surface.halfThickness());
+  }
   for (const Instrument& one : instruments) implementation_->link_counts.push_back(one.model().links().size());
 }
 
@@ -146,9 +151,9 @@ double ContactDetector::Implementation::deepestGroove(const TouchingShape& shape
 bool ContactDetector::Implementation::fitBetweenShapes(const TouchingShape& shape,
                                                        const std::vector<std::vector<Pose>>& X_WL,
                                                        Contact& contact) const {
-  constexpr double kRoom = 0.05;       // of that radius: shapes that near touch each other
-  constexpr double kSheetRoom = 0.25;  // of a sheet's thickness, if that is less
-  const double half_thickness = (*surfaces)[contact.key.tissue].halfThickness();
+  constexpr double kRoom = 0.05;        // of that radius: shapes that near touch each other
+  constexpr double kTissueRoom = 0.25;  // of the tissue's thickness, if that is less
+  const double tissue_room = kTissueRoom * thicknesses_m[contact.key.tissue];
   const PlacedShape own{shape.distance.get(), X_WL[shape.instrument][shape.link] * shape.X_LS};
   std::optional<SignedDistance> before;
   SignedDistance united;
@@ -159,8 +164,7 @@ bool ContactDetector::Implementation::fitBetweenShapes(const TouchingShape& shap
     if (!boxAround(*other.distance, second.X_WS, radius).contains(contact.p_WC)) continue;
     if (!before) united = *(before = distanceAt(own, contact.p_WC));
     const SignedDistance there = distanceAt(second, contact.p_WC);
-    const double room =
-        half_thickness > 0.0 ? std::min(kRoom * radius, 2.0 * kSheetRoom * half_thickness) : kRoom * radius;
+    const double room = std::min(kRoom * radius, tissue_room);
     if (areOpposed(*before, there) && before->distance + there.distance < room) return false;
     SignedDistance filled;
     if (other.instrument == shape.instrument && fillGroove(own, second, contact.p_WC, radius, *before, there, filled) &&
