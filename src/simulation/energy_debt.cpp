@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tissue_contact {
 namespace {
@@ -27,14 +28,15 @@ void slowDown(const VectorX& mass, bool is_free, double share, NodalVectors& v) 
 
 void EnergyDebt::clear() {
   forces_.clear();
+  dt_s_ = 0.0;
   owed_j_ = 0.0;
 }
 
 void EnergyDebt::begin(const NodalVectors& forces, const VectorX& mass, const Vector3& gravity_m_per_s2, bool is_free,
                        NodalVectors& v) {
   const auto nodes = static_cast<std::size_t>(v.cols());
-  const bool follows = forces_.size() == nodes;
-  if (!follows) forces_.assign(nodes, Vector3::Zero());
+  const bool follows = forces_.size() == nodes && dt_s_ > 0.0;
+  forces_.resize(nodes, Vector3::Zero());
   // One way through memory, since it is gone in every step.
   double twice_kinetic_j = 0.0;
   double power_w = 0.0;  // twice that of the mean of the forces at both ends
@@ -50,11 +52,12 @@ void EnergyDebt::begin(const NodalVectors& forces, const VectorX& mass, const Ve
   }
   const double before_j = kinetic_j_;
   kinetic_j_ = 0.5 * twice_kinetic_j;
+  const double step_s = std::exchange(dt_s_, 0.0);  // until this one ends
   if (!follows) {
     owed_j_ = 0.0;
     return;
   }
-  const double work_j = contact_work_j_ + dt_s_ * (gravity_m_per_s2.dot(momentum) + 0.5 * power_w);
+  const double work_j = contact_work_j_ + step_s * (gravity_m_per_s2.dot(momentum) + 0.5 * power_w);
   owed_j_ = std::max(0.0, (was_cut_ ? owed_j_ : 0.0) + kinetic_j_ - before_j - work_j);
   if (!(owed_j_ > 0.0)) return;
   const double there_j = kinetic_j_ - 0.5 * mass.sum() * keptVelocity(mass, is_free, v).squaredNorm();
@@ -72,7 +75,7 @@ void EnergyDebt::finish(double dt_s, double contact_work_j, bool was_cut) {
 }
 
 void EnergyDebt::carry(StateArchive& archive, Eigen::Index nodes) {
-  bool follows = !forces_.empty();
+  bool follows = !forces_.empty() && dt_s_ > 0.0;
   archive.carry(follows);
   if (!follows) {
     if (archive.isReading()) clear();

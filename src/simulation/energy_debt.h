@@ -42,7 +42,7 @@ class EnergyDebt {
   std::vector<Vector3>
       forces_;  ///< per node, where the last step began, N; empty: there was none. Keeps its memory when it is cleared
   double kinetic_j_ = 0.0;     ///< as it began
-  double dt_s_ = 0.0;          ///< of it
+  double dt_s_ = 0.0;          ///< of it; 0: it did not end
   double contact_work_j_ = 0;  ///< in it
   bool was_cut_ = false;
   double owed_j_ = 0.0;

@@ -16,7 +16,7 @@ namespace tissue_contact {
 namespace {
 
 /// With the version of what follows it.
-constexpr const char* kStateTitle = "tissue_contact simulation 7";
+constexpr const char* kStateTitle = "tissue_contact simulation 8";
 
 NodalVectors handOver(NodalVectors& values) {
   NodalVectors copy = values;

@@ -195,7 +195,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
   momentum_.prepare(problem);
   forecast_.begin();
   corrector_.prepare(problem.contacts.size(), [&](std::size_t c) -> Vector2 {
-    return relativeVelocity(problem.contacts[c], solution.v).tail<2>();
+    return slidingVelocity(problem.contacts[c], solution.v, solution.impulses[c]);
   });
   SolverReport report;
   first_change_ = std::numeric_limits<double>::infinity();

@@ -19,7 +19,7 @@ namespace tissue_contact {
 std::vector<int> patchesByFaces(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra);
 
 /// Patches cut where elements are of different materials, so that a stiff one does not lend its bulk modulus to a soft one.
-/// @param regions per tetrahedron; empty: one region.
+/// @param materials per tetrahedron; empty: one material.
 std::vector<int> cutAtMaterials(const std::vector<int>& patch_of, const std::vector<int>& materials);
 
 /// The same where tetrahedra come cell by cell, `cell_size` each.

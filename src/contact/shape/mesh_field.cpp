@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -161,9 +162,12 @@ void reportThin(const std::string& name, const TriangleMesh& mesh, const MeshFie
   std::array<char, 192> where{};
   const Vector3 p_S = field.R_SG * part.p_S;
   if (part.share > 0.0) {
-    std::snprintf(where.data(), where.size(),
-                  " (%.2g %% together, around (%.4g, %.4g, %.4g) m of its frame, scaled, where it is %.3g mm thick)",
-                  100.0 * part.share, p_S.x(), p_S.y(), p_S.z(), 1e3 * part.thickness_m);
+    std::snprintf(where.data(), where.size(), " (%.2g %% together, around (%.4g, %.4g, %.4g) m of its frame, scaled",
+                  100.0 * part.share, p_S.x(), p_S.y(), p_S.z());
+    const std::size_t written = std::strlen(where.data());
+    const bool has_back = std::isfinite(part.thickness_m);  // open meshes may have none
+    std::snprintf(where.data() + written, where.size() - written, has_back ? ", where it is %.3g mm thick)" : ")",
+                  1e3 * part.thickness_m);
   }
   std::array<char, 640> text{};
   std::snprintf(

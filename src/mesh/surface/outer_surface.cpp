@@ -86,6 +86,7 @@ class OuterSurface {
       for (const Vector3& corner : corners) points_.push_back(corner);
       return;
     }
+    if (is_told) looks_left_ -= std::min(looks_left_, kSplit);
     // In two, and not into four alike: of a shaft's long and narrow triangles those would be as narrow, and as near to its axis as
     // a thousand others.
     const Vector3& a = corners[at];
@@ -147,6 +148,8 @@ class OuterSurface {
   }
 
   static constexpr double kAside = 0.02;  // of the finest
+  static constexpr int kSplit =
+      500;  // looks that a cut costs as much as: eight points, twice each, in the winding tree
 
   const WindingTree& tree_;
   double finest_;

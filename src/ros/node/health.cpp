@@ -263,6 +263,8 @@ void Health::noteSnapshotsDropped(std::int64_t dropped) {
 void Health::noteSilentJoints(const std::string& text) {
   const std::lock_guard<std::mutex> lock(mutex_);
   figures_.silent_joints = text;
+  constexpr double kSaid_s = 2.0;  // of a topic that is silent as a whole, TopicSilence tells
+  silent_joints_until_s_ = steadySeconds() + kSaid_s;
 }
 
 void Health::notePolicy(bool newest_state) {
@@ -275,6 +277,7 @@ LiveFigures Health::figures() const {
   const double now_s = steadySeconds();
   const std::lock_guard<std::mutex> lock(mutex_);
   LiveFigures figures = figures_;
+  if (now_s > silent_joints_until_s_) figures.silent_joints.clear();
   figures.received = inbox.received;
   figures.dropped = inbox.dropped;
   figures.held = held_by_player_;

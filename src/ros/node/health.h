@@ -132,6 +132,7 @@ class Health {
 
   mutable std::mutex mutex_;  ///< guards the six below
   LiveFigures figures_;
+  double silent_joints_until_s_ = 0.0;
   RealTimeFactor real_time_factor_;
   std::int64_t played_stamp_ns_ = 0;
   std::int64_t held_by_player_ = 0;

@@ -1,5 +1,5 @@
 /// @file
-/// Room `ros`, private: what Health tells in /diagnostics and, once each, in the log: the diagnostics thread's part.
+/// Room `ros`, private: what Health tells in /diagnostics and, a few times at most, in the log: the diagnostics thread's part.
 #include <ros/console.h>
 
 #include <algorithm>
