@@ -75,7 +75,10 @@ void useLabels(const TetMesh& mesh, const MeshLabels& labels) {
     regions.emplace_back(GroupRegion{group.name.empty() ? std::to_string(group.number) : group.name});
   }
   for (const MeshLabels::CellData& data : labels.cell_data) {
-    fuzz::require(data.values.size() == mesh.tetrahedra.size(), "a number for each tetrahedron");
+    fuzz::require(labels.volume_of.size() == mesh.tetrahedra.size(), "a volume for each tetrahedron");
+    for (const int volume : labels.volume_of) {
+      fuzz::require(volume >= 0 && static_cast<std::size_t>(volume) < data.values.size(), "a number for each volume");
+    }
     regions.emplace_back(CellDataRegion{data.name, data.values.front()});
   }
   for (const Region& region : regions) {

@@ -170,10 +170,10 @@ TEST(Element, VtkFilesOfHexahedra) {
   EXPECT_NE(said.find("4 of 4 elements are hexahedra, prisms or pyramids, and split into tetrahedra"),
             std::string::npos)
       << said;
-  ASSERT_EQ(labels.cell_data.at(0).values.size(), 24U);
+  ASSERT_EQ(labels.volume_of.size(), 24U);
   for (std::size_t i = 0; i < 24; ++i) {
     const std::size_t cell = i / 6;
-    EXPECT_EQ(labels.cell_data[0].values[i], 5.0 + static_cast<double>(cell));
+    EXPECT_EQ(labels.cell_data.at(0).values.at(labels.volume_of[i]), 5.0 + static_cast<double>(cell));
   }
   Volumes quadratic = volumes;
   quadratic.nodes.conservativeResize(Eigen::NoChange, 30);
