@@ -26,7 +26,7 @@ SignedDistance leavingFace(const ShapeDistance& shape, const Vector3& p_S, const
   const Vector3 end = from + inside * along;
   const Vector3 normal = shape.at(end).normal;
   if (normal.dot(inward) < kAcross || normal.dot(here.normal) > kAcross) return here;
-  if (beside != nullptr && beside->closeWay(p_S, end)) return here;
+  if (beside != nullptr && beside->closeWay(p_S, end, normal)) return here;
   if (here.distance > 0.0) return {std::numeric_limits<double>::infinity(), normal};
   return {std::max(normal.dot(p_S - end), here.distance), normal};
 }

@@ -32,8 +32,9 @@ struct VertexSurroundings {
 class ShapesBeside {
  public:
   virtual ~ShapesBeside() = default;
-  /// Whether any of it is near the way between two points of the shape's frame, m.
-  virtual bool closeWay(const Vector3& p_S, const Vector3& end_S) const = 0;
+  /// Whether any of it is near the way between two points of the shape's frame, m, or lies in front of its end along `normal_S`, so that
+  /// tissue there is held between both.
+  virtual bool closeWay(const Vector3& p_S, const Vector3& end_S, const Vector3& normal_S) const = 0;
 };
 
 /// A tool with edges (box, cylinder, mesh) that slides over a surface meets the next vertex sideways: it stands before the tool's side, a little

@@ -1,6 +1,7 @@
 #include "contact/touching_shapes.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "contact/shape/shape_union.h"
 #include "tissue_contact/contact/contact_detector.h"
@@ -27,17 +28,39 @@ std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instrum
   return result;
 }
 
-bool OtherShapes::closeWay(const Vector3& p_S, const Vector3& end_S) const {
+namespace {
+
+/// Whether a ray comes upon a shape: on by the distance, which no point of the shape is nearer than, until that is next to nothing, or the
+/// shape lies behind.
+bool meets(const PlacedShape& shape, const Vector3& from_W, const Vector3& direction_W, double tolerance) {
+  constexpr int kMostSteps = 16;
+  double way = 0.0;
+  double before = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double distance = distanceAt(shape, from_W + way * direction_W).distance;
+    if (distance < tolerance) return true;
+    if (distance > before) return false;
+    before = distance;
+    way += distance;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool OtherShapes::closeWay(const Vector3& p_S, const Vector3& end_S, const Vector3& normal_S) const {
   const Pose X_WS = X_WL_[own_.link] * own_.X_LS;
   const Vector3 p_W = X_WS * p_S;
   const Vector3 end_W = X_WS * end_S;
+  const Vector3 normal_W = X_WS.linear() * normal_S;
   const double way = (end_W - p_W).norm();
   return std::any_of(shapes_.begin(), shapes_.end(), [&](const TouchingShape& other) {
     if (&other == &own_ || other.instrument != own_.instrument) return false;
     const PlacedShape placed{other.distance.get(), X_WL_[other.link] * other.X_LS};
     const double reach = kGrooveRadius * std::min(own_.half_extent, other.half_extent);
     // No point of the way is nearer: distances change by no more than the way between points.
-    return 0.5 * (distanceAt(placed, p_W).distance + distanceAt(placed, end_W).distance - way) < reach;
+    if (0.5 * (distanceAt(placed, p_W).distance + distanceAt(placed, end_W).distance - way) < reach) return true;
+    return meets(placed, end_W, normal_W, reach);
   });
 }
 

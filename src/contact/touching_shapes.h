@@ -34,15 +34,15 @@ constexpr double kGrooveRadius = 0.5;
 std::vector<TouchingShape> touchingShapes(const std::vector<Instrument>& instruments,
                                           const MeshPreparation& preparation);
 
-/// The other shapes of a shape's instrument. They close a way that they come as near to as the filling of their groove with the shape reaches:
-/// tissue there is held between both.
+/// The other shapes of a shape's instrument. They close a way that they come as near to as the filling of their groove with the shape reaches, and one to
+/// a face that looks at them: a vertex that jaws hold must not slip out beside one.
 class OtherShapes final : public ShapesBeside {
  public:
   /// @param X_WL of the links of the instrument. All must outlive this.
   OtherShapes(const std::vector<TouchingShape>& shapes, const TouchingShape& own, const std::vector<Pose>& X_WL)
       : shapes_(shapes), own_(own), X_WL_(X_WL) {}
 
-  bool closeWay(const Vector3& p_S, const Vector3& end_S) const override;
+  bool closeWay(const Vector3& p_S, const Vector3& end_S, const Vector3& normal_S) const override;
 
  private:
   const std::vector<TouchingShape>& shapes_;

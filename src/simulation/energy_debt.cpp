@@ -35,7 +35,7 @@ void EnergyDebt::clear() {
 void EnergyDebt::begin(const NodalVectors& forces, const VectorX& mass, const Vector3& gravity_m_per_s2, bool is_free,
                        NodalVectors& v) {
   const auto nodes = static_cast<std::size_t>(v.cols());
-  const bool follows = forces_.size() == nodes && dt_s_ > 0.0;
+  const bool follows = forces_.size() == nodes && dt_s_ > 0.0 && counts_;
   forces_.resize(nodes, Vector3::Zero());
   // One way through memory, since it is gone in every step.
   double twice_kinetic_j = 0.0;
@@ -68,10 +68,11 @@ void EnergyDebt::begin(const NodalVectors& forces, const VectorX& mass, const Ve
   kinetic_j_ -= paid_j;
 }
 
-void EnergyDebt::finish(double dt_s, double contact_work_j, bool was_cut) {
+void EnergyDebt::finish(double dt_s, double contact_work_j, bool was_cut, bool is_free_of_contact) {
   dt_s_ = dt_s;
   contact_work_j_ = contact_work_j;
   was_cut_ = was_cut;
+  counts_ = was_cut || is_free_of_contact;
 }
 
 void EnergyDebt::carry(StateArchive& archive, Eigen::Index nodes) {
@@ -84,6 +85,7 @@ void EnergyDebt::carry(StateArchive& archive, Eigen::Index nodes) {
   if (archive.isReading()) forces_.assign(static_cast<std::size_t>(nodes), Vector3::Zero());
   archive.carry(forces_);
   archive.carry(was_cut_);
+  archive.carry(counts_);
   archive.carry(kinetic_j_);
   archive.carry(dt_s_);
   archive.carry(contact_work_j_);

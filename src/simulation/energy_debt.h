@@ -15,7 +15,7 @@ void slowDown(const VectorX& mass, bool is_free, double share, NodalVectors& v);
 
 /// Implicit steps are stable once they are solved, linear ones. What a few iterations reach may hold more energy than the step before and what did work
 /// since, as may one that is solved to the tolerance where a stiff body turns, since turning on the spot is stretch to the step, with forces far larger than those
-/// that drive it; and steps that pass it on grow without bound. So the balance of each step is made up (doc/method.md, "When a
+/// that drive it; and steps that pass it on grow without bound. So the balance of such steps is made up (doc/method.md, "When a
 /// step ends"), and what there is too much is taken from the velocities, as far as they go; of a step that was cut short also in later ones until one is solved.
 class EnergyDebt {
  public:
@@ -33,7 +33,9 @@ class EnergyDebt {
 
   /// The step that began ends.
   /// @param contact_work_j by contacts on the tissue in it. @param was_cut before the tolerance: what is owed then stays so.
-  void finish(double dt_s, double contact_work_j, bool was_cut);
+  /// @param is_free_of_contact nothing pressed on it: of a step that was solved the balance is made up then alone, since what the tolerance
+  /// leaves of a slow press may be more than its kinetic energy.
+  void finish(double dt_s, double contact_work_j, bool was_cut, bool is_free_of_contact);
 
   /// @param nodes of the tissue.
   void carry(StateArchive& archive, Eigen::Index nodes);
@@ -45,6 +47,7 @@ class EnergyDebt {
   double dt_s_ = 0.0;          ///< of it; 0: it did not end
   double contact_work_j_ = 0;  ///< in it
   bool was_cut_ = false;
+  bool counts_ = false;  ///< its balance is made up
   double owed_j_ = 0.0;
 };
 

@@ -161,12 +161,12 @@ void MovingTissue::keepElements(double dt) {
   if (share < 1.0) slowDown(tissue_.nodeMasses(), is_free_, share, v_);
 }
 
-void MovingTissue::move(double dt, double contact_work_j, bool was_cut) {
+void MovingTissue::move(double dt, double contact_work_j, bool was_cut, bool is_free_of_contact) {
   if (system_.asleep) {
     momentum_rate_.clear();
     return;
   }
-  energy_debt_.finish(dt, contact_work_j, was_cut);
+  energy_debt_.finish(dt, contact_work_j, was_cut, is_free_of_contact);
   momentum_rate_.step(v_ * tissue_.nodeMasses(), dt);
   x_ += dt * v_;
   if (tissue_.elasticity().hasMemory()) elastic_state_->elapsed_s += dt;

@@ -72,8 +72,8 @@ class MovingTissue {
   /// @pre isFinite()
   void keepElements(double dt);
   /// x += dt v.
-  /// @param contact_work_j, was_cut see EnergyDebt::finish().
-  void move(double dt, double contact_work_j, bool was_cut);
+  /// @param contact_work_j, was_cut, is_free_of_contact see EnergyDebt::finish().
+  void move(double dt, double contact_work_j, bool was_cut, bool is_free_of_contact);
 
   const MomentumRate& momentumRate() const { return momentum_rate_; }  ///< of the last step
 

@@ -273,7 +273,7 @@ void Simulator::Implementation::moveTissues(double dt) {
       for (MovingTissue& tissue : moving) tissue.keepElements(dt);
     }
     findContactWork();
-    for (std::size_t t = 0; t < moving.size(); ++t) moving[t].move(dt, contact_work_j[t], was_cut);
+    for (std::size_t t = 0; t < moving.size(); ++t) moving[t].move(dt, contact_work_j[t], was_cut, !is_pressed[t]);
     return;
   }
   report.discarded = true;
@@ -291,11 +291,13 @@ void Simulator::Implementation::moveTissues(double dt) {
 /// Of the step's contacts on each tissue.
 void Simulator::Implementation::findContactWork() {
   contact_work_j.assign(moving.size(), 0.0);
+  is_pressed.assign(moving.size(), false);
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     const ContactRow& row = problem.contacts[c];
     const Vector3 impulse_W = row.R_WC * solution.impulses[c];
     for (int a = 0; a < row.node_count; ++a) {
       const RowNode& at = row.nodes[a];
+      if (!impulse_W.isZero(0.0)) is_pressed[at.body] = true;
       contact_work_j[at.body] += at.weight * impulse_W.dot(solution.v[at.body].col(at.node));
     }
   }

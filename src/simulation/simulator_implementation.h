@@ -81,6 +81,7 @@ struct Simulator::Implementation {
   double prompt_s = std::numeric_limits<double>::infinity();
   std::vector<int> touched_nodes;      ///< scratch
   std::vector<double> contact_work_j;  ///< per tissue, by the contacts of a step
+  std::vector<bool> is_pressed;        ///< per tissue, by any of them
   TouchedPlaces touched_places;
   std::vector<double>
       approach_m;  ///< per tissue: how near a resting shape must be for the mesh to be refined; < 0: it never is

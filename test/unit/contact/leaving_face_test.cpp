@@ -94,7 +94,7 @@ TEST(LeavingFace, BelowTheToolNothingChanges) {
 class Beside : public ShapesBeside {
  public:
   explicit Beside(bool closes) : closes_(closes) {}
-  bool closeWay(const Vector3& p_S, const Vector3& end_S) const override {
+  bool closeWay(const Vector3& p_S, const Vector3& end_S, const Vector3& /*normal_S*/) const override {
     from_S = p_S;
     to_S = end_S;
     ++asked;
