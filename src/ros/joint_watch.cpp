@@ -170,6 +170,7 @@ std::vector<std::string> JointWatch::silentTexts(const std::vector<JointSilence:
     if (names.count(text.str()) == 0) order.push_back(text.str());
     names[text.str()].push_back(instrument.model().joints()[one.joint - first_numbers_[i]].name);
   }
+  texts.reserve(order.size());
   for (const std::string& text : order) texts.push_back(text + listOf(names[text]));
   return texts;
 }

@@ -20,7 +20,7 @@ double volumeAround(const NodalVectors& points, const Matrix3& R) {
 NodalVectors outermost(const NodalVectors& x) {
   constexpr int kDirections = 128;
   constexpr double kGoldenAngle = 2.399963229728653;
-  NodalVectors points(3, 2 * kDirections);
+  NodalVectors points(3, Eigen::Index{2} * kDirections);
   for (int i = 0; i < kDirections; ++i) {
     const double z = (i + 0.5) / kDirections;  // of half a sphere, evenly
     const double r = std::sqrt(1.0 - z * z);
@@ -66,7 +66,8 @@ Matrix3 leastBox(const NodalVectors& points, Matrix3 R) {
   double least = volumeAround(points, R);
   for (int turn = 0; turn < 3 * kRounds; ++turn) {
     double step = M_PI / 180.0;
-    for (int steps = 45; step > 1e-5; step *= 0.2, steps = 5) {  // a quarter of a turn, then ever finer
+    int steps = 45;
+    for (int level = 0; level < 5; ++level) {  // a quarter of a turn, then ever finer
       const Matrix3 from = R;
       for (int i = -steps; i <= steps; ++i) {
         const Matrix3 tried = from * Eigen::AngleAxisd(i * step, Vector3::Unit(turn % 3)).toRotationMatrix();
@@ -75,6 +76,8 @@ Matrix3 leastBox(const NodalVectors& points, Matrix3 R) {
         least = volume;
         R = tried;
       }
+      step *= 0.2;
+      steps = 5;
     }
   }
   return R;

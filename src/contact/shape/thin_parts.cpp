@@ -128,7 +128,8 @@ ThinParts::Part ThinParts::largest(const TriangleMesh& mesh) const {
       const Point& point = far_[found[next]];
       share += point.share;
       for (int n = 0; n < 125; ++n) {
-        const Vector3 aside(n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2);
+        const std::array<int, 3> at = {n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2};
+        const Vector3 aside(at[0], at[1], at[2]);
         const auto cell = in_cell.find(cellOf(point.p_S + grid_.spacing * aside));
         if (cell == in_cell.end()) continue;
         for (const std::size_t other : cell->second) {
