@@ -141,4 +141,19 @@ TISSUE_CONTACT_INLINE void scatterMirrored(const BlockMatrix& matrix, int slice,
   }
 }
 
+/// sum += scale * blocks off the diagonal * v.
+TISSUE_CONTACT_INLINE void addOffDiagonalProduct(const BlockMatrix& matrix, double scale, const NodalVectors& v,
+                                                 NodalVectors& sum) {
+  for (int slice = 0; slice < matrix.pattern->slices(); ++slice) {
+    const int* const rows = rowsOf(*matrix.pattern, slice);
+    LaneVectors own;
+    gather(v.data(), rows, own);
+    LaneVectors upper{};
+    addUpperProduct(matrix, slice, v.data(), upper);
+    const LaneVectors product = {scale * upper[0], scale * upper[1], scale * upper[2]};
+    scatterAdd(product, rows, sum.data());
+    scatterMirrored(matrix, slice, scale, own, sum.data());
+  }
+}
+
 }  // namespace tissue_contact

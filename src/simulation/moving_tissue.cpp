@@ -5,6 +5,7 @@
 
 #include "simulation/advisor.h"
 #include "simulation/element_inversion.h"
+#include "simulation/rigid_turn.h"
 
 namespace tissue_contact {
 
@@ -141,6 +142,7 @@ void MovingTissue::assemble(double dt) {
   }
   system_.change_n_s = std::sqrt(squared);
   system_.net_change_n_s = is_free_ ? net.norm() : -1.0;
+  if (is_free_ && sleepers() == 0) letTurn(tissue_.nodeMasses(), x_, v_, dt, rigid_, system_);
 }
 
 bool MovingTissue::wakeHeld(std::optional<double> pressing_n, double dt, int repeats) {

@@ -100,6 +100,7 @@ class MovingTissue {
   bool still_changed_ = false;        ///< sleepers have changed since the elasticity was told
   std::vector<int> woken_;            ///< scratch
   std::vector<char> is_fast_;         ///< scratch
+  NodalVectors rigid_;                ///< scratch, m/s
 };
 
 }  // namespace tissue_contact

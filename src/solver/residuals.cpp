@@ -59,21 +59,6 @@ double kineticAngle(const CoulombLaw& law, const Vector2& friction, const Vector
                       law.anisotropic == nullptr ? Vector2(-sliding) : kineticFriction(law, sliding.normalized()));
 }
 
-/// defect -= scale * blocks off the diagonal * v.
-TISSUE_CONTACT_INLINE void subtractOffDiagonal(const BlockMatrix& matrix, double scale, const NodalVectors& v,
-                                               NodalVectors& defect) {
-  for (int slice = 0; slice < matrix.pattern->slices(); ++slice) {
-    const int* const rows = rowsOf(*matrix.pattern, slice);
-    LaneVectors own;
-    gather(v.data(), rows, own);
-    LaneVectors sum{};
-    addUpperProduct(matrix, slice, v.data(), sum);
-    const LaneVectors product = {-scale * sum[0], -scale * sum[1], -scale * sum[2]};
-    scatterAdd(product, rows, defect.data());
-    scatterMirrored(matrix, slice, -scale, own, defect.data());
-  }
-}
-
 }  // namespace
 
 TISSUE_CONTACT_CLONES
@@ -87,8 +72,8 @@ double bodyDefect(const BodySystem& body, const NodalVectors& v, const NodalVect
     if (body.D != nullptr) own += body.damping_scale * (body.D->diagonal[i] * v_i);
     defect.col(c) -= own;
   }
-  subtractOffDiagonal(*body.K, body.stiffness_scale, v, defect);
-  if (body.D != nullptr) subtractOffDiagonal(*body.D, body.damping_scale, v, defect);
+  addOffDiagonalProduct(*body.K, -body.stiffness_scale, v, defect);
+  if (body.D != nullptr) addOffDiagonalProduct(*body.D, -body.damping_scale, v, defect);
   double sum = 0.0;
   for (std::size_t i = 0; i < nodes; ++i) {
     const auto c = static_cast<Eigen::Index>(i);
