@@ -5,7 +5,7 @@
 
 #include "simulation/advisor.h"
 #include "simulation/element_inversion.h"
-#include "simulation/rigid_turn.h"
+#include "simulation/free_body.h"
 
 namespace tissue_contact {
 

@@ -78,6 +78,7 @@ class MovingTissue {
   const MomentumRate& momentumRate() const { return momentum_rate_; }  ///< of the last step
 
   bool canSleep() const { return sleep_.has_value(); }
+  bool isFree() const { return is_free_; }  ///< nothing of the tissue is fixed or attached
   int sleepers() const { return sleep_ ? sleep_->sleepers() : 0; }
   double heldForce() const { return sleep_ ? sleep_->heldForce() : 0.0; }  ///< see TissueSleep::heldForce()
 
@@ -95,7 +96,7 @@ class MovingTissue {
   NodalVectors loads_;  ///< elastic forces and pressure, and weight if nodes can sleep, N
   EnergyDebt energy_debt_;
   MomentumRate momentum_rate_;
-  bool is_free_ = false;              ///< nothing of the tissue is fixed or attached
+  bool is_free_ = false;              ///< see isFree()
   std::optional<TissueSleep> sleep_;  ///< none: no node ever sleeps
   bool still_changed_ = false;        ///< sleepers have changed since the elasticity was told
   std::vector<int> woken_;            ///< scratch

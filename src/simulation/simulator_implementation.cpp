@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <optional>
 
 #include "simulation/build_scene.h"
+#include "simulation/free_body.h"
 #include "tissue_contact/baselines/make_contact_solver.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/entry_error.h"
@@ -173,10 +175,13 @@ bool Simulator::Implementation::refineTissue(int tissue, const TouchedPlaces::Ap
 
 void Simulator::Implementation::changeMesh(int tissue, ComingMesh& coming) {
   const NodeTransfer& transfer = *coming.next.transfer;
+  std::optional<FreeMotion> had;
+  if (moving[tissue].isFree()) had = freeMotionOf(tissues[tissue].nodeMasses(), x[tissue], solution.v[tissue]);
   x[tissue] = transfer.carried(x[tissue]);
   solution.v[tissue] = transfer.carried(solution.v[tissue]);
   solution.slow_changes[tissue] = transfer.carried(solution.slow_changes[tissue]);
   takeMesh(tissue, coming, transfer.to_new);
+  if (had) keepMomentum(*had, tissues[tissue].nodeMasses(), x[tissue], solution.v[tissue]);
 }
 
 /// Goes on with all that was made from another mesh of this tissue; x and v are those of its nodes already. Members that refer to each
