@@ -142,8 +142,10 @@ class OwnScene {
     Settings settings = shippedSettings(finer);
     const Run fine = run(finer, convergedSettings(settings), "finer mesh", 60.0);
     const double change = wrenchError(exact, fine).relative;
-    // Faces under a tool converge with the first power of the cells' size at worst.
-    ErrorSource source{"mesh", change, change + richardsonError(change, kFiner, 1.0), "", 0.0};
+    // The order that the likely error of a mesh has everywhere else (expectedMeshError()). With 1, what faces under a tool have at
+    // worst, 31 and 87 % were told where 10 and 49 % are found (doc/bag.md's scene, the demo), with 1.8 20 and 56 %.
+    constexpr double kOrder = 1.8;
+    ErrorSource source{"mesh", change, change + richardsonError(change, kFiner, kOrder), "", 0.0};
     if (source.estimate > kSmallError) {
       source.remedy = cellsText(*refined);
       settings.solver = current.solver;

@@ -69,7 +69,7 @@ solver:
 
 step:
   max_step_s: 0.002  # one for each joint state of the recording,
-  joint_states: every_state  # also where the computer is slower than it
+  joint_states: every_state  # of the recording, also where the computer is slower than it; live, beside a driver, leave it out
 
 publish:
   tf: true
@@ -249,6 +249,30 @@ def require_filling(path, scale, cells):
         fail(within_mesh(error))
 
 
+def require_material(name):
+    if not re.fullmatch("[a-z][a-z0-9_]*", name):
+        fail("--material %r is no name of a material; names: doc/organ.md" % name)
+    try:
+        import tissue_contact
+        tissue_contact.parse_scene("tissues: [{name: organ, block: {size_m: [0.1, 0.1, 0.1], cells: [1, 1, 1]}, material: %s}]" % name)
+    except ImportError:
+        return  # the replay looks
+    except ValueError as error:
+        fail("--material: " + re.sub(r"^scene\.yaml:[0-9]+: tissues\[0\]\.material(\.preset)?: ", "", str(error)))
+
+
+def keep_edited(scene, text):
+    """A scene is made to be edited: what this one would replace stays beside it."""
+    try:
+        with open(scene, encoding="utf-8", errors="surrogateescape") as stream:
+            before = stream.read()
+    except OSError:
+        return
+    if before != text:
+        shutil.copy2(scene, scene + ".before")
+        print("the scene that was there differs: it is %s.before now" % scene)
+
+
 def require_organ_size(size, scale):
     advice = "give --scale, metres per unit of the file: 0.001 for millimetres, 1 for metres"
     if not size.max() <= LONGEST_M:
@@ -279,12 +303,13 @@ def parse_arguments():
 
 def main():
     arguments = parse_arguments()
-    if not re.fullmatch("[a-z][a-z0-9_]*", arguments.material):
-        fail("--material %r is no name of a material; names: doc/organ.md" % arguments.material)
+    require_material(arguments.material)
     corners, cells = read_organ(arguments)
     low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
     size = high - low
     require_organ_size(size, arguments.scale)
+    if arguments.depth and arguments.depth > 0.5 * size[2]:
+        fail("--depth %g m is more than half of the organ's height, %.3g m: press less deep, no tissue bears that" % (arguments.depth, size[2]))
     if arguments.organ.lower().endswith(SURFACES):
         require_filling(os.path.abspath(arguments.organ), arguments.scale, cells)
     held, percent, stands = held_height(corners)
@@ -303,6 +328,7 @@ def main():
         start=path[0], clearance=1e3 * CLEARANCE_M, topic=TOPIC)
     try:
         os.makedirs(folder, exist_ok=True)
+        keep_edited(scene, text)
         with whole_file(scene, [arguments.organ]) as part, open(part, "w", encoding="utf-8") as stream:
             stream.write(text)
     except OSError as error:

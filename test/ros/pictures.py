@@ -150,6 +150,7 @@ class Pictures(harness.TestCase):
         curves = [curve.get("name") for curve in layout.iter("curve")]
         with harness.node(harness.SCENE):
             harness.wrenches().close()  # waits for the publisher
+            harness.wait_until(lambda: "/tissue_contact/status" in dict(rospy.get_published_topics()), "the status")  # of those, the last
             published = dict(rospy.get_published_topics())
         for part in ["wrench/force/x", "lag", "momentum_residual", "error"]:
             self.assertTrue(any(curve.endswith("/" + part) for curve in curves), part)

@@ -80,7 +80,7 @@ class ExamplePackage(unittest.TestCase):
         shutil.copytree(self.doc / "controller_test", source)
         done = self.configure(source, build)
         self.assertEqual(done.returncode, 0, done.stdout)
-        done = run("cmake", "--build", build, "--target", "press_controller", "tests")
+        done = run("cmake", "--build", build, "--target", "tests")
         self.assertEqual(done.returncode, 0, done.stdout)
         home = {"ROS_HOSTNAME": "localhost", "ROS_HOME": self.folder.name + "/ros_home"}
         done = run("ctest", "--test-dir", build, "--no-tests=error", "--output-on-failure", **home)

@@ -339,6 +339,27 @@ class OrganTest(unittest.TestCase):
         self.assertEqual((made.returncode, made.stdout.count("\n")), (1, 1), made.stdout)
         self.assertIn("flat, 0 m along z", made.stdout)
 
+    # Written, exit code 0, and refused by the replay before; 200 mm deep into a ball of 60 mm.
+    def test_material_and_depth_are_looked_at(self):
+        surface = self.write("a.stl", stl(*ball()))
+        for option, value, said in (("--material", "livre", '"livre"'), ("--depth", 0.2, "more than half of the organ's height, 0.06 m")):
+            made = self.make(surface, "--scale", 0.001, option, value)
+            self.assertEqual((made.returncode, made.stdout.count("\n")), (1, 1), made.stdout)
+            self.assertIn(said, made.stdout)
+        self.assertFalse(os.path.exists(self.path("made")))
+
+    def test_an_edited_scene_is_kept(self):
+        surface = self.write("a.stl", stl(*ball()))
+        self.assertEqual(self.make(surface, "--scale", 0.001).returncode, 0)
+        again = self.make(surface, "--scale", 0.001)
+        self.assertNotIn(".before", again.stdout)
+        with open(self.path("made/scene.yaml"), "a") as stream:
+            stream.write("# mine\n")
+        again = self.make(surface, "--scale", 0.001)
+        self.assertIn("scene.yaml.before", again.stdout)
+        with open(self.path("made/scene.yaml.before")) as stream:
+            self.assertTrue(stream.read().endswith("# mine\n"))
+
     def test_no_folder_to_write_to(self):
         self.write("made", b"a file")
         made = self.make(self.write("a.stl", stl(*ball())), "--scale", 0.001)

@@ -68,7 +68,7 @@ published topics
 
 services
   ~pause ~resume       std_srvs/Trigger: joint states wait meanwhile
-  ~step                std_srvs/Trigger: while paused, to the next joint state
+  ~step                std_srvs/Trigger: while paused, to the next joint state (newest_state: the newest)
   ~reset               std_srvs/Trigger: tissues undeformed and at rest
   ~save_state          tissue_contact/StateFile: all that the next step depends on, into a file
   ~load_state          tissue_contact/StateFile: goes on from such a file, of the same scene

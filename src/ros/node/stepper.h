@@ -51,7 +51,7 @@ class Stepper {
   Answer reset();                             ///< everything back to the start; what waits counts as merged
   Answer pause();                             ///< takes no more joint states; they wait in the inbox
   Answer resume();                            ///< goes on with those that wait
-  Answer stepOnce();                          ///< while paused: to the next moment
+  Answer stepOnce();                          ///< while paused: to the next moment, under kNewestState the newest
   Answer saveState(const std::string& file);  ///< see saveStateFile()
   Answer loadState(const std::string& file);  ///< see loadStateFile()
 
