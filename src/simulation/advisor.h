@@ -53,6 +53,10 @@ std::optional<Advice> supportDoubt(const Scene& scene, std::size_t tissue, const
 /// A warning where a block has so few cells over its thickness that it bends too stiffly, and may bend; else none.
 std::optional<Advice> bendingDoubt(const Scene& scene, std::size_t tissue, const std::vector<Tissue>& tissues);
 
+/// A warning where the cells of a mass-spring volume are so uneven that it is far from isotropic, or the pressure on it turns
+/// springs inside out; else none.
+std::optional<Advice> springDoubt(const TissueDescription& description, const Tissue& tissue);
+
 /// What the mesh of a volume is, and what it is likely to do to the forces of the instruments' shapes: a warning where
 /// even the largest shape meets coarse cells.
 /// @param edge_m of the shorter triangles of the surface.

@@ -6,6 +6,7 @@
 #include "core/disjoint_sets.h"
 #include "simulation/advisor.h"
 #include "tissue/body_edges.h"
+#include "tissue/spring_stiffness.h"
 #include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
@@ -218,6 +219,33 @@ std::optional<Advice> bendingDoubt(const Scene& scene, std::size_t tissue, const
                     "expected of the mesh under the tool; block.cells: " +
                     std::to_string(kEnoughCells) + " there, no longer than they are thick, leave less than a tenth",
                 true};
+}
+
+std::optional<Advice> springDoubt(const TissueDescription& description, const Tissue& tissue) {
+  if (description.material.model != ElasticModel::kMassSpring) return std::nullopt;
+  constexpr double kMostPressure = 0.04;  // of Young's modulus; from .05 on elements were seen to turn inside out
+  const double factor = leastWantedSpringFactor(tissue.restPositions(), tissue.tetrahedra());
+  double softest_pa = description.material.youngs_modulus_pa;
+  for (const TissueRegion& region : description.regions) {
+    softest_pa = std::min(softest_pa, region.material.youngs_modulus_pa);
+  }
+  std::string text;
+  if (factor < kLeastSpringFactor) {
+    text += ": its cells are so uneven that as a mass_spring body they would need springs of " + twoDigits(factor) +
+            " times their stiffness to be as stiff along all directions, and have " + twoDigits(kLeastSpringFactor) +
+            ". A press on cells 1.25 to 1.5 times as wide as high has .75 to .85 of its force, on cells twice as wide "
+            "a third, and "
+            "deep ones make them fall in; cells twice as high as wide sag less than half as far as they should. Give "
+            "cells about as wide as high, or another material.model";
+  }
+  if (description.pressure_pa > kMostPressure * softest_pa) {
+    text += (text.empty() ? ": " : "; and ") + std::string("pressure_pa is ") +
+            twoDigits(description.pressure_pa / softest_pa) +
+            " of Young's modulus: springs do not mind being turned inside out, and from .05 to .1 of it on parts of a "
+            "body are, without an error being told; give material.model neo_hookean";
+  }
+  if (text.empty()) return std::nullopt;
+  return Advice{"tissue " + quoted(description.name) + text, true};
 }
 
 }  // namespace tissue_contact

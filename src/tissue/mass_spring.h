@@ -9,7 +9,7 @@
 /// simulation of elastic membranes by triangulated spring meshes", JGT 1998, in its volume form) springs that point
 /// evenly in all directions make an isotropic body of Young's modulus E. A mesh's edges do not: the factor
 /// w = 1 + s : (n n n n), one symmetric tensor s for the whole mesh, is what makes its springs together, under uniform
-/// strain, isotropic with modulus E (as far as 0.1 <= w <= 10 allows); the energy of a uniform dilation is right in any
+/// strain, isotropic with modulus E (as far as 0.4 <= w <= 10 allows: spring_stiffness.h); the energy of a uniform dilation is right in any
 /// case. Compare Lloyd, Szekely, Harders, "Identification of spring parameters for deformable object simulation",
 /// TVCG 2007, who fit regular meshes.
 ///

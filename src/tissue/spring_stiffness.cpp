@@ -74,10 +74,8 @@ Vector3 direction(const NodalVectors& rest, const std::array<int, 2>& nodes) {
 }
 
 /// Factors w per share: the least deviation from 1, linear in the quartics, that makes sum V w nnnn isotropic. Of
-/// geometry alone, so that regions of different modulus keep their ratio.
-std::vector<double> isotropyFactors(const NodalVectors& rest, const std::vector<EdgeShare>& shares) {
-  constexpr double kLeast = 0.1;
-  constexpr double kMost = 10.0;
+/// geometry alone, so that regions of different modulus keep their ratio. As solved: springs cannot have all of them.
+std::vector<double> wantedFactors(const NodalVectors& rest, const std::vector<EdgeShare>& shares) {
   Eigen::Matrix<double, 15, 15> gram = Eigen::Matrix<double, 15, 15>::Zero();
   Vector15 missing = Vector15::Zero();
   double total = 0.0;
@@ -93,10 +91,20 @@ std::vector<double> isotropyFactors(const NodalVectors& rest, const std::vector<
   const Vector15 s = decomposition.compute(gram).solve(missing);
   std::vector<double> factors;
   factors.reserve(shares.size());
+  for (const EdgeShare& share : shares) factors.push_back(1.0 + s.dot(quartics(direction(rest, share.nodes))));
+  return factors;
+}
+
+/// Those that springs have.
+std::vector<double> boundedFactors(const NodalVectors& rest, const std::vector<EdgeShare>& shares) {
+  constexpr double kMost = 10.0;
+  std::vector<double> factors = wantedFactors(rest, shares);
+  double total = 0.0;
+  for (const EdgeShare& share : shares) total += share.volume;
   double dilation = 0.0;  // energy of a uniform dilation over the right one
-  for (const EdgeShare& share : shares) {
-    factors.push_back(std::clamp(1.0 + s.dot(quartics(direction(rest, share.nodes))), kLeast, kMost));
-    dilation += factors.back() * share.volume / total;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    factors[i] = std::clamp(factors[i], kLeastSpringFactor, kMost);
+    dilation += factors[i] * shares[i].volume / total;
   }
   for (double& factor : factors) factor /= dilation;
   return factors;
@@ -107,7 +115,7 @@ std::vector<double> isotropyFactors(const NodalVectors& rest, const std::vector<
 std::vector<Spring> makeSprings(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra,
                                 const ElementMaterials& materials) {
   const std::vector<EdgeShare> shares = edgeShares(rest, tetrahedra, materials);
-  const std::vector<double> factors = isotropyFactors(rest, shares);
+  const std::vector<double> factors = boundedFactors(rest, shares);
   std::vector<Spring> springs;
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const EdgeShare& share = shares[i];
@@ -118,6 +126,12 @@ std::vector<Spring> makeSprings(const NodalVectors& rest, const std::vector<Tetr
     springs.back().damping += factors[i] * share.damping;
   }
   return springs;
+}
+
+double leastWantedSpringFactor(const NodalVectors& rest, const std::vector<Tetrahedron>& tetrahedra) {
+  const MaterialDescription any;  // factors are of geometry alone
+  const std::vector<double> factors = wantedFactors(rest, edgeShares(rest, tetrahedra, any));
+  return *std::min_element(factors.begin(), factors.end());
 }
 
 }  // namespace tissue_contact
