@@ -62,6 +62,7 @@ void MovingTissue::stop() {
   if (elastic_state_ && !(tissue_.elasticity().hasMemory() && loads_.allFinite())) {
     elastic_state_.reset();  // or else a large tissue would hold two for a moment
   }
+  if (!loads_.allFinite()) loads_.setZero();  // nothing saves or reads them again: the next step finds its own
   makeState();
   if (sleep_) sleep_->wakeAll();
   still_changed_ = false;
@@ -155,6 +156,11 @@ bool MovingTissue::wakeHeld(std::optional<double> pressing_n, double dt, int rep
 /// What the sleepers may be held by in all, N.
 double MovingTissue::allowedHeldForce(std::optional<double> pressing_n) const {
   return scene_.advisor.sleep_error * (pressing_n ? *pressing_n : sleep_->ownForce());
+}
+
+bool MovingTissue::isPossible(double dt) const {
+  return system_.asleep ||
+         (v_.allFinite() && v_.cwiseAbs().maxCoeff() <= kMost && (x_ + dt * v_).cwiseAbs().maxCoeff() <= kMost);
 }
 
 void MovingTissue::keepElements(double dt) {

@@ -42,7 +42,7 @@ class MovingTissue {
   /// keep theirs.
   void stop();
 
-  /// In a saved state, m, m/s: what is farther or faster has long stopped to be tissue.
+  /// Of positions and velocities, m, m/s: what is farther or faster has long stopped to be tissue.
   static constexpr double kMost = 1e9;
 
   /// @pre on reading: the mesh is that of what was written.
@@ -67,9 +67,10 @@ class MovingTissue {
   /// @return whether any woke: the step is to be solved again.
   bool wakeHeld(std::optional<double> pressing_n, double dt, int repeats);
 
-  bool isFinite() const { return system_.asleep || v_.allFinite(); }  ///< the answer of the step
+  /// Whether velocities, the answer of a step of `dt`, s, and positions after it are finite and at most kMost.
+  bool isPossible(double dt) const;
   /// After a step that ended before the tolerance: slows v down, by half at most, to where it turns no element inside out.
-  /// @pre isFinite()
+  /// @pre isPossible()
   void keepElements(double dt);
   /// x += dt v.
   /// @param contact_work_j, was_cut, is_free_of_contact see EnergyDebt::finish().

@@ -271,7 +271,8 @@ bool Simulator::Implementation::wakeHeld(double dt, int repeats) {
 
 void Simulator::Implementation::moveTissues(double dt) {
   const auto is_finite = [](const Vector3& impulse) { return impulse.allFinite(); };
-  if (std::all_of(moving.begin(), moving.end(), [](const MovingTissue& tissue) { return tissue.isFinite(); }) &&
+  const auto is_possible = [dt](const MovingTissue& tissue) { return tissue.isPossible(dt); };
+  if (std::all_of(moving.begin(), moving.end(), is_possible) &&
       std::all_of(solution.impulses.begin(), solution.impulses.end(), is_finite)) {
     const bool was_cut = report.stop != StopReason::kTolerance;
     if (was_cut) {

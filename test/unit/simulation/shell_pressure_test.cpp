@@ -1,0 +1,66 @@
+/// Closed shells inflated by more than their wall bears.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "support/temporary_directory.h"
+#include "support/text_scene.h"
+
+namespace tissue_contact {
+namespace shell_pressure_test {
+
+constexpr double kRadius = 0.03;  // m
+
+/// An octahedron, normals outward, or one without a face.
+std::string octahedron(bool is_closed) {
+  std::string obj;
+  for (const char* vertex : {"1 0 0", "-1 0 0", "0 1 0", "0 -1 0", "0 0 1", "0 0 -1"}) {
+    obj += std::string("v ") + vertex + "\n";
+  }
+  obj += "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\n";
+  return obj + (is_closed ? "f 1 4 6\n" : "");
+}
+
+class ShellPressure : public ::testing::Test {
+ protected:
+  Simulator make(double pressure_pa, bool is_closed = true, const std::string& more = "") {
+    return makeSimulator("tissues:\n  - name: bag\n    shell: {file: " +
+                         directory_.write(is_closed ? "bag.obj" : "bowl.obj", octahedron(is_closed)) +
+                         ", thickness_m: 0.001, scale_m_per_unit: " + std::to_string(kRadius) +
+                         "}\n    material: {youngs_modulus_pa: 50000, poissons_ratio: 0.4, density_kg_per_m3: 1000}\n"
+                         "    damping: {stiffness_s: 0.005, mass_per_s: 2}\n    pressure_pa: " +
+                         std::to_string(pressure_pa) +
+                         "\n    fixed: [{plane: {point_m: [0, 0, -0.029], normal: [0, 0, 1]}}]\n" + more);
+  }
+
+  static std::vector<std::string> doubts(const Simulator& simulator) {
+    std::vector<std::string> texts;
+    for (const Advice& advice : simulator.advice()) {
+      if (advice.is_warning) texts.push_back(advice.text);
+    }
+    return texts;
+  }
+
+ private:
+  TemporaryDirectory directory_;
+};
+
+// Before, positions went on to 1e70 m; their state was written, and refused when it was read.
+TEST_F(ShellPressure, WhatBlowsUpStopsAndItsStateIsReadAgain) {
+  Simulator simulator = make(-6000.0);
+  Simulator other = make(-6000.0);
+  bool is_discarded = false;
+  for (int k = 0; k < 20; ++k) {
+    simulator.advance(0.05, {});
+    is_discarded = is_discarded || simulator.report().discarded;
+    EXPECT_TRUE(simulator.positions(0).cwiseAbs().maxCoeff() <= 1e9);
+    EXPECT_TRUE(simulator.velocities(0).cwiseAbs().maxCoeff() <= 1e9);
+    ASSERT_NO_THROW(other.restoreState(simulator.saveState())) << k;
+    EXPECT_EQ(other.positions(0), simulator.positions(0));
+  }
+  EXPECT_TRUE(is_discarded);
+}
+
+}  // namespace shell_pressure_test
+}  // namespace tissue_contact
