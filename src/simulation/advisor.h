@@ -57,6 +57,9 @@ std::optional<Advice> bendingDoubt(const Scene& scene, std::size_t tissue, const
 /// springs inside out; else none.
 std::optional<Advice> springDoubt(const TissueDescription& description, const Tissue& tissue);
 
+/// A warning where a closed shell is inflated by more than its wall can bear at any size; else none.
+std::optional<Advice> inflationDoubt(const TissueDescription& description, const Tissue& tissue);
+
 /// What the mesh of a volume is, and what it is likely to do to the forces of the instruments' shapes: a warning where
 /// even the largest shape meets coarse cells.
 /// @param edge_m of the shorter triangles of the surface.

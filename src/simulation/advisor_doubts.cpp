@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <sstream>
 #include <variant>
 
@@ -246,6 +247,57 @@ std::optional<Advice> springDoubt(const TissueDescription& description, const Ti
   }
   if (text.empty()) return std::nullopt;
   return Advice{"tissue " + quoted(description.name) + text, true};
+}
+
+namespace {
+
+bool isClosed(const std::vector<Triangle>& surface) {
+  std::vector<std::array<int, 2>> edges;
+  edges.reserve(3 * surface.size());
+  for (const Triangle& t : surface) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int next = t[(i + 1) % 3];
+      edges.push_back({std::min(t[i], next), std::max(t[i], next)});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i < edges.size(); i += 2) {
+    if (i + 1 == edges.size() || edges[i] != edges[i + 1]) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<Advice> inflationDoubt(const TissueDescription& description, const Tissue& tissue) {
+  if (!isMembrane(description) || description.pressure_pa == 0.0 || !description.pressure_where.empty()) {
+    return std::nullopt;
+  }
+  if (!isClosed(tissue.surface())) return std::nullopt;
+  const NodalVectors& x = tissue.restPositions();
+  const Vector3 origin = x.rowwise().mean();
+  double area = 0.0;
+  double volume = 0.0;
+  for (const Triangle& t : tissue.surface()) {
+    const Vector3 doubled = (x.col(t[1]) - x.col(t[0])).cross(x.col(t[2]) - x.col(t[0]));
+    area += 0.5 * doubled.norm();
+    volume += (x.col(t[0]) - origin).dot(doubled) / 6.0;
+  }
+  const double inflating_pa = volume > 0.0 ? -description.pressure_pa : description.pressure_pa;
+  const double radius = 3.0 * std::abs(volume) / area;  // a ball's; of other shapes less than where they curve least
+  // p = 2 h E (s - 1) / ((1 - nu) R s^2) of a ball of stretch s, membrane.h's law; most at s = 2.
+  const MaterialDescription& material = description.material;
+  const double most_pa =
+      tissue.thickness() * material.youngs_modulus_pa / (2.0 * (1.0 - material.poissons_ratio) * radius);
+  const bool is_held_by_springs = tissue.attachmentStiffness() * radius > inflating_pa * area;
+  if (!(inflating_pa > most_pa) || is_held_by_springs) return std::nullopt;
+  return Advice{"tissue " + quoted(description.name) + ": its closed shell is inflated by " + twoDigits(inflating_pa) +
+                    " Pa, more than the " + twoDigits(most_pa) +
+                    " Pa that a ball of its size, thickness and material can bear, E h / (2 (1 - nu) R) with R " +
+                    twoDigits(1e3 * radius) +
+                    " mm: it has no shape of rest and blows up until its steps are discarded; give less pressure, or "
+                    "a thicker or stiffer wall",
+                true};
 }
 
 }  // namespace tissue_contact

@@ -54,6 +54,7 @@ std::vector<Advice> Simulator::advice() const {
     if (const auto doubt = stepDoubt(scene(), tissue)) meshes[t].push_back(*doubt);
     if (const auto doubt = supportDoubt(scene(), t, all.tissues)) meshes[t].push_back(*doubt);
     if (const auto doubt = springDoubt(tissue, all.tissues[t])) meshes[t].push_back(*doubt);
+    if (const auto doubt = inflationDoubt(tissue, all.tissues[t])) meshes[t].push_back(*doubt);
     if (!isContinuum(tissue.material.model)) continue;
     if (const auto doubt = bendingDoubt(scene(), t, all.tissues)) meshes[t].push_back(*doubt);
     if (!all.refinements[t]) {

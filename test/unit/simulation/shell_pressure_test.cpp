@@ -62,5 +62,19 @@ TEST_F(ShellPressure, WhatBlowsUpStopsAndItsStateIsReadAgain) {
   EXPECT_TRUE(is_discarded);
 }
 
+// R = 3 V / A = .0173 m of the octahedron; E h / (2 (1 - nu) R) = 2406 Pa.
+TEST_F(ShellPressure, MoreThanTheWallBearsIsTold) {
+  EXPECT_EQ(doubts(make(-2300.0)), std::vector<std::string>());
+  const std::vector<std::string> inflated = doubts(make(-2500.0));
+  ASSERT_EQ(inflated.size(), 1U);
+  EXPECT_EQ(
+      inflated[0].find("tissue 'bag': its closed shell is inflated by 2500 Pa, more than the 2400 Pa that a ball"), 0U)
+      << inflated[0];
+  EXPECT_EQ(doubts(make(2500.0)), std::vector<std::string>());          // from outside
+  EXPECT_EQ(doubts(make(-2500.0, false)), std::vector<std::string>());  // a bowl
+  EXPECT_EQ(doubts(make(-2500.0, true, "    pressure_where: [{plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}}]\n")),
+            std::vector<std::string>());
+}
+
 }  // namespace shell_pressure_test
 }  // namespace tissue_contact
