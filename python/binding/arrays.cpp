@@ -5,6 +5,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "tissue_contact/simulation/touched_point.h"
+
 namespace tissue_contact::python {
 namespace {
 
@@ -91,7 +93,7 @@ py::array toArray(const std::vector<bool>& flags) {
   return array;
 }
 
-py::array_t<ContactRow> toArray(const std::vector<SolvedContact>& contacts) {
+py::array_t<ContactRow> toArray(const std::vector<SolvedContact>& contacts, const std::vector<Tissue>& tissues) {
   py::array_t<ContactRow> rows(static_cast<py::ssize_t>(contacts.size()));
   ContactRow* row = rows.mutable_data();
   for (const SolvedContact& solved : contacts) {
@@ -102,7 +104,7 @@ py::array_t<ContactRow> toArray(const std::vector<SolvedContact>& contacts) {
     row->tissue = key.tissue;
     row->other_tissue = key.other_tissue;
     row->state = static_cast<std::int32_t>(solved.state);
-    copy(solved.contact.p_WC, row->point);
+    copy(touchedPoint(solved.contact, tissues), row->point);
     copy(solved.contact.R_WC.col(0), row->normal);
     copy(solved.force_on_tissue_n, row->force);
     copy(solved.slip_W, row->slip);

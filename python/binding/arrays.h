@@ -55,7 +55,7 @@ py::array_t<double> toArray(const VectorX& values);
 py::array_t<double> toArray(const Pose& pose);      ///< 4 x 4
 py::array_t<double> toArray(const Wrench& wrench);  ///< force, torque
 py::array toArray(const std::vector<bool>& flags);  ///< of bool
-py::array_t<ContactRow> toArray(const std::vector<SolvedContact>& contacts);
+py::array_t<ContactRow> toArray(const std::vector<SolvedContact>& contacts, const std::vector<Tissue>& tissues);
 py::array_t<ForceErrorRow> toArray(const std::vector<ForceErrorEstimate>& errors);
 
 /// Nobody may write to it: it is the simulator's memory.

@@ -256,7 +256,7 @@ std::shared_ptr<Topology> PythonSimulator::topology(const std::string& tissue) {
 
 py::array PythonSimulator::contacts() const {
   const Use use(*this);
-  return toArray(simulator_.contacts());
+  return toArray(simulator_.contacts(), simulator_.tissues());
 }
 
 py::array PythonSimulator::forceErrors() const {

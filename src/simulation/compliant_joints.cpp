@@ -5,6 +5,8 @@
 #include <iterator>
 #include <tuple>
 
+#include "tissue_contact/simulation/touched_point.h"
+
 namespace tissue_contact {
 namespace {
 
@@ -92,8 +94,9 @@ bool CompliantJoints::beforeNode(const PressedSide& one, const PressedSide& othe
   return std::tie(one.body, one.node) < std::tie(other.body, other.node);
 }
 
-CompliantJoints::CompliantJoints(const std::vector<Instrument>& instruments, const InstrumentMotion& motion)
-    : instruments_(instruments) {
+CompliantJoints::CompliantJoints(const std::vector<Instrument>& instruments, const std::vector<Tissue>& tissues,
+                                 const InstrumentMotion& motion)
+    : instruments_(instruments), tissues_(tissues) {
   for (std::size_t i = 0; i < instruments.size(); ++i) {
     const int instrument = static_cast<int>(i);
     const double share = kWayPerStep / static_cast<double>(instruments[i].compliantJoints().size());
@@ -114,7 +117,8 @@ double CompliantJoints::effortOn(Joint& joint, const ContactProblem& problem, co
     const Contact& contact = contacts[c].contact;
     if (contact.key.instrument != joint.instrument) continue;
     const int link = instrument.contactLinks()[contact.key.link].link;
-    const Vector3 way = pointWay(instrument.model(), X_WL, link, joint.compliance.joint, contact.p_WC);
+    const Vector3 p_W = touchedPoint(contact, tissues_);
+    const Vector3 way = pointWay(instrument.model(), X_WL, link, joint.compliance.joint, p_W);
     if (way.isZero(0.0)) continue;
     touches = touches || !solution.impulses[c].isZero(0.0);
     effort -= way.dot(contacts[c].force_on_tissue_n);

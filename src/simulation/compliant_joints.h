@@ -18,6 +18,7 @@
 #include "tissue_contact/instrument/instrument.h"
 #include "tissue_contact/simulation/solved_contact.h"
 #include "tissue_contact/solver/contact_problem.h"
+#include "tissue_contact/tissue/tissue.h"
 
 namespace tissue_contact {
 
@@ -33,8 +34,9 @@ class CompliantJoints {
     double weight;
   };
 
-  /// @param instruments must outlive this object.
-  CompliantJoints(const std::vector<Instrument>& instruments, const InstrumentMotion& motion);
+  /// @param instruments, tissues must outlive this object.
+  CompliantJoints(const std::vector<Instrument>& instruments, const std::vector<Tissue>& tissues,
+                  const InstrumentMotion& motion);
 
   /// Before a step, with `motion` moved to its end.
   void give(double dt, InstrumentMotion& motion) const;
@@ -67,6 +69,7 @@ class CompliantJoints {
   double energyOf(const ContactProblem& problem, MovedNodes begin, MovedNodes end);
 
   const std::vector<Instrument>& instruments_;
+  const std::vector<Tissue>& tissues_;
   std::vector<Joint> joints_;
   std::vector<PressedSide> pressed_;  ///< scratch of load()
   std::vector<NodalVectors> ways_;    ///< scratch: per body, 0 between calls

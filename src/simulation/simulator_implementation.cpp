@@ -10,6 +10,7 @@
 #include "tissue_contact/baselines/make_contact_solver.h"
 #include "tissue_contact/core/check.h"
 #include "tissue_contact/core/entry_error.h"
+#include "tissue_contact/simulation/touched_point.h"
 
 namespace tissue_contact {
 namespace {
@@ -41,7 +42,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
       friction(scene, instruments, tissues),
       edges(tissues),
       motion(instruments),
-      compliant_joints(instruments, motion),
+      compliant_joints(instruments, tissues, motion),
       x(tissues.size()),
       margins(edges, tissues.size(), buildTissuePairs(scene)),
       detector(instruments, shareSurfaces(surfacesOf(tissues), restPositionsOf(tissues)), environment.meshes),
@@ -326,7 +327,8 @@ void Simulator::Implementation::sumWrenches() {
     const Vector3 force_W = -solved.force_on_tissue_n;
     Wrench& wrench = wrenches[key.instrument];
     wrench.force += X_WTip.linear().transpose() * force_W;
-    wrench.torque += X_WTip.linear().transpose() * (solved.contact.p_WC - X_WTip.translation()).cross(force_W);
+    const Vector3 arm_W = touchedPoint(solved.contact, tissues) - X_WTip.translation();
+    wrench.torque += X_WTip.linear().transpose() * arm_W.cross(force_W);
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "tissue_contact/simulation/touched_point.h"
+
 namespace tissue_contact {
 namespace {
 
@@ -34,7 +36,10 @@ void takeSnapshot(const Simulator& simulator, std::vector<ShownMesh>& meshes, st
   snapshot.step = simulator.stepCount();
   const bool with_positions = snapshot.mesh || snapshot.markers;
   if (with_positions || snapshot.topologies) takeMeshes(simulator, meshes, with_positions, snapshot);
-  if (snapshot.contact_array || snapshot.markers) snapshot.contacts = simulator.contacts();
+  if (snapshot.contact_array || snapshot.markers) {
+    snapshot.contacts = simulator.contacts();
+    for (SolvedContact& one : snapshot.contacts) one.contact.p_WC = touchedPoint(one.contact, simulator.tissues());
+  }
   if (snapshot.markers) {
     snapshot.link_poses.resize(simulator.instruments().size());
     for (std::size_t i = 0; i < snapshot.link_poses.size(); ++i) {

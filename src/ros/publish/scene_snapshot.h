@@ -24,7 +24,7 @@ struct SceneSnapshot {
   std::vector<std::shared_ptr<const MeshRevision>> revisions;
   std::vector<NodalVectors> positions;        ///< per tissue, m, world frame
   std::vector<std::vector<Pose>> link_poses;  ///< per instrument: X_WL of every link
-  std::vector<SolvedContact> contacts;
+  std::vector<SolvedContact> contacts;        ///< their p_WC: touchedPoint()
   Status status;
 
   /// What is to be published of it; the rest need not be filled in.
