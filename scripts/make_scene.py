@@ -7,6 +7,7 @@ Writes a folder with
 and prints the command that turns both into forces. Edit the scene, or record your own robot over it.
 """
 import argparse
+import itertools
 import json
 import logging
 import math
@@ -268,9 +269,11 @@ def keep_edited(scene, text):
             before = stream.read()
     except OSError:
         return
-    if before != text:
-        shutil.copy2(scene, scene + ".before")
-        print("the scene that was there differs: it is %s.before now" % scene)
+    if before == text:
+        return
+    kept = next(name for name in (scene + ".before" + ("%d" % n if n else "") for n in itertools.count()) if not os.path.exists(name))
+    shutil.copy2(scene, kept)
+    print("the scene that was there differs: it is %s now" % kept)
 
 
 def require_organ_size(size, scale):

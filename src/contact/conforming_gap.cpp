@@ -7,8 +7,8 @@ namespace tissue_contact {
 
 ConformingGap conformingGap(const std::array<Vector3, 3>& corners, const std::array<double, 3>& distances,
                             const Vector3& weights, double gap) {
-  constexpr double kSmooth = 0.3;  // l / R
-  constexpr double kSharp = 0.7;
+  constexpr double kSmooth = 0.25;  // l / R
+  constexpr double kSharp = 0.5;
   Vector3 p = Vector3::Zero();
   double sagitta = -gap;
   for (int i = 0; i < 3; ++i) {
@@ -19,9 +19,9 @@ ConformingGap conformingGap(const std::array<Vector3, 3>& corners, const std::ar
   for (int i = 0; i < 3; ++i) squared += weights[i] * (corners[i] - p).squaredNorm();
   if (!(squared > 0.0)) return {gap, true};  // at a vertex
   const double bend = 2.0 * sagitta / std::sqrt(squared);
-  // share * bend falls by less than 1 for each 1 of bend. A step foresees a point's gap by its own distance alone; where the sagitta that
-  // counts fell faster than the whole grew, a gap turned out to have changed by more than twice of what was foreseen, and
-  // balls on coarse cells swung on the spot.
+  // share * bend falls by 1 for each 1 of bend. A step foresees a point's gap by its own distance alone; where the
+  // sagitta that counts fell faster than the whole grew, a gap turned out to have changed by more than twice of what
+  // was foreseen, and balls on coarse cells swung on the spot.
   const double share = bend > kSmooth ? std::max(kSmooth * (kSharp - bend) / ((kSharp - kSmooth) * bend), 0.0) : 1.0;
   return {gap + share * sagitta, share == 1.0};
 }

@@ -13,7 +13,7 @@ namespace tissue_contact {
 /// 1.5 times that over the depth. Where the shape is smooth as seen from the triangle, the gap of a point is therefore
 /// taken as that of a surface through the same vertices with the shape's own curvature in between, sum w_i phi(x_i),
 /// which is phi(p) plus the sagitta. With l^2 = sum w_i |x_i - p|^2 the sagitta is l^2 / (2 R), so 2 sagitta / l = l / R
-/// tells how smooth that is: all of the sagitta counts up to l / R = .3 (edges of .6 of the radius), none from .7 on (an
+/// tells how smooth that is: all of the sagitta counts up to l / R = 1/4 (edges of half the radius), none from 1/2 on (an
 /// edge or a tip that pokes into the middle of a triangle).
 /// Where all of it counts, the vertices' own contacts say the same and the point needs none.
 /// @param corners, distances of the triangle's vertices, m, and the shape's signed distance phi there.

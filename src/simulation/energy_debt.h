@@ -14,8 +14,8 @@ namespace tissue_contact {
 void slowDown(const VectorX& mass, bool is_free, double share, NodalVectors& v);
 
 /// Implicit steps are stable once they are solved, linear ones. What a few iterations reach may hold more energy than the step before and what did work
-/// since, as may one that is solved to the tolerance where a stiff body turns, since turning on the spot is stretch to the step, with forces far larger than those
-/// that drive it; and steps that pass it on grow without bound. So the balance of such steps is made up (doc/method.md, "When a
+/// since, as may one that is solved to the tolerance where a stiff body turns about an edge or a point that holds it: that is
+/// stretch to the step, with forces far larger than those that drive it; and steps that pass it on grow without bound. So the balance of such steps is made up (doc/method.md, "When a
 /// step ends"), and what there is too much is taken from the velocities, as far as they go; of a step that was cut short also in later ones until one is solved.
 class EnergyDebt {
  public:

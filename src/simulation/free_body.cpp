@@ -8,8 +8,12 @@
 namespace tissue_contact {
 namespace {
 
-/// Turns in a step by more than this, rad, are no motion that a step follows; where nodes lie on a line they are round-off.
+/// Turns in a step by more than this, rad, are no motion that a step follows; where nodes lie on a line they are
+/// round-off.
 constexpr double kMostTurn = 1.0;
+
+/// Turns in a step by less, rad, brake nothing: what lies at rest is spared the product.
+constexpr double kLeastTurn = 1e-9;
 
 /// sum += scale * matrix * v.
 TISSUE_CONTACT_CLONES
@@ -57,7 +61,7 @@ void letTurn(const VectorX& mass, const NodalVectors& x, const NodalVectors& v, 
   const FreeMotion motion = freeMotionOf(mass, x, v);
   const Vector3 omega = motion.omega();
   const double angle = dt_s * omega.norm();
-  if (!(angle > 0.0 && angle < kMostTurn)) return;
+  if (!(angle > kLeastTurn && angle < kMostTurn)) return;
   const Matrix3 rotation = Eigen::AngleAxisd(angle, omega.normalized()).toRotationMatrix();
   const Matrix3 chord = (rotation - Matrix3::Identity()) / dt_s;
   w.resize(3, x.cols());

@@ -9,9 +9,15 @@
 
 namespace tissue_contact {
 
-MovingTissue::MovingTissue(const Scene& scene, const Tissue& tissue, NodalVectors& x, NodalVectors& v,
-                           BodySystem& system)
-    : scene_(scene), tissue_(tissue), x_(x), v_(v), system_(system), loads_(NodalVectors::Zero(3, tissue.nodeCount())) {
+MovingTissue::MovingTissue(const Scene& scene, ElasticModel model, const Tissue& tissue, NodalVectors& x,
+                           NodalVectors& v, BodySystem& system)
+    : scene_(scene),
+      model_(model),
+      tissue_(tissue),
+      x_(x),
+      v_(v),
+      system_(system),
+      loads_(NodalVectors::Zero(3, tissue.nodeCount())) {
   reset();
   watchSleep(meanSurfaceEdge(&tissue_, 1));
 }
@@ -102,6 +108,7 @@ void MovingTissue::makeState() {
   system_.stiff_parts = &tissue_.stiffParts();
   const std::vector<bool>& fixed = tissue_.fixed();
   is_free_ = std::find(fixed.begin(), fixed.end(), true) == fixed.end() && tissue_.attachmentStiffness() == 0.0;
+  if (is_free_) rigid_.resize(3, tissue_.nodeCount());
   system_.x = &x_;
   is_fast_.reserve(static_cast<std::size_t>(tissue_.nodeCount()));
 }
@@ -143,7 +150,8 @@ void MovingTissue::assemble(double dt) {
   }
   system_.change_n_s = std::sqrt(squared);
   system_.net_change_n_s = is_free_ ? net.norm() : -1.0;
-  if (is_free_ && sleepers() == 0) letTurn(tissue_.nodeMasses(), x_, v_, dt, rigid_, system_);
+  const bool turns = is_free_ && model_ != ElasticModel::kLinear;  // its forces do not turn with it
+  if (turns && sleepers() == 0) letTurn(tissue_.nodeMasses(), x_, v_, dt, rigid_, system_);
 }
 
 bool MovingTissue::wakeHeld(std::optional<double> pressing_n, double dt, int repeats) {

@@ -25,8 +25,10 @@ class MovingTissue {
   /// detectors and solvers take together; they are written here alone, but for v, which is also the solver's answer.
   /// @param x positions, 3 x nodes, m, world frame.
   /// @param v velocities, 3 x nodes, m/s.
+  /// @param model the tissue's.
   /// @param system A and b of the step.
-  MovingTissue(const Scene& scene, const Tissue& tissue, NodalVectors& x, NodalVectors& v, BodySystem& system);
+  MovingTissue(const Scene& scene, ElasticModel model, const Tissue& tissue, NodalVectors& x, NodalVectors& v,
+               BodySystem& system);
   MovingTissue(const MovingTissue&) = delete;
   MovingTissue& operator=(const MovingTissue&) = delete;
 
@@ -89,6 +91,7 @@ class MovingTissue {
   double allowedHeldForce(std::optional<double> pressing_n) const;
 
   const Scene& scene_;
+  ElasticModel model_;
   const Tissue& tissue_;
   NodalVectors& x_;
   NodalVectors& v_;

@@ -70,7 +70,7 @@ Simulator::Implementation::Implementation(const Scene& description, const SceneE
   problem.bodies.resize(tissues.size());
   contact_work_j.reserve(tissues.size());
   for (std::size_t t = 0; t < tissues.size(); ++t) {
-    moving.emplace_back(scene, tissues[t], x[t], solution.v[t], problem.bodies[t]);
+    moving.emplace_back(scene, scene.tissues[t].material.model, tissues[t], x[t], solution.v[t], problem.bodies[t]);
   }
   followers.resize(tissues.size());
   for (std::size_t t = 0; t < tissues.size(); ++t) {
@@ -182,7 +182,7 @@ void Simulator::Implementation::changeMesh(int tissue, ComingMesh& coming) {
   solution.v[tissue] = transfer.carried(solution.v[tissue]);
   solution.slow_changes[tissue] = transfer.carried(solution.slow_changes[tissue]);
   takeMesh(tissue, coming, transfer.to_new);
-  if (had) keepMomentum(*had, tissues[tissue].nodeMasses(), x[tissue], solution.v[tissue]);
+  if (had && moving[tissue].isFree()) keepMomentum(*had, tissues[tissue].nodeMasses(), x[tissue], solution.v[tissue]);
 }
 
 /// Goes on with all that was made from another mesh of this tissue; x and v are those of its nodes already. Members that refer to each

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tissue_contact/mesh/tissue_surface.h"
+#include "tissue_contact/simulation/touched_point.h"
 
 namespace tissue_contact {
 namespace {
@@ -121,9 +122,10 @@ void StepContacts::slideOn(const ContactDetector& detector, const std::vector<No
     Contact& contact = solved.contact;
     if (contact.key.instrument < 0) continue;
     const ContactKey& key = contact.key;
-    const Vector3 v_W = solved.state == ContactState::kStatic
-                            ? motion_.pointVelocity(key.instrument, key.link, contact.p_WC, dt)  // held by the tool
-                            : pointOf(v[key.tissue], contact.nodes, contact.weights);
+    const Vector3 v_W =
+        solved.state == ContactState::kStatic
+            ? motion_.pointVelocity(key.instrument, key.link, touchedPoint(contact, tissues_), dt)  // held by it
+            : pointOf(v[key.tissue], contact.nodes, contact.weights);
     detector.turnWithSlide(motion_.startPoses(), motion_.endPoses(), dt * v_W, contact);
   }
 }

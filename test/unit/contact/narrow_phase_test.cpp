@@ -210,7 +210,7 @@ bool isEased(const ShapeDistance& shape, const NodalVectors& nodes, const ShapeC
     sagitta += contact.weights[i] * shape.at(corner).distance;
     squared += contact.weights[i] * (corner - p).squaredNorm();
   }
-  return 2.0 * sagitta < 0.7 * std::sqrt(squared);
+  return 2.0 * sagitta < 0.5 * std::sqrt(squared);
 }
 
 /// Moving the triangle by -gap along the normal must leave it just touching: normal and gap belong together, on ridges

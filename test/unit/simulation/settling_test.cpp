@@ -41,7 +41,7 @@ int advanceUntilSomethingSettles(Simulator& simulator) {
   for (int k = 1; k <= 400; ++k) {
     step(simulator, k);
     const auto now = static_cast<std::size_t>(simulator.tissues()[0].nodeCount());
-    if (k > 148 && now < nodes) return simulator.residuals().penetration_m > 1e-4 ? k : 0;
+    if (k > 355 && now < nodes) return simulator.residuals().penetration_m > 1e-4 ? k : 0;
     nodes = now;
   }
   return 0;
@@ -61,17 +61,17 @@ double largestTurn(const std::string& nodes_at_most) {
   return largest;
 }
 
-// .24 N in all at 700 nodes, .19 at 1000, which settles by .3 mm; .041 and .054 where the surface was pushed out within the step.
+// .24 N in all at 600 nodes, .19 at 1000; .078 and .054 where the surface was pushed out within the step.
 TEST(Settling, ForceDoesNotJumpWhereCellsGrowUnderATool) {
-  EXPECT_LT(largestTurn("700"), 0.025);
+  EXPECT_LT(largestTurn("600"), 0.025);
   EXPECT_LT(largestTurn("1000"), 0.025);
 }
 
 TEST(Settling, ASavedStateGoesOnSettling) {
-  Simulator simulator = drag("1000");
+  Simulator simulator = drag("600");
   const int k = advanceUntilSomethingSettles(simulator);
   ASSERT_GT(k, 0) << "nothing settles";
-  Simulator restored = drag("1000");
+  Simulator restored = drag("600");
   restored.restoreState(simulator.saveState());
   for (int i = 1; i <= 5; ++i) {
     step(simulator, k + i);
@@ -81,10 +81,10 @@ TEST(Settling, ASavedStateGoesOnSettling) {
 }
 
 TEST(Settling, NothingIsLeftOfItAfterAReset) {
-  Simulator simulator = drag("1000");
+  Simulator simulator = drag("600");
   ASSERT_GT(advanceUntilSomethingSettles(simulator), 0) << "nothing settles";
   simulator.reset();
-  Simulator fresh = drag("1000");
+  Simulator fresh = drag("600");
   for (int k = 1; k <= 150; ++k) {
     step(simulator, k);
     step(fresh, k);

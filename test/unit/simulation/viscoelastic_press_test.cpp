@@ -119,7 +119,7 @@ TEST(Viscoelastic, ADiscardedStepDoesNotStartItsMemoryAnew) {
   NodalVectors x;
   NodalVectors v;
   BodySystem system;
-  MovingTissue tissue(simulator.scene(), simulator.tissues()[0], x, v, system);
+  MovingTissue tissue(simulator.scene(), ElasticModel::kCorotational, simulator.tissues()[0], x, v, system);
   x.row(0) += 0.1 * x.row(2);
   tissue.assemble(kStep);
   const double at_once = system.b.norm();
