@@ -19,10 +19,7 @@ ConformingGap conformingGap(const std::array<Vector3, 3>& corners, const std::ar
   for (int i = 0; i < 3; ++i) squared += weights[i] * (corners[i] - p).squaredNorm();
   if (!(squared > 0.0)) return {gap, true};  // at a vertex
   const double bend = 2.0 * sagitta / std::sqrt(squared);
-  // share * bend falls by 1 for each 1 of bend. A step foresees a point's gap by its own distance alone; where the
-  // sagitta that counts fell faster than the whole grew, a gap turned out to have changed by more than twice of what
-  // was foreseen, and balls on coarse cells swung on the spot.
-  const double share = bend > kSmooth ? std::max(kSmooth * (kSharp - bend) / ((kSharp - kSmooth) * bend), 0.0) : 1.0;
+  const double share = std::clamp((kSharp - bend) / (kSharp - kSmooth), 0.0, 1.0);
   return {gap + share * sagitta, share == 1.0};
 }
 

@@ -359,7 +359,7 @@ class OrganTest(unittest.TestCase):
         self.assertIn("scene.yaml.before", again.stdout)
         with open(self.path("made/scene.yaml.before")) as stream:
             self.assertTrue(stream.read().endswith("# mine\n"))
-        self.assertIn("scene.yaml.before1", self.make(surface, "--scale", 0.001, "--depth", 0.004).stdout)
+        self.assertIn("scene.yaml.before1", self.make(surface, "--scale", 0.001, "--material", "kidney").stdout)
         with open(self.path("made/scene.yaml.before")) as stream:
             self.assertTrue(stream.read().endswith("# mine\n"))
 
