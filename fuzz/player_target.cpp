@@ -74,14 +74,9 @@ std::int64_t strangeStamp(unsigned which) {
 
 double strangePosition(unsigned which) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  constexpr double kPositions[] = {std::numeric_limits<double>::quiet_NaN(),
-                                   kInfinity,
-                                   -kInfinity,
-                                   std::numeric_limits<double>::max(),
-                                   1e154,
-                                   -1e9,
-                                   5e-324,
-                                   3.0};
+  constexpr double kPositions[] = {
+      std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity, std::numeric_limits<double>::max(), 1e154,
+      std::numeric_limits<double>::lowest(),    5e-324,    3.0};
   return kPositions[which % 8];
 }
 

@@ -146,7 +146,7 @@ def require_folder(folder):
 
 
 def fit(arguments):
-    from fitting import FitError, forward, measured, parameters, results, run
+    from fitting import FitError, fitted_scene, forward, measured, parameters, results, run
     length = math.sqrt(sum(x * x for x in arguments.approach))
     if not length > 1e-6:
         raise FitError("--approach %g %g %g has no direction" % tuple(arguments.approach))
@@ -162,6 +162,8 @@ def fit(arguments):
     frames = {"world": scene.world_frame, "tip": instrument.get("tip_link", "")}
     setup = run.Setup(arguments.scene, keys, tool, fitted, numpy.array(arguments.approach) / length, forward.Workers(arguments.workers),
                       arguments.starts, arguments.seed, lambda line: print(line, flush=True))
+    if arguments.out:  # whether the keys can be written, before the fit
+        fitted_scene.fitted_text(arguments.scene, dict(setup.settings([one.low for one in fitted]), **finer), arguments.out, [])
     recordings, held_out = [[prepared(arguments, path, tool, joint_topics(instrument), frames) for path in paths]
                             for paths in (arguments.measured, arguments.held_out)]
     for one in fitted:

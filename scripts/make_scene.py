@@ -18,7 +18,6 @@ import shutil
 import sys
 
 import numpy
-import yaml
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))  # rosrun starts us through a relay elsewhere
 from make_joint_bag import write
@@ -213,7 +212,7 @@ def require_one_body(topology):
 
 
 def read_organ(arguments):
-    """Corners of the surface, m, and how the scene says what cells the organ has."""
+    """Corners of the surface, m, how the scene says what cells the organ has, and cells to fill it with, m, if any."""
     ending = os.path.splitext(arguments.organ)[1].lower()
     if ending not in SURFACES + TETRAHEDRA:
         fail("%s has none of the endings %s; %s" % (arguments.organ, ", ".join(SURFACES + TETRAHEDRA), OTHERS.get(
@@ -222,16 +221,16 @@ def read_organ(arguments):
         if arguments.cell_size:
             fail("--cell-size is for surfaces: the tetrahedra of %s are in the file" % arguments.organ)
         corners, more = read_tetrahedra(os.path.abspath(arguments.organ), arguments.scale)
-        return corners, more + TETRAHEDRA_CELLS
+        return corners, more + TETRAHEDRA_CELLS, None
     try:
         corners = read_surface(arguments.organ) * arguments.scale
     except SurfaceError as error:
         fail(str(error))
     cell = arguments.cell_size or numpy.ptp(corners.reshape(-1, 3), axis=0).max() / 25.0
-    return corners, SURFACE_CELLS.format(cell=cell, fine=min(0.3 * BALL_M, 0.5 * cell))
+    return corners, SURFACE_CELLS.format(cell=cell, fine=min(0.3 * BALL_M, 0.5 * cell)), float("%.3g" % cell)
 
 
-def require_filling(path, scale, cells):
+def require_filling(path, scale, cell_m):
     """Refuses a surface that the simulator cannot fill, as a replay would; what it fills it with is kept for that."""
     if not shutil.which("gmsh"):
         print("gmsh, which fills surfaces, is not installed here: apt-get install gmsh (doc/organ.md)")
@@ -241,8 +240,7 @@ def require_filling(path, scale, cells):
     log.addHandler(logging.StreamHandler(sys.stdout))
     try:
         import tissue_contact
-        cell = yaml.safe_load("{%s}" % cells.split("#")[0].strip())["cell_size_m"]
-        mesh = "{file: %s, scale_m_per_unit: %g, cell_size_m: %r}" % (quoted(path), scale, cell)
+        mesh = "{file: %s, scale_m_per_unit: %g, cell_size_m: %r}" % (quoted(path), scale, cell_m)
         tissue_contact.Simulator(tissue_contact.parse_scene("tissues: [{name: organ, mesh: %s, material: liver}]" % mesh))
     except ImportError:
         return  # the replay looks
@@ -307,14 +305,14 @@ def parse_arguments():
 def main():
     arguments = parse_arguments()
     require_material(arguments.material)
-    corners, cells = read_organ(arguments)
+    corners, cells, cell_m = read_organ(arguments)
     low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
     size = high - low
     require_organ_size(size, arguments.scale)
     if arguments.depth and arguments.depth > 0.5 * size[2]:
         fail("--depth %g m is more than half of the organ's height, %.3g m: press less deep, no tissue bears that" % (arguments.depth, size[2]))
-    if arguments.organ.lower().endswith(SURFACES):
-        require_filling(os.path.abspath(arguments.organ), arguments.scale, cells)
+    if cell_m:
+        require_filling(os.path.abspath(arguments.organ), arguments.scale, cell_m)
     held, percent, stands = held_height(corners)
     depth = arguments.depth or min(0.005, 0.1 * size[2])
     path = drag_path(corners, depth, min(0.02, 0.2 * size[:2].max()))

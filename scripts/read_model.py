@@ -40,7 +40,7 @@ def require_use(scene):
         with open(resolved(scene), encoding="utf-8") as stream:
             instruments = (yaml.safe_load(stream) or {}).get("instruments") or []
         names = [instrument.get("name") for instrument in instruments if "urdf" in instrument]
-        used = any("urdf" not in instrument and instrument.get(PARAMETER, PARAMETER).lstrip("~") == PARAMETER
+        used = any("urdf" not in instrument and instrument.get(PARAMETER, PARAMETER) == PARAMETER
                    for instrument in instruments)
     except (OSError, UnicodeDecodeError, yaml.YAMLError, AttributeError):
         return  # the node says what is wrong with the scene

@@ -33,7 +33,7 @@ def read_surface(path):
         raise SurfaceError("%s is a git-lfs pointer, not the data itself; fetch it with: git lfs pull" % path)
     try:
         corners = reader(data)
-    except (ValueError, IndexError, KeyError, struct.error, UnicodeDecodeError) as error:
+    except (ValueError, IndexError, KeyError, OverflowError, struct.error, UnicodeDecodeError) as error:
         raise SurfaceError("%s is damaged or no surface: %s" % (path, error)) from error
     if not len(corners) or not numpy.isfinite(corners).all():
         raise SurfaceError("%s has %s" % (path, "coordinates that are not finite" if len(corners) else "no triangles"))
@@ -88,7 +88,7 @@ def read_obj(data):
                 triangles += fan([i - 1 if i > 0 else len(vertices) + i for i in face])
         except ValueError as error:
             raise ValueError("line %d: %s" % (number, error)) from error
-        if len(word) < 4 and word[:1] in (["v"], ["f"] if number == len(lines) else []):
+        if len(word) < 4 and (word[:1] == ["v"] or (word[:1] == ["f"] and number == len(lines))):
             raise ValueError("line %d has %d numbers and needs three; is the file cut off?" % (number, len(word) - 1))
     return picked(vertices, triangles)
 
@@ -120,7 +120,9 @@ def read_ply(data):
     header = [text_of(line).split() for line in data[:end].splitlines()]
     if header[0] != ["ply"]:
         raise ValueError("its first line is not 'ply'")
-    form = next(words[1] for words in header if words and words[0] == "format")
+    form = next((words[1] for words in header if words and words[0] == "format"), "")
+    if form not in ("ascii", "binary_little_endian", "binary_big_endian"):
+        raise ValueError("its header has no line 'format' with ascii, binary_little_endian or binary_big_endian")
     numbers = PlyNumbers(data[data.index(b"\n", end) + 1:], form)
     elements = []
     for words in header:

@@ -36,25 +36,38 @@ def _unshared(tree):
 
 
 def _element(items, part, name_of):
-    """Index of the element of a list that `part` names."""
+    """Index of the element of a list that `part` names, as the simulator reads keys."""
     if part.isdigit() and int(part) < len(items):
         return int(part)
-    return next(i for i, item in enumerate(items) if name_of(item) == part)
+    named = [i for i, item in enumerate(items) if name_of(item) == part]
+    if not named:
+        raise FitError("the scene has no %s in a list of %d elements; give a name, a link or an index" % (part, len(items)))
+    return named[0]
+
+
+def _name_of(item):
+    """What an element of a list goes by: its name, or else its link, or itself where it is a word."""
+    if not isinstance(item, dict):
+        return item if isinstance(item, str) else None
+    return item.get("name", item.get("link"))
 
 
 def _of_word(path, word):
     """What a word stands for where the scene may have a map: "material: liver". Of "refinement: auto" and "axis: fibre" nothing goes on."""
-    return {"preset": word} if path[-1] == "material" else {}
+    if path[-1] == "material":
+        return {"preset": word}
+    short_for = {"contact_links": "link", "joint_state_topics": "topic"}.get(path[-2]) if len(path) > 1 else None
+    return {short_for: word} if short_for else {}
 
 
 def _set_in_tree(tree, path, value):
     for at, part in enumerate(path):
         last = at == len(path) - 1
         if isinstance(tree, list):
-            part = _element(tree, part, lambda item: item.get("name") if isinstance(item, dict) else None)
+            part = _element(tree, part, _name_of)
         elif part not in tree:
             tree[part] = {}
-        elif not last and isinstance(tree[part], str):
+        if not last and isinstance(tree[part], str):
             tree[part] = _of_word(path[:at + 1], tree[part])
         if last:
             tree[part] = value
@@ -67,8 +80,8 @@ def _child(node, part):
         return next((value for key, value in node.value if key.value == part), None)
 
     def name_of(item):
-        name = _child(item, "name") if isinstance(item, yaml.MappingNode) else None
-        return name.value if name is not None else None
+        name = (_child(item, "name") or _child(item, "link")) if isinstance(item, yaml.MappingNode) else item
+        return name.value if isinstance(name, yaml.ScalarNode) else None
     return node.value[_element(node.value, part, name_of)]
 
 

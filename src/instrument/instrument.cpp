@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "instrument/joint_bounds.h"
 #include "tissue_contact/core/entry_error.h"
 #include "tissue_contact/core/text.h"
 
@@ -109,9 +110,9 @@ class Builder {
     for (const auto& [name, position] : description_.initial_joint_positions) {
       const std::string entry = "initial_joint_positions." + name;
       const int joint = findJoint(entry, "an initial position is given for joint", name);
-      if (!std::isfinite(position)) {
-        refuse(entry, "initial position of joint '" + name + "' is " + std::to_string(position) +
-                          "; it must be finite (rad or m)");
+      if (!isJointPosition(position)) {
+        refuse(entry, "initial position of joint '" + name + "' is " + std::to_string(position) + "; it must be " +
+                          kJointPositionRange);
       }
       positions[joint] = position;
     }

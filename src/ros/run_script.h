@@ -1,5 +1,5 @@
 /// @file
-/// Room `ros`, private: the package's Python scripts, for what C++ has no library for. A name in, an exit code out.
+/// Room `ros`, private: the package's Python scripts, for what C++ has no library for. A name and arguments in.
 #pragma once
 
 #include <string>

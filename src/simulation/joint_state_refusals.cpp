@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "instrument/joint_bounds.h"
 #include "tissue_contact/core/text.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 
@@ -84,10 +85,10 @@ Verdict JointStatePlayer::judgeJoints(const JointStateSample& sample, const Topi
     for (std::size_t k = 0; k < sample.names.size(); ++k) {
       if (instrument.jointOfRecordedName(sample.names[k]) < 0) continue;
       any_known = true;
-      if (!std::isfinite(sample.positions[k])) {
+      if (!isJointPosition(sample.positions[k])) {
         std::ostringstream text;
         text << "position of joint '" << printable(sample.names[k]) << "' is " << sample.positions[k]
-             << "; it must be finite";
+             << "; it must be " << kJointPositionRange;
         detail = text.str();
         return Verdict::kNotFinite;
       }

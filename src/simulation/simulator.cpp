@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "instrument/joint_bounds.h"
 #include "simulation/advisor.h"
 #include "simulation/build_scene.h"
 #include "simulation/force_error_estimate.h"
@@ -102,9 +103,9 @@ void Simulator::requireJointPositions(int instrument, const VectorX& joint_posit
   }
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const double position = joint_positions[static_cast<Eigen::Index>(j)];
-    if (std::isfinite(position)) continue;  // the message would allocate
-    throwBadValue("instrument '" + target.name() + "': position of joint '" + joints[j].name + "'", position,
-                  "rad or m", "finite");
+    if (isJointPosition(position)) continue;  // the message would allocate
+    throwBadValue("instrument '" + target.name() + "': position of joint '" + joints[j].name + "'", position, "",
+                  kJointPositionRange);
   }
 }
 

@@ -31,7 +31,6 @@ struct PlacedMesh {
   NodalVectors element_places, surface_places;
 
   bool isVolume() const { return !tetrahedra.empty(); }
-  std::size_t elementCount() const { return isVolume() ? tetrahedra.size() : surface.size(); }
 };
 
 /// @throws std::invalid_argument naming the tissue: see Tissue.

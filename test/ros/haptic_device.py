@@ -132,10 +132,13 @@ class Haptics(harness.TestCase):
     def test_bad_parameters(self):
         for bad, complaint in [("_rate_hz:=0", "rate_hz' is 0"), ("_max_force_n:=-1", "max_force_n' is -1"),
                                ("_stale_after_s:=soon", "stale_after_s' is \"soon\"; it must be a number >= 0.001 and <= 10 s"),
-                               ("_max_force:=1", "max_force' is none that this node reads; it reads ")]:
-            name = bad[1:].split(":=")[0]
+                               ("_max_force:=1", "max_force' is none that this node reads; did you mean 'max_force_n'?")]:
+            name = "/haptics/" + bad[1:].split(":=")[0]
             code, output = harness.run([harness.program("tissue_contact_haptics"), bad])
-            rospy.delete_param("/haptics/" + name)
+            if "is none" in complaint:  # or every later start would be refused for it
+                self.assertFalse(rospy.has_param(name))
+            else:
+                rospy.delete_param(name)
             self.assertEqual(code, 1, output)
             self.assertIn(complaint, output)
 

@@ -200,7 +200,7 @@ class Reference(harness.TestCase):
     def test_parameters_of_haptics(self):
         """Names, defaults and ranges; and the same defaults of the launch file's arguments and in --help."""
         name = "tissue_contact_haptics"
-        known = re.search(r"it reads (.*)\. Correct", self.refusal("_no_such_parameter:=1", program=name)).group(1)
+        known = re.search(r"It reads (.*)\. It was given", self.refusal("_no_such_parameter:=1", program=name)).group(1)
         self.assertEqual(sorted(known.split(", ")), sorted(row["parameter"] for row in HAPTICS))
         launch = xml.etree.ElementTree.parse(os.path.join(harness.PACKAGE, "launch", "haptics.launch"))
         arguments = {argument.get("name"): argument.get("default") for argument in launch.iter("arg") if argument.get("default") is not None}

@@ -22,7 +22,7 @@ for folder in (os.path.join(SOURCE, "scripts"), os.path.join(SOURCE, "benchmark"
 
 import phantom_study as study  # noqa: E402 (the paths come first)
 from fit_recordings import BagTest, Folder, PoseBagTest, RobotBagTest, TableTest  # noqa: E402, F401 (unittest runs them from here)
-from fitting import fitted_scene, forward, measured, parameters, solve, uncertainty  # noqa: E402
+from fitting import FitError, fitted_scene, forward, measured, parameters, solve, uncertainty  # noqa: E402
 
 try:
     tissue_contact.Simulator  # noqa: B018 (loads it)
@@ -123,6 +123,19 @@ class FittedSceneTest(Folder):
             os.path.join(self.folder, "x"), []))
         self.assertEqual(got, {"tissues": [{"name": "a", "mesh": {"file": "../finer.vtk"}, "refinement": {"cell_m": 0.003}}],
                                "friction": [{"instrument": "p", "tissue": "a", "axis": {"link_direction": [1, 0, 0]}}]})
+
+    def test_elements_go_by_their_links_and_words_too(self):
+        scene = self.write("s.yaml", "instruments:\n  - name: p\n    joint_state_topics: [/p/js]\n    contact_links:\n      - other\n"
+                           "      - link: tip  # of the jaw\n        shapes: [{sphere: {radius_m: 0.004}}]\n")
+        text = fitted_scene.fitted_text(scene, {"instruments.p.contact_links.tip.shapes.0.sphere.radius_m": 0.005,
+                                                "instruments.p.contact_links.other.friction_scale": 2.0,
+                                                "instruments.p.joint_state_topics./p/js.rate": 5}, self.folder, [])
+        self.assertIn("# of the jaw", text)
+        self.assertEqual(yaml.safe_load(text), {"instruments": [{
+            "name": "p", "joint_state_topics": [{"topic": "/p/js", "rate": 5}],
+            "contact_links": [{"link": "other", "friction_scale": 2.0}, {"link": "tip", "shapes": [{"sphere": {"radius_m": 0.005}}]}]}]})
+        with self.assertRaisesRegex(FitError, "no stem in a list of 2 elements"):
+            fitted_scene.fitted_text(scene, {"instruments.p.contact_links.stem.x": 1}, self.folder, [])
 
     def test_an_anchor_is_not_changed_for_others(self):
         scene = self.write("s.yaml", "tissues:\n  - {name: a, material: &m {youngs_modulus_pa: 1}}\n  - {name: b, material: *m}\n")

@@ -292,7 +292,11 @@ class OrganTest(unittest.TestCase):
                  "half.obj": (b"v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n", "line 3 has 2 numbers"),
                  "words.obj": (b"v 0 0 0\nv one 0 0\n", "line 2: "),
                  "nan.obj": (b"v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "not finite"),
-                 "cut.ply": (ply(vertices, triangles)[:-70], "damaged"), "other.vtp": (b"x", "endings")}
+                 "cut.ply": (ply(vertices, triangles)[:-70], "damaged"),
+                 "plain.ply": (b"ply\nelement vertex 0\nend_header\n", "no line 'format'"),
+                 "far.ply": (b"ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n3 0 1 1e30\n", "damaged"),
+                 "long.ply": (b"ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nend_header\ninf 0 1 2\n", "damaged"),
+                 "other.vtp": (b"x", "endings")}
         for name, (content, words) in cases.items():
             with self.subTest(name):
                 made = self.make(self.write(name, content), "--scale", 0.001)
@@ -311,6 +315,7 @@ class OrganTest(unittest.TestCase):
         forces = []
         for name, content in {"a.stl": stl(vertices, triangles), "latin1.stl": text.encode("latin-1"), "utf8.stl": text.encode(), "capitals.stl": text.upper().encode(),
                               "more.stl": stl(vertices, triangles) + b"written by a program", "bom.obj": b"\xef\xbb\xbf# gr\xf6\xdfe\n" + wavefront,
+                              "blank.obj": b"# with blank lines\n\n" + wavefront.replace(b"\nf", b"\n\nf", 1),
                               "probe.ply": ply(vertices, triangles), "1.3.6." + 20 * "12345." + "stl": stl(vertices, triangles)}.items():
             with self.subTest(name):
                 made = self.make(self.write(name, content), "--scale", 0.001, "--cell-size", 0.012)
@@ -318,6 +323,8 @@ class OrganTest(unittest.TestCase):
                 forces.append(max(self.replay("--duration", 0.8, "--set", "tissues.0.refinement=never")[0]))
                 self.assertGreater(forces[-1], 0.0)
                 self.assertAlmostEqual(forces[-1], forces[0], delta=0.01 * forces[0])  # coordinates in single precision or not
+        made = self.make(self.path("a.stl"), "--scale", 4e-5, "--cell-size", 9e-5)  # which YAML 1.1 takes for a word
+        self.assertEqual(made.returncode, 0, made.stdout)
         made = self.make(self.write("brain.obj", b"P 0.3 0.3 0.4 10 1 4\n0 0 0\n"), "--scale", 0.001)
         self.assertIn("MNI", made.stdout)
         made = self.make(self.write("organ.glb", b"glTF"), "--scale", 0.001)

@@ -16,7 +16,7 @@ void HapticOutput::take(const Wrench& wrench, std::int64_t now_ns) {
   received_ns_ = now_ns;
   const Vector3 force = options_.force_scale * (options_.R_DW * wrench.force);
   const Vector3 torque = options_.torque_scale * (options_.R_DW * wrench.torque);
-  if (!force.allFinite() || !torque.allFinite() || !wrench.torque.allFinite()) {
+  if (!force.allFinite() || !torque.allFinite()) {
     ++not_finite_;
     scaled_ = Wrench();
     return;

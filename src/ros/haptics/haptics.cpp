@@ -100,28 +100,16 @@ HapticOptions readOptions(const ros::NodeHandle& node) {
   return options;
 }
 
-void refuseUnknown(const ros::NodeHandle& node) {
-  std::vector<std::string> set;
-  node.getParamNames(set);
-  std::vector<std::string> known;
-  known.reserve(kNames.size());
-  for (const std::string& name : kNames) known.push_back(node.resolveName(name));
-  const std::vector<std::string> unknown = unknownNames(set, node.getNamespace(), known);
-  if (unknown.empty()) return;
-  throw std::invalid_argument("parameter '" + printable(unknown.front(), 256) +
-                              "' is none that this node reads; it reads " + joined(kNames) +
-                              ". Correct it where it is set, or remove it: rosparam delete");
-}
-
 /// Three threads: roscpp's takes wrenches, the main one publishes by the clock, MasterWatch's registers again.
 class Haptics {
  public:
-  Haptics()
+  /// @param arguments see privateArguments().
+  explicit Haptics(const std::vector<std::string>& arguments)
       : private_node_("~"),
         output_(readOptions(private_node_)),
         rate_hz_(numberParameter(private_node_, "rate_hz", 1000.0, kDeviceRate)),
         frame_(textParameter(private_node_, "frame_id", "")) {
-    refuseUnknown(private_node_);
+    refuseUnknownParameters(private_node_, {kNames, {}}, arguments);
   }
 
   void run(const ShutdownGuard& guard) {
@@ -210,6 +198,7 @@ int runHaptics(int argc, char** argv) {
     return 1;
   }
   ShutdownGuard guard;
+  const std::vector<std::string> arguments = privateArguments(argc, argv);
   try {
     startRos(argc, argv, "haptics");
   } catch (const std::exception& error) {
@@ -222,7 +211,7 @@ int runHaptics(int argc, char** argv) {
   try {
     const ros::NodeHandle keep_alive;  // so that the fatal message still reaches /rosout
     try {
-      Haptics().run(guard);
+      Haptics(arguments).run(guard);
     } catch (const std::exception& error) {
       ROS_FATAL_STREAM(error.what());
       code = 1;

@@ -68,7 +68,6 @@ bool Health::note(const PlayedSample& played, int steps, double step_cost_s) {
   for (int v = 0; v < kVerdictCount; ++v) {
     figures_.by_verdict[static_cast<std::size_t>(v)] = player_.count(static_cast<Verdict>(v));
   }
-  figures_.accepted = player_.count(Verdict::kAccepted);
   figures_.merged = player_.merged();
   figures_.gaps = player_.gaps();
   held_by_player_ = player_.waiting();

@@ -29,7 +29,7 @@ namespace tissue_contact {
 /// One thread steps and notes; any thread may ask for the figures, and waits no longer than a copy of them takes.
 class Health {
  public:
-  /// All must outlive this. Only the stepping thread's calls read `simulator` and `player`.
+  /// All must outlive this. Only the stepping thread's calls read of `simulator` and `player` what may change.
   /// @param topics what those of the player are called on the ROS graph.
   Health(const Simulator& simulator, const JointStatePlayer& player, const JointStateInbox& inbox,
          std::vector<std::string> topics);
@@ -130,7 +130,7 @@ class Health {
   std::atomic<int> nodes_;  ///< of all tissues now
   std::atomic<double> max_lag_s_;
 
-  mutable std::mutex mutex_;  ///< guards the six below
+  mutable std::mutex mutex_;  ///< guards the members below, up to the next comment
   LiveFigures figures_;
   double silent_joints_until_s_ = 0.0;
   RealTimeFactor real_time_factor_;

@@ -41,7 +41,7 @@ void Health::tellSilence() {
 /// answers to wrenches. Empty: something was played since the last look, or nothing waits for a topic.
 std::string Health::heldText(const LiveFigures& now) {
   const bool is_held = !now.newest_state && !now.paused && !now.failed && now.held > 0 && now.held == now.waiting &&
-                       told_.held > 0 && now.accepted == told_.accepted;
+                       told_.held > 0 && now.accepted() == told_.accepted();
   if (!is_held) {
     told_of_hold_ = false;
     return "";
@@ -91,7 +91,7 @@ void Health::summarize(const LiveFigures& now, double worst_lag_s,
   } else if (is_strained) {
     status.summary(Level::WARN, "steps lengthened, since the machine does not keep up with max_step_s");
   } else {
-    status.summary(Level::OK, now.accepted > 0 ? "running" : "no joint state yet");
+    status.summary(Level::OK, now.accepted() > 0 ? "running" : "no joint state yet");
   }
   const std::string troubles =
       is_troubled && status.level != Level::ERROR ? "joint states refused or dropped, or motion cut short" : "";

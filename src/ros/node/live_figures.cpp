@@ -66,7 +66,7 @@ bool KeepUpNews::take(double step_cost_s, int nodes) {
 
 std::string countsLine(const LiveFigures& figures) {
   std::ostringstream text;
-  text << "joint states: " << figures.received << " received, " << figures.accepted << " accepted, " << figures.merged
+  text << "joint states: " << figures.received << " received, " << figures.accepted() << " accepted, " << figures.merged
        << " merged, " << figures.dropped << " dropped, " << figures.refused() << " refused";
   const char* separator = " (";
   for (int v = 1; v < kVerdictCount; ++v) {

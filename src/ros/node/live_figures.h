@@ -15,13 +15,12 @@ namespace tissue_contact {
 /// the threads.
 struct LiveFigures {
   std::int64_t received = 0;
-  std::int64_t dropped = 0;   ///< the queue of those received was full
-  std::int64_t waiting = 0;   ///< received and not yet played; also for another topic
-  std::int64_t held = 0;      ///< of those, for another topic or a clock
-  std::int64_t accepted = 0;  ///< stepped to
-  std::int64_t merged = 0;    ///< into the motion to a newer one
+  std::int64_t dropped = 0;  ///< the queue of those received was full
+  std::int64_t waiting = 0;  ///< received and not yet played; also for another topic
+  std::int64_t held = 0;     ///< of those, for another topic or a clock
+  std::int64_t merged = 0;   ///< into the motion to a newer one
   std::array<std::int64_t, kVerdictCount> by_verdict{};
-  std::int64_t resets = 0;  ///< since time went backwards
+  std::int64_t resets = 0;  ///< because time went backwards
   std::int64_t gaps = 0;
   std::int64_t jumps = 0;          ///< intervals in which an instrument moved too far for sub-stepping
   std::int64_t not_finite = 0;     ///< intervals whose result was not finite
@@ -60,6 +59,7 @@ struct LiveFigures {
   double simulated_s = 0.0;    ///< message time simulated
   double real_time_factor = 0.0;
 
+  std::int64_t accepted() const { return by_verdict[static_cast<std::size_t>(Verdict::kAccepted)]; }  ///< stepped to
   std::int64_t refused() const;
   /// What deserves a warning when there is more of it.
   std::int64_t troubles() const { return refused() + dropped + gaps + jumps + not_finite; }

@@ -89,7 +89,7 @@ Simulator makeSimulator(const ros::NodeHandle& private_node, const std::vector<s
   const std::string parameter = private_node.resolveName("scene");
   std::string file;
   if (!private_node.getParam("scene", file) || file.empty()) {
-    refuseUnknownParameters(private_node, nullptr, arguments);  // it may be there, misspelt
+    refuseUnknownParameters(private_node, nodeParameters(nullptr), arguments);  // it may be there, misspelt
     throw std::invalid_argument(
         "parameter '" + parameter +
         "' is not set to the path of a scene file; start the node with _scene:=/path/scene.yaml "
@@ -110,7 +110,7 @@ Simulator makeSimulator(const ros::NodeHandle& private_node, const std::vector<s
   } catch (const std::exception& error) {
     throw naming_file(error);
   }
-  refuseUnknownParameters(private_node, &scene, arguments);
+  refuseUnknownParameters(private_node, nodeParameters(&scene), arguments);
   try {
     SceneEnvironment environment = nodeEnvironment(private_node, scene.world_frame);
     environment.frame_pose = [&frames, look_up = std::move(environment.frame_pose)](const std::string& frame) {

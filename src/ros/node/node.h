@@ -29,9 +29,7 @@
 
 namespace tissue_contact {
 
-/// Private parameters: ~scene (path of the scene file, required), ~tf_timeout_s (see environment.h), ~publish_mesh (see
-/// publish_options.h), ~markers/displacement_full_scale_m and ~markers/force_arrow_m_per_n (see scene_markers.h), and the
-/// URDF parameters that the scene names. Topics: see outputs.h; diagnostics on /diagnostics once per second of wall time.
+/// Private parameters: kNodeUsage in node.cpp. Topics: see outputs.h; diagnostics on /diagnostics once per second of wall time.
 ///
 /// Services: control_services.h. A node of its own (runNode()) or one of several in a process (nodelet.cpp).
 ///
@@ -44,7 +42,7 @@ namespace tissue_contact {
 ///   services     ControlServices: each waits until the stepping thread has answered it (RequestQueue)
 ///   roscpp's     its callbacks: a subscriber came (an atomic flag, and inbox_ wakes the stepping thread); numbers to change
 ///                (tuning_, which is locked for a copy, and an atomic flag)
-/// None waits for another's work.
+/// None but the services' waits for another's work.
 class Node {
  public:
   /// Builds the scene; advertises and subscribes nothing yet.

@@ -27,7 +27,7 @@ bool contains(const std::vector<std::string>& all, const std::string& one) {
 /// What an instrument reads that names neither a URDF nor another parameter.
 constexpr const char* kRobotDescription = "robot_description";
 
-/// Relative to the private namespace. diagnostic_period is diagnostic_updater's; roscpp, rosconsole and tf2_ros read none.
+/// diagnostic_period is diagnostic_updater's; roscpp, rosconsole and tf2_ros read none.
 const std::vector<std::string> kOwnNames = {"diagnostic_period",
                                             "markers/color",
                                             "markers/displacement_full_scale_m",
@@ -38,20 +38,6 @@ const std::vector<std::string> kOwnNames = {"diagnostic_period",
                                             "scene",
                                             "set",
                                             "tf_timeout_s"};
-
-/// @param scene null: none is known yet.
-std::vector<std::string> knownNames(const Scene* scene) {
-  std::vector<std::string> names = kOwnNames;
-  if (scene == nullptr) {
-    names.emplace_back(kRobotDescription);
-    return names;
-  }
-  for (const InstrumentDescription& instrument : scene->instruments) {
-    const std::string& name = instrument.robot_description_parameter;
-    if (!name.empty() && !contains(names, name)) names.push_back(name);
-  }
-  return names;
-}
 
 std::string refusalText(const std::string& refused, const std::string& own, const std::vector<std::string>& names,
                         const std::vector<std::string>& arguments) {
@@ -68,6 +54,19 @@ std::string refusalText(const std::string& refused, const std::string& own, cons
 }
 
 }  // namespace
+
+ParameterNames nodeParameters(const Scene* scene) {
+  ParameterNames names{kOwnNames, {}};
+  if (scene == nullptr) {
+    names.urdfs.emplace_back(kRobotDescription);
+    return names;
+  }
+  for (const InstrumentDescription& instrument : scene->instruments) {
+    const std::string& name = instrument.robot_description_parameter;
+    if (!name.empty() && !contains(names.own, name) && !contains(names.urdfs, name)) names.urdfs.push_back(name);
+  }
+  return names;
+}
 
 bool asksForHelp(int argc, const char* const* argv) {
   std::vector<std::string> own;
@@ -113,16 +112,17 @@ std::vector<std::string> unknownNames(const std::vector<std::string>& set, const
   return unknown;
 }
 
-std::string misspelt(const std::string& name) {
+std::string misspelt(const std::string& name, const std::vector<std::string>& own) {
   constexpr std::size_t kMostLetters = 2;
-  return nearestWord(name, kOwnNames, kMostLetters);
+  return nearestWord(name, own, kMostLetters);
 }
 
-void refuseUnknownParameters(const ros::NodeHandle& private_node, const Scene* scene,
+void refuseUnknownParameters(const ros::NodeHandle& private_node, const ParameterNames& parameters,
                              const std::vector<std::string>& arguments) {
   std::vector<std::string> set;
   if (!ros::param::getParamNames(set)) return;  // the master went away: told by who needs it
-  const std::vector<std::string> names = knownNames(scene);
+  std::vector<std::string> names = parameters.own;
+  names.insert(names.end(), parameters.urdfs.begin(), parameters.urdfs.end());
   std::vector<std::string> known;
   known.reserve(names.size());
   for (const std::string& name : names) known.push_back(private_node.resolveName(name));
@@ -135,11 +135,10 @@ void refuseUnknownParameters(const ros::NodeHandle& private_node, const Scene* s
     const std::string relative = name.substr(own.size() + 1);
     const bool is_argument = contains(arguments, relative);
     if (is_argument) ros::param::del(name);
-    (is_argument || !misspelt(relative).empty() ? refused : ignored).push_back(name);
+    (is_argument || !misspelt(relative, parameters.own).empty() ? refused : ignored).push_back(name);
   }
   if (!refused.empty()) throw std::invalid_argument(refusalText(refused.front(), own, names, arguments));
-  ROS_WARN_STREAM("parameters that this node does not read with this scene: " << listOf(ignored) << "; it reads "
-                                                                              << joined(names));
+  ROS_WARN_STREAM("parameters that this node does not read: " << listOf(ignored) << "; it reads " << joined(names));
 }
 
 }  // namespace tissue_contact

@@ -1,5 +1,4 @@
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <sstream>
@@ -10,14 +9,10 @@
 #include "ros/place/pose_bag.h"
 #include "ros/place/recorded_motion.h"
 #include "ros/place/registration.h"
+#include "ros/place/roll_pitch_yaw.h"
 
 namespace tissue_contact {
 namespace {
-
-/// R = Rz(yaw) Ry(pitch) Rx(roll), as rpy_rad of a scene.
-Vector3 rollPitchYaw(const Matrix3& R) {
-  return {std::atan2(R(2, 1), R(2, 2)), std::asin(std::clamp(-R(2, 0), -1.0, 1.0)), std::atan2(R(1, 0), R(0, 0))};
-}
 
 std::string listOfThree(const Vector3& v) {
   std::ostringstream text;

@@ -53,7 +53,7 @@ std::string replayUsage() {
          "  --batch LINES   many replays, one after the other: a file with the arguments of one in each line, tabs "
          "between\n"
          "                them, or - for standard input; each is answered with a line, ok<tab>CPU seconds or\n"
-         "                failed<tab>CPU seconds<tab>message\n"
+         "                failed<tab>CPU seconds<tab>message, or broken in place of failed where it is no replay's fault\n"
          "  --dump-step N   with --dump-file: write the contact problem of implicit step N (from 1), for "
          "tissue_contact_solve\n"
          "  --dump-file FILE  where to; replaced when that step is taken\n"
@@ -77,7 +77,7 @@ ReplayOptions parseReplayOptions(const std::vector<std::string>& arguments) {
   options.batch_file = line.value("--batch");
   if (options.help) return options;
   if (line.has("--batch")) {
-    if (arguments.size() > 2 || arguments[0].rfind("--batch", 0) != 0)
+    if (arguments.size() != (arguments[0] == "--batch" ? 2 : 1))
       throw std::invalid_argument("--batch takes the arguments of its replays from its lines; give no others");
     return options;
   }

@@ -154,7 +154,6 @@ TEST(KeepUpNews, IsToldAgainWhenStepsCostOrNodesAreSeveralTimesAsMuchButNotForEv
 TEST(CountsLine, NamesEveryCount) {
   LiveFigures figures;
   figures.received = 100;
-  figures.accepted = 60;
   figures.merged = 20;
   figures.dropped = 5;
   figures.by_verdict[static_cast<std::size_t>(Verdict::kAccepted)] = 60;

@@ -35,15 +35,16 @@ TEST(PrivateParameters, UnknownNamesAreThoseBelowTheNamespace) {
 }
 
 TEST(PrivateParameters, MisspeltIsWhatCanMeanNothingElse) {
-  EXPECT_EQ(misspelt("sceen"), "scene");
-  EXPECT_EQ(misspelt("publish_meshes"), "publish_mesh");
-  EXPECT_EQ(misspelt("tf_timeout"), "tf_timeout_s");
-  EXPECT_EQ(misspelt("tf_timout_s"), "tf_timeout_s");
-  EXPECT_EQ(misspelt("marker/force_arrow_m_per_n"), "markers/force_arrow_m_per_n");
+  const Names own = nodeParameters(nullptr).own;
+  EXPECT_EQ(misspelt("sceen", own), "scene");
+  EXPECT_EQ(misspelt("publish_meshes", own), "publish_mesh");
+  EXPECT_EQ(misspelt("tf_timeout", own), "tf_timeout_s");
+  EXPECT_EQ(misspelt("tf_timout_s", own), "tf_timeout_s");
+  EXPECT_EQ(misspelt("marker/force_arrow_m_per_n", own), "markers/force_arrow_m_per_n");
   // URDFs that another scene uses, and parameters of a node below.
   for (const char* other : {"left/description", "robot_description_2", "robot_descriptions", "camera/tf_timeout_s",
                             "markers", "gravity", "scene_of_yesterday"}) {
-    EXPECT_EQ(misspelt(other), "") << other;
+    EXPECT_EQ(misspelt(other, own), "") << other;
   }
 }
 

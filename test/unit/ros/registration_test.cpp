@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "ros/place/roll_pitch_yaw.h"
 #include "support/refusal.h"
 
 namespace tissue_contact {
@@ -79,6 +80,22 @@ TEST(Registration, PosesOfAnotherTipAreRefused) {
   const auto pairs = motion({0.05, 0.03, 0.02}, 0.0, pose({0.3, 0.0, 0.0}, Vector3::UnitX(), 0.0));
   expectRefusal<std::runtime_error>([&] { requireTrustworthy(registerBase(pairs)); },
                                     {"no base fits", "joint_names", "tip_link"});
+}
+
+TEST(RollPitchYaw, AreThoseOfTheRotationOnAWallToo) {
+  const auto rotation = [](const Vector3& rpy) -> Matrix3 {
+    return (Eigen::AngleAxisd(rpy[2], Vector3::UnitZ()) * Eigen::AngleAxisd(rpy[1], Vector3::UnitY()) *
+            Eigen::AngleAxisd(rpy[0], Vector3::UnitX()))
+        .toRotationMatrix();
+  };
+  for (const double pitch : {0.3, M_PI_2 - 1e-6, M_PI_2 - 1e-9, M_PI_2, -M_PI_2 + 1e-9, -M_PI_2}) {
+    for (const double roll : {-2.0, 0.0, 1.0}) {
+      Matrix3 R = rotation({roll, pitch, 0.7});
+      R(2, 1) += 3e-16;  // a registration's round-off: which way both point there says nothing
+      R(0, 0) -= 3e-16;
+      EXPECT_TRUE(rotation(rollPitchYaw(R)).isApprox(R, 3e-8)) << pitch << ' ' << roll;
+    }
+  }
 }
 
 TEST(PairPoses, AreInterpolatedInTime) {

@@ -37,6 +37,14 @@ TEST(ReplayOptions, AreFilledIn) {
   EXPECT_EQ(part.duration_s, 2.0);
 }
 
+TEST(ReplayOptions, ABatchTakesNoOthers) {
+  EXPECT_EQ(parseReplayOptions({"--batch", "lines.txt"}).batch_file, "lines.txt");
+  EXPECT_EQ(parseReplayOptions({"--batch=lines.txt"}).batch_file, "lines.txt");
+  expectMissing({"--batch=lines.txt", "--csv=o.csv"}, "give no others");
+  expectMissing({"--batch", "lines.txt", "--csv=o.csv"}, "give no others");
+  expectMissing({"--csv=o.csv", "--batch=lines.txt"}, "give no others");
+}
+
 TEST(ReplayOptions, HelpNamesAll) {
   for (const char* key : {"--scene", "--bag", "--csv", "--out", "--plot", "--from", "--duration", "--urdf", "--timing",
                           "--set", "--dump-step", "--dump-file", "--help"}) {

@@ -88,6 +88,7 @@ TEST(JointStatePlayer, RefusesBadSamplesAndGoesOnAsIfTheyHadNotCome) {
   const std::vector<BadSample> bad = {
       {"NaN", {next, {"x", "z"}, {0.0, kNaN}}, Verdict::kNotFinite, "'z'"},
       {"infinite", {next, {"x", "z"}, {-kInfinity, 0.0}}, Verdict::kNotFinite, "-inf"},
+      {"a number whose differences are none", {next, {"z"}, {-1.7e308}}, Verdict::kNotFinite, "-1.7e+308; it must be"},
       {"NaN far in the future", {100 * kSecond, {"z"}, {kNaN}}, Verdict::kNotFinite, "'z'"},
       {"NaN in the past", {1, {"z"}, {kNaN}}, Verdict::kNotFinite, "'z'"},
       {"too few positions", {next, {"x", "z"}, {0.0}}, Verdict::kBadLength, "2 names but 1"},
