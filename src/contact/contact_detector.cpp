@@ -266,7 +266,7 @@ void ContactDetector::turnWithSlide(const std::vector<std::vector<Pose>>& start_
       const SignedDistance there = shape.distance->at(p_S + way);
       const double turned = std::max((there.normal - here.normal).norm() - kRoundOff, 0.0);
       const double curvature = turned > 0.0 ? turned * shape.half_extent / way.norm() : 0.0;
-      // On the rim of a cylinder round-off tells which face it is, of which one turns.
+      // On the rim of a cylinder, and where an edge of the tissue crosses one of a box, round-off tells which face it is.
       const double of_ridge = std::min(shape.distance->toRidge(p_S) / std::max(way.norm(), kLeastWay_m), 1.0);
       const double share =
           of_ridge * std::min(faded(turned, kMostTurn, kSharpTurn), faded(curvature, kMostCurved, kSharpCurvature));
@@ -296,7 +296,16 @@ double ContactDetector::Implementation::surfaceDistance(MovingSurface& surface, 
                                      [&](int a, int b) { return squared(a) < squared(b); });
   const Matrix3 R_SW = X_WS.linear().transpose();
   const auto inShape = [&](int one) -> Vector3 { return R_SW * (surface.x(one) - X_WS.translation()); };
-  double nearest = std::min(bound, distance.at(inShape(node)).distance);
+  const double at_node = distance.at(inShape(node)).distance;
+  double nearest = std::min(bound, at_node);
+  if (place != nullptr &&
+      at_node <= bound) {  // what its triangles offer may be larger by round-off, of a mesh by what its search leaves
+    surface.anyTriangleOf({node, -1, -1}, [&](int triangle) {
+      place->nodes = surface.triangles()[triangle];
+      for (int i = 0; i < 3; ++i) place->weights[i] = place->nodes[i] == node ? 1.0 : 0.0;
+      return true;
+    });
+  }
   surface.overlapping(boxAround(distance, X_WS, std::max(nearest, 0.0)), candidates);
   const auto offer = [&](double there, const Triangle& nodes, const Vector3& weights) {
     if (!(there <= nearest)) return;
@@ -338,10 +347,18 @@ void ContactDetector::lowerClosestApproach(const std::vector<NodalVectors>& posi
       NearPlace place;
       const double nearest = self.surfaceDistance(surface, shape, X_WS, bound, &place);
       if (!(nearest < bound)) continue;
-      closest = {surface.tissue(), shape.instrument, shape.contact_link, shape.shape,
-                 nearest - surface.halfThickness()};
-      for (std::size_t i = 0; i < 3; ++i) closest.p_W += place.weights[static_cast<int>(i)] * surface.x(place.nodes[i]);
-      closest.normal_W = X_WS.linear() * shape.distance->at(X_WS.inverse() * closest.p_W).normal;
+      Vector3 p_W = Vector3::Zero();
+      for (std::size_t i = 0; i < 3; ++i) p_W += place.weights[static_cast<int>(i)] * surface.x(place.nodes[i]);
+      const SignedDistance there = shape.distance->atAnyDistance(X_WS.inverse() * p_W);
+      const double distance = std::max(nearest, there.distance);
+      if (!(distance < bound)) continue;
+      closest = {surface.tissue(),
+                 shape.instrument,
+                 shape.contact_link,
+                 shape.shape,
+                 distance - surface.halfThickness(),
+                 p_W,
+                 X_WS.linear() * there.normal};
     }
   }
 }

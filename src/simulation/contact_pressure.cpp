@@ -77,8 +77,7 @@ double ContactPressure::forceOn(int tissue, int node, const Vector3& n) const {
   return force;
 }
 
-/// Whether contacts act on a node, with or without a force: one that bears none still lies within the patch. Of a sheet those
-/// on this side; around the edges of a tool normals point all ways.
+/// Whether contacts that are not open act on a node. Of a sheet those on this side; around the edges of a tool normals point all ways.
 bool ContactPressure::isTouchedFrom(int tissue, int node, const Vector3& n) const {
   const bool sheet = tissues_[tissue].thickness() > 0.0;
   for (int load = surfaces_[tissue].first_load[node]; load >= 0; load = loads_[load].next) {

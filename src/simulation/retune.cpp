@@ -231,7 +231,11 @@ void Simulator::Implementation::retune() {
     is_other_body = true;
   }
   if (is_other_body) contacts.setMaterials(scene.tissues);
-  if (takeFriction(changed, scene)) friction = FrictionTable(scene, instruments, tissues);
+  if (takeFriction(changed, scene)) {
+    friction = FrictionTable(scene, instruments, tissues);
+    problem.contacts.clear();  // their laws are gone; the step makes new ones, or does not come so far
+    solution.states.clear();
+  }
   if (takeSolver(changed.solver, scene.solver)) {
     solver = makeContactSolver(scene.solver, clock);
     const bool never =

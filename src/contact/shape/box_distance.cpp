@@ -31,6 +31,7 @@ class BoxDistance : public ShapeDistance {
   double size() const override { return size_; }
   Vector3 halfExtents(const Matrix3& R_WS) const override { return R_WS.cwiseAbs() * half_; }
   SignedDistance at(const Vector3& p_S) const override;
+  double toRidge(const Vector3& p_S) const override;
   bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const override;
   void foremostCorners(const Vector3& forward, const Eigen::AlignedBox3d& box,
                        std::vector<ShapeCorner>& corners) const override;
@@ -66,6 +67,13 @@ SignedDistance BoxDistance::at(const Vector3& p_S) const {
   int axis = 0;
   const double deepest = beyond.maxCoeff(&axis);
   return {distance > 0.0 ? distance : deepest, side(p_S[axis]) * Vector3::Unit(axis)};
+}
+
+double BoxDistance::toRidge(const Vector3& p_S) const {
+  Vector3 beyond = p_S.cwiseAbs() - half_;
+  std::sort(beyond.data(), beyond.data() + 3);
+  if (beyond[2] <= 0.0) return beyond[2] - beyond[1];         // inside, between two faces
+  return std::min(std::abs(beyond[1]), std::abs(beyond[0]));  // where a face, an edge or a corner begins
 }
 
 PlaneSet BoxDistance::facePlanes(const TrianglePoints& triangle) const {

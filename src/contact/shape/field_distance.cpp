@@ -47,6 +47,35 @@ SignedDistance FieldDistance::at(const Vector3& p_S) const {
   return {here.distance, length > kNone ? Vector3(here.gradient / length) : Vector3::UnitX()};
 }
 
+SignedDistance FieldDistance::atAnyDistance(const Vector3& p_S) const {
+  const Eigen::AlignedBox3d box = field_->grid.box();
+  const Vector3 p = is_turned_ ? Vector3(field_->R_SG.transpose() * p_S) : p_S;
+  if (!p.allFinite() || box.contains(p)) return at(p_S);
+  // To the mesh it is |p - q| and from there the grid's distance for the q on the grid's border that makes that least. From a point of the
+  // mesh to the q on the way to it, and on to the mesh's point nearest to q: never farther.
+  constexpr int kMostWays = 100;
+  constexpr double kLeastGain = 1e-4;  // spacings
+  double least = std::numeric_limits<double>::infinity();
+  Vector3 normal_G = Vector3::UnitX();
+  Vector3 q = p.cwiseMax(box.min()).cwiseMin(box.max());
+  for (int way = 0; way < kMostWays; ++way) {
+    const GridSample here = field_->grid.at(q);
+    const Vector3 nearest = q - here.distance * here.gradient.normalized();
+    const double distance = (p - nearest).norm();
+    if (!(distance < least - kLeastGain * field_->grid.spacing)) break;
+    least = distance;
+    normal_G = (p - nearest) / distance;
+    double share = 0.0;  // of the way from p on that lies before the box
+    for (int axis = 0; axis < 3; ++axis) {
+      const double border = p[axis] < box.min()[axis] ? box.min()[axis] : box.max()[axis];
+      const bool is_beyond = p[axis] < box.min()[axis] || p[axis] > box.max()[axis];
+      if (is_beyond) share = std::max(share, (border - p[axis]) / (nearest[axis] - p[axis]));
+    }
+    q = (p + share * (nearest - p)).cwiseMax(box.min()).cwiseMin(box.max());
+  }
+  return {least, is_turned_ ? Vector3(field_->R_SG * normal_G) : normal_G};
+}
+
 void FieldDistance::foremostCorners(const Vector3& forward, const Eigen::AlignedBox3d& box,
                                     std::vector<ShapeCorner>& corners) const {
   corners.clear();

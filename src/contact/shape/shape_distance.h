@@ -54,7 +54,11 @@ class ShapeDistance {
   virtual Vector3 halfExtents(const Matrix3& R_WS) const = 0;
   virtual Vector3 boxCentre() const { return Vector3::Zero(); }
 
+  /// Of a mesh no more than that where it is farther from the mesh's box than a grid reaches.
   virtual SignedDistance at(const Vector3& p_S) const = 0;
+
+  /// At any distance, at some cost.
+  virtual SignedDistance atAnyDistance(const Vector3& p_S) const { return at(p_S); }
 
   /// The point of the triangle where the signed distance is least. False when that is certainly more than `margin`.
   virtual bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const = 0;
@@ -67,8 +71,8 @@ class ShapeDistance {
 
   /// Whether flat parts exist that can lie flush on a triangle, so that tissue vertices and shape corners matter.
   virtual bool hasFlatParts() const { return true; }
-  /// m, how far it is at least to where two smooth parts of the shape, one of them curved, are equally far and round-off tells which of their
-  /// gradients counts; 0 there. Infinite: there is no such place.
+  /// m, how far it is to where two smooth parts of the shape are equally far and round-off tells which of their gradients counts; 0 there,
+  /// elsewhere right but for a small factor. Infinite: there is no such place.
   virtual double toRidge(const Vector3& /*p_S*/) const { return std::numeric_limits<double>::infinity(); }
 
   /// Corners that are the shape's foremost points in direction `forward` (unit; see kCornerSlope), at least those in

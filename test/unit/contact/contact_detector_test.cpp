@@ -5,9 +5,11 @@
 
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include "contact_test_utilities.h"
+#include "support/temporary_directory.h"
 
 namespace tissue_contact::contact_test {
 namespace contact_detector_test {
@@ -22,6 +24,13 @@ struct TwoByTwo {
   std::vector<NodalVectors> positions;
   std::vector<std::vector<Pose>> X_WL;
 };
+
+std::string wavefront(const TriangleMesh& mesh) {
+  std::ostringstream text;
+  for (const auto& vertex : mesh.vertices.colwise()) text << "v " << vertex.transpose() << '\n';
+  for (const Triangle& t : mesh.triangles) text << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
+  return text.str();
+}
 
 /// Two blocks side by side, 20 mm apart, and two probes of two spheres each over both.
 TwoByTwo makeScene() {
@@ -77,6 +86,55 @@ TEST(ContactDetector, ClosestApproachIsExactAtAnyDistance) {
     EXPECT_NEAR(closest.distance_m, expected, 1e-8) << trial;  // what the slow search leaves
     ASSERT_GE(closest.instrument, 0);
     EXPECT_NEAR(slowApproach(scene, closest.instrument), expected, 1e-8) << trial;
+  }
+}
+
+/// Where the nearest point is a node: on a domed block below the middle of a shape, whatever that is and however it turns.
+TEST(ContactDetector, TheNearestPlaceIsWhereTheSurfaceIsNearest) {
+  const TemporaryDirectory folder;
+  const auto meshShape = [&](const std::string& name, const TriangleMesh& mesh) -> ShapeDescription {
+    return {MeshGeometry{folder.write(name, wavefront(mesh))}, Pose::Identity()};
+  };
+  std::vector<ShapeDescription> shapes;
+  shapes.push_back(sphere(0.005, Vector3::Zero()));
+  shapes.push_back({CylinderGeometry{0.004, 0.02}, Pose::Identity()});
+  shapes.push_back(box({0.008, 0.006, 0.02}, Vector3::Zero()));
+  shapes.push_back(meshShape("ball.obj", sphereMesh(0.005, 3)));
+  shapes.push_back(meshShape("bar.obj", boxMesh({0.004, 0.003, 0.01}, 4)));
+  Random random(5);
+  for (std::size_t s = 0; s < shapes.size(); ++s) {
+    std::vector<Instrument> instruments;
+    instruments.push_back(makeInstrument("tool", {shapes[s]}));
+    const CollisionShape& shape = instruments[0].contactLinks()[0].shapes[0];
+    const auto distance = ShapeDistances({}).make(shape);
+    for (const double dome : {0.0, 1e-12, 1e-9, 1e-6, 1e-3, 1e-2}) {
+      Surface block = boxSurface({0.04, 0.04, 0.02}, {8, 8, 3});
+      const Vector3 top(0.02, 0.02, 0.02);
+      for (int i = 0; i < block.nodes.cols(); ++i) {
+        const Vector3 p = block.nodes.col(i);
+        if (p.z() > 0.0199) block.nodes(2, i) += dome * std::exp(-(p - top).squaredNorm() / 1e-4);
+      }
+      const std::vector<NodalVectors> positions = {block.nodes};
+      ContactDetector detector(instruments, shareSurfaces({{block.triangles, block.fixed()}}, positions));
+      for (int trial = 0; trial < 4; ++trial) {
+        Pose X_WL = at({0.02, 0.02, 0.045 + dome + 0.002 * trial});
+        if (trial > 1) X_WL.rotate(Eigen::AngleAxisd(random.number(-3.0, 3.0), random.direction()));
+        SCOPED_TRACE(testing::Message() << "shape " << s << ", dome " << dome << ", trial " << trial);
+        const std::vector<std::vector<Pose>> poses = {{Pose::Identity(), X_WL}};
+        std::vector<NearPlace> near;
+        detector.findNear(positions, poses, {0.1}, near);
+        ASSERT_EQ(near.size(), 1u);
+        Vector3 place = Vector3::Zero();
+        for (int i = 0; i < 3; ++i) place += near[0].weights[i] * block.nodes.col(near[0].nodes[i]);
+        EXPECT_NEAR(distance->at(X_WL.inverse() * place).distance, near[0].distance_m, 1e-5);
+        Approach closest;
+        detector.lowerClosestApproach(positions, poses, closest);
+        const SignedDistance there = distance->atAnyDistance(X_WL.inverse() * closest.p_W);
+        EXPECT_NEAR(there.distance, closest.distance_m, 1e-5);
+        const Pose touching = at(closest.distance_m * closest.normal_W) * X_WL;
+        EXPECT_NEAR(distance->at(touching.inverse() * closest.p_W).distance, 0.0, 1e-5 + distance->edgeRadius());
+      }
+    }
   }
 }
 
@@ -281,12 +339,42 @@ TEST(ContactDetector, FramesDoNotTurnAtEdgesNorOfCorners) {
   detector.turnWithSlide(still, {{Pose::Identity(), roll}}, Vector3::Zero(), contact);
   EXPECT_TRUE(unchanged()) << "the normal of a corner is the tissue's";
   contact.key.corner = -1;
+  contact.p_WC.y() = 0.004;
   detector.turnWithSlide(still, {{Pose::Identity(), roll}}, Vector3::Zero(), contact);
   EXPECT_LT((contact.R_WC.col(0) + roll.linear() * Vector3::UnitZ()).norm(), 1e-14) << "a face turns with its tool";
   contact = before;
   contact.R_WC = contactFrame(-Vector3::UnitX());
   detector.turnWithSlide(still, {{Pose::Identity(), roll}}, Vector3::Zero(), contact);
   EXPECT_EQ(contact.R_WC, contactFrame(-Vector3::UnitX())) << "not the shape's own normal";
+}
+
+/// An edge of the tissue that crosses one of a box touches it there: round-off tells whether the face's normal is the contact's own.
+TEST(ContactDetector, RoundOffDoesNotTurnFramesAtTheEdgeOfABox) {
+  const TwoByTwo scene = makeScene();
+  std::vector<Instrument> instruments;
+  instruments.push_back(makeInstrument("box", {box({0.01, 0.01, 0.01}, Vector3::Zero())}));
+  const ContactDetector detector(instruments, shareSurfaces(scene.surfaces, scene.positions));
+  const std::vector<std::vector<Pose>> still = {{Pose::Identity(), Pose::Identity()}};
+  const std::vector<std::vector<Pose>> rolled = {{Pose::Identity(), Pose(Eigen::AngleAxisd(1e-3, Vector3::UnitX()))}};
+  const auto turned = [&](double beyond_y, double beyond_z) {
+    Contact contact;
+    contact.key = {0, 0, 0, 0, {0, 1, -1}};
+    contact.p_WC = {0.0, 0.005 + beyond_y, -0.005 - beyond_z};
+    contact.R_WC = contactFrame(Vector3(0.0, 0.02, -1.0).normalized());
+    contact.gap_m = -1e-9;
+    detector.turnWithSlide(still, rolled, {1e-4, 0.0, 0.0}, contact);
+    return contact;
+  };
+  const Contact at_edge = turned(0.0, 0.0);
+  for (const double y : {-2e-9, -1e-15, 1e-15, 2e-9}) {
+    for (const double z : {-2e-9, -1e-15, 1e-15, 2e-9}) {
+      const Contact beside = turned(y, z);
+      EXPECT_LT((beside.R_WC - at_edge.R_WC).norm(), 1e-7) << y << ' ' << z;  // of 1e-3
+      EXPECT_NEAR(beside.gap_m, at_edge.gap_m, 1e-12) << y << ' ' << z;
+    }
+  }
+  const Vector3 with_face = turned(-2e-4, 0.0).R_WC.col(0) - at_edge.R_WC.col(0);
+  EXPECT_NEAR(with_face.norm(), 1e-3, 1e-5) << "a face farther from its edge than the way turns with the tool";
 }
 
 /// Tissue edges that cross a rim have their deepest point where side and cap are equally deep.

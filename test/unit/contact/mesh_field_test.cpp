@@ -92,6 +92,25 @@ TEST(MeshField, BesideTheGridDistanceIsALowerBoundWithoutJumps) {
   }
 }
 
+TEST(MeshField, AtAnyDistanceItIsThatOfTheMesh) {
+  const auto ball = makeMeshDistance(sphereMesh(0.005, 4));
+  const Vector3 half(0.004, 0.003, 0.01);
+  const auto bar = makeMeshDistance(boxMesh(half, 4));
+  const auto exact = makeBoxDistance(half);
+  Random random(11);
+  double short_by = 0.0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const Vector3 direction = random.direction();
+    const Vector3 p = std::pow(10.0, random.number(-2.5, 1.0)) * direction;
+    const SignedDistance of_ball = ball->atAnyDistance(p);
+    EXPECT_NEAR(of_ball.distance, p.norm() - 0.005, 3e-5) << p.transpose();  // what its flat triangles take off
+    EXPECT_LT((of_ball.normal - direction).norm(), 0.03) << p.transpose();
+    EXPECT_NEAR(bar->atAnyDistance(p).distance, exact->at(p).distance, 1.5 * bar->edgeRadius()) << p.transpose();
+    short_by = std::max(short_by, p.norm() - 0.005 - ball->at(p).distance);
+  }
+  EXPECT_GT(short_by, 0.005) << "at() does as well";
+}
+
 TEST(MeshField, HolesInnerFacesSecondShellsAndReversedPartsKeepTheSign) {
   const Vector3 half(0.01, 0.006, 0.004);
   TriangleMesh holed = boxMesh(half, 8);
@@ -348,6 +367,42 @@ TEST(MeshField, LowestPointOfATriangleIsFoundAlsoWhereTheShapeIsNotConvex) {
 }
 
 /// Tools of two robots as others made them; what is nearest to tissue must be nearest to its mesh.
+/// A corner of a long tool that pokes into the middle of a triangle far larger than the tool.
+TEST(MeshField, LowestPointOfALargeTriangleIsFound) {
+  struct Case {
+    Vector3 half;
+    double edge;
+  };
+  for (const Case& c : {Case{{0.0005, 0.0005, 0.02}, 0.03}, Case{{0.0005, 0.0005, 0.02}, 0.05},
+                        Case{{0.002, 0.0015, 0.006}, 0.05}, Case{{0.002, 0.0015, 0.006}, 0.1}}) {
+    const auto distance = makeMeshDistance(boxMesh(c.half, 6));
+    Random random(3);
+    int found = 0;
+    int shallow = 0;
+    for (int trial = 0; trial < 400; ++trial) {
+      const Vector3 n = random.direction();
+      const Vector3 u = n.unitOrthogonal();
+      const Vector3 v = n.cross(u);
+      const double turn = random.number(0.0, 2.0 * M_PI);
+      const double a = random.number(0.1, 0.8);
+      const double b = random.number(0.1, 0.8) * (1.0 - a);
+      const Vector3 first = c.edge * (std::cos(turn) * u + std::sin(turn) * v);
+      const Vector3 second = c.edge * (std::cos(turn + 2.0) * u + std::sin(turn + 2.0) * v);
+      const Vector3 corner = n.array().sign() * c.half.array();
+      const Vector3 p = corner - random.number(0.0005, 0.0008) * n;
+      const double there = distance->at(p).distance;
+      if (!(there < -0.0002)) continue;
+      ++found;
+      const Vector3 origin = p - a * first - b * second;
+      ClosestPoint closest;
+      const bool is_near = distance->closest({origin, origin + first, origin + second}, 0.009 * c.edge, closest);
+      if (!is_near || closest.distance > there + 5e-5) ++shallow;
+    }
+    EXPECT_GT(found, 50) << c.half.transpose();
+    EXPECT_EQ(shallow, 0) << c.half.transpose() << ", triangles of " << c.edge << " m, of " << found;
+  }
+}
+
 TEST(MeshField, ToolsOfRealRobotsLieWithinATenthOfAMillimetreOfTheirMeshes) {
   const std::string data = TISSUE_CONTACT_SHARED_DATA;
   if (!std::filesystem::exists(data + "/dvrk_psm") || !std::filesystem::exists(data + "/surrol_psm")) {
