@@ -64,6 +64,18 @@ def is_sampled(rows):
     return statistics.median(after[0] - before[0] for before, after in zip(rows, rows[1:])) < SAMPLED_S
 
 
+def unwrapped(rows):
+    """Without turns of 2 pi from one sample to the next, as joints that go on turning are recorded between -pi and pi: said, since the way between
+    is another."""
+    turns, result = [0] * (len(rows[0]) - 1), [rows[0]]
+    for before, after in zip(rows, rows[1:]):
+        turns = [turn - round((b - a) / (2.0 * math.pi)) for turn, a, b in zip(turns, before[1:], after[1:])]
+        result.append([after[0]] + [b + 2.0 * math.pi * turn for b, turn in zip(after[1:], turns)])
+    if result != rows:
+        print("joints that jump by a turn from row to row go on turning there")
+    return result
+
+
 def path(rows, linear):
     """Joint positions by time (s), held before the first row and after the last; in between straight, or at rest at each row."""
     times = [row[0] for row in rows]
@@ -122,6 +134,8 @@ def main():
     arguments = parser.parse_args()
     names, rows = read_table(arguments.table)
     linear = arguments.linear or (not arguments.smooth and is_sampled(rows))
+    if linear and is_sampled(rows):
+        rows = unwrapped(rows)
     positions = path(rows, linear)
     write(arguments.output, topics_of(names, arguments.topic), lambda time: positions(rows[0][0] + time),
           rows[-1][0] - rows[0][0], [arguments.table])

@@ -231,9 +231,9 @@ class Study:
             raise StudyError("%s: is no YAML: %s" % (self.file, " ".join(str(error).split()))) from error
 
     def _files(self, entry):
-        """Of a path or pattern, relative to the study; scenes may be URIs (package://) too."""
+        """Of a path or pattern, relative to the study; scenes and URDFs may be URIs (package://) too."""
         path = entry.text()
-        if "://" in path and entry.path.startswith("scenes"):
+        if "://" in path and entry.path.startswith(("scenes", "replay.urdf")):
             return [path]
         found = sorted(glob.glob(os.path.join(glob.escape(self.folder), path)))
         if not found:

@@ -6,7 +6,7 @@ import numpy
 import rosbag
 
 from fitting import FitError
-from fitting.measured import FEWEST_ROWS, FORCE, MOST_ROWS, POSITION, QUATERNION, limit_of, require_no_gap
+from fitting.measured import FEWEST_ROWS, FORCE, MOST_ROWS, POSITION, QUATERNION, limit_of, require_no_gap, unwrapped
 
 STATES, WRENCHES = ("sensor_msgs/JointState",), ("geometry_msgs/WrenchStamped",)
 POSES = ("geometry_msgs/PoseStamped", "geometry_msgs/TransformStamped")
@@ -193,4 +193,4 @@ def _joints(path, all_series, joint_names):
 
 def _joint_at(path, times, joint, name):
     joint = joint.within(times)
-    return numpy.interp(times, joint.stamps_s, _checked(path, joint, [name])[0])
+    return numpy.interp(times, joint.stamps_s, unwrapped(_checked(path, joint, [name])[0]))

@@ -9,7 +9,6 @@ import dataclasses
 
 import numpy
 from scipy import stats
-from scipy.signal import savgol_filter
 
 from fitting import FitError, forward, measured
 
@@ -65,21 +64,35 @@ class Coefficient:
         return self.value - half, self.value + half
 
 
-def starts(times_s, turn_rad):
-    """[(begins, ends) (s)] of the turns that begin from rest, but for the first: it is there to make all of the ring slide."""
-    interval = float(numpy.median(numpy.diff(times_s)))
-    samples = 2 * int(0.5 * SMOOTH_S / interval) + 1
-    if not 3 <= samples <= len(times_s):
-        return []
-    speed = numpy.abs(savgol_filter(turn_rad, samples, 2, deriv=1, delta=interval))
-    moves = speed > 0.5 * numpy.median(speed)
+def _turning(speed):
+    """The speed of turns, however long the rests are: half of the way is made at less."""
+    slowest_first = numpy.sort(speed)
+    way = numpy.cumsum(slowest_first)
+    return slowest_first[numpy.searchsorted(way, 0.5 * way[-1])]
+
+
+def _turns(moves, interval):
+    """[begin, end) of samples that move but for short rests, and long enough."""
     turns = []
     for begin, end in numpy.flatnonzero(numpy.diff(moves.astype(int), prepend=0, append=0)).reshape(-1, 2):
         if turns and (begin - turns[-1][1]) * interval < REST_S:
             turns[-1][1] = end
         else:
             turns.append([begin, end])
-    return [(float(times_s[begin]), float(times_s[end - 1])) for begin, end in turns if (end - begin) * interval >= SHORTEST_S][1:]
+    return [(begin, end) for begin, end in turns if (end - begin) * interval >= SHORTEST_S]
+
+
+def starts(times_s, turn_rad):
+    """[(begins, ends) (s)] of the turns that begin from rest, but for the first: it is there to make all of the ring slide."""
+    interval = float(numpy.median(numpy.diff(times_s)))
+    samples = 2 * int(0.5 * SMOOTH_S / interval) + 1
+    if not 3 <= samples <= len(times_s):
+        return []
+    speed = numpy.abs(measured.parabolas(times_s, turn_rad, samples, derivative=1))
+    first = _turns(speed > 0.5 * _turning(speed), interval)[:1]  # it may be fast
+    after = speed[first[0][1]:] if first else speed
+    turns = _turns(speed > 0.5 * _turning(after), interval) if len(after) else []
+    return [(float(times_s[begin]), float(times_s[end - 1])) for begin, end in turns][1:]
 
 
 def peak_and_level(times_s, ratio):

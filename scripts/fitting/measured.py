@@ -8,7 +8,6 @@ import os
 import stat
 
 import numpy
-from scipy.signal import savgol_filter
 
 from fitting import FitError
 
@@ -19,6 +18,7 @@ TWIST = ("z", "yaw", "fz_n", "tz_nm")  # columns of a plate that turns on a ring
 MOST_ROWS = 1000000
 LONGEST_LINE = 10000
 FEWEST_ROWS = 10
+CHUNK = 4096  # windows at a time
 FEWEST_SMOOTHED = 5  # three make a parabola that smooths nothing
 FARTHEST_M, LARGEST_N, LARGEST_NM, LARGEST_JOINT, LATEST_S = 10.0, 1000.0, 100.0, 1000.0, 1.0e10
 WIDEST_M, LONGEST_S = 1.0, 3600.0  # of a recording
@@ -245,7 +245,7 @@ def _recording(path, columns, joints):
         torque_nm=numpy.stack([unmeasured, unmeasured, columns["tz_nm"]], axis=1) if "tz_nm" in columns else None,
         positions_m=None if joints else numpy.stack([columns[name] for name in POSITION], axis=1),
         quaternions=_without_flips(numpy.stack([columns[name] for name in QUATERNION], axis=1)) if QUATERNION[0] in columns else None,
-        joints={name: columns[name] for name in joints} or None)
+        joints={name: unwrapped(columns[name]) for name in joints} or None)
 
 
 def _require_unit_quaternions(path, columns):
@@ -283,9 +283,31 @@ def _per_sample(recording, change):
         joints=recording.joints and {name: changed(array) for name, array in recording.joints.items()})
 
 
+def unwrapped(positions):
+    """Of a joint: without turns of 2 pi from one sample to the next, as joints that go on turning are recorded between -pi and pi. No joint moves
+    by half a turn, or by metres, in the time between two samples."""
+    return numpy.unwrap(positions)
+
+
+def parabolas(times_s, values, samples, derivative=0):
+    """Value, or derivative by time, at each sample of the parabola by least squares through `samples` (odd) samples around it; near the ends that of
+    the first and the last so many (Savitzky & Golay 1964, here for samples at any times)."""
+    last = len(times_s) - samples
+    result = numpy.empty(numpy.shape(values))
+    for begin in range(0, len(times_s), CHUNK):
+        at = numpy.arange(begin, min(begin + CHUNK, len(times_s)))
+        window = numpy.clip(at - samples // 2, 0, last)[:, None] + numpy.arange(samples)
+        away = times_s[window] - times_s[at][:, None]
+        scale = numpy.abs(away).max(axis=1, keepdims=True)
+        powers = numpy.stack([numpy.ones_like(away), away / scale, (away / scale) ** 2], axis=2)
+        weights = numpy.linalg.pinv(powers)[:, derivative, :] / scale ** derivative
+        result[at] = numpy.einsum("ij,ij...->i...", weights, values[window])
+    return result
+
+
 def smooth(recording, time_s):
-    """Motion by the parabola through `time_s` around each sample (Savitzky-Golay): what a heavy tool's cannot be is noise of its
-    measurement. Forces stay as they are."""
+    """Motion by the parabola through `time_s` around each sample: what a heavy tool's cannot be is noise of its measurement. Forces stay as
+    they are."""
     interval = float(numpy.median(numpy.diff(recording.times_s)))
     samples = 2 * int(round(0.5 * time_s / interval)) + 1
     if time_s <= 0.0:
@@ -295,7 +317,7 @@ def smooth(recording, time_s):
                        (time_s, samples, recording.name, interval, FEWEST_SMOOTHED, (FEWEST_SMOOTHED - 1) * interval, recording.name))
     if samples > len(recording.times_s):
         raise FitError("--smooth %g s is longer than %s" % (time_s, recording.name))
-    return _per_sample(recording, lambda array: savgol_filter(array, samples, 2, axis=0))
+    return _per_sample(recording, lambda array: parabolas(recording.times_s, array, samples))
 
 
 def thin(recording, rate_hz):

@@ -109,7 +109,9 @@ def assess(problem, point, correction=0.0):
     hardly = numpy.diag(curvature) <= 1e-12 * max(numpy.diag(curvature).max(), 1e-300)
     noise = numpy.where(hardly, numpy.inf, quantile * deviation)
     alone = quantile * numpy.sqrt(numpy.diag(meat)) / numpy.maximum(numpy.diag(curvature), 1e-300)
-    model = numpy.maximum(numpy.abs(inverse @ (jacobian.T @ _model_error(problem, forces))), LEFT_TO_CORRECT * numpy.abs(correction))
+    # A residual that is clipped stays where it is, whatever the model errs by.
+    shift = inverse @ (jacobian[inlier].T @ _model_error(problem, forces)[inlier])
+    model = numpy.maximum(numpy.abs(shift), LEFT_TO_CORRECT * numpy.abs(correction))
     safe = numpy.where(deviation > 0.0, deviation, 1.0)
     answer = Answer(
         parameters=problem.parameters, point=point, values=problem.values(point), half=numpy.sqrt(noise ** 2 + model ** 2), noise_half=noise,

@@ -1,7 +1,9 @@
 #include "mesh/labels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -102,14 +104,20 @@ std::string valuesText(const std::vector<double>& values) {
 }
 
 MemberRegion membersOf(const CellDataRegion& region, const MeshLabels& labels, const TetMesh& mesh) {
+  // In a file of single precision a scene's .1 is another number.
+  const double rounded = std::abs(region.value) <= static_cast<double>(std::numeric_limits<float>::max())
+                             ? static_cast<double>(static_cast<float>(region.value))
+                             : region.value;
+  const auto is_it = [&](double value) { return value == region.value || value == rounded; };
   std::vector<std::string> names;
   for (const MeshLabels::CellData& data : labels.cell_data) {
     names.push_back(data.name);
     if (data.name != region.name) continue;
     std::vector<Vector3> places;
     for (std::size_t e = 0; e < labels.volume_of.size(); ++e) {
-      if (data.values[static_cast<std::size_t>(labels.volume_of[e])] == region.value)
+      if (is_it(data.values[static_cast<std::size_t>(labels.volume_of[e])])) {
         addPlaces(mesh.positions, mesh.tetrahedra[e], places);
+      }
     }
     const std::string label = "cell data " + inQuotes(region.name) + " = " + twoDigits(region.value);
     if (!places.empty()) return members(label, std::move(places));

@@ -37,6 +37,12 @@ class BreakawayTest(unittest.TestCase):
         numpy.testing.assert_allclose(found, [(2.4 + 3.5 * i, 4.9 + 3.5 * i) for i in range(5)], atol=0.35)
         self.assertEqual(breakaway.starts(times[:50], yaw[:50]), [])
 
+    def test_rests_may_be_longer_than_turns(self):
+        times = numpy.arange(0.0, 60.0, 0.01)
+        turned = numpy.clip(times % 10.0 - 7.5, 0.0, 2.5) + 2.5 * numpy.floor(times / 10.0)  # six, from 7.5 s on, 10 s apart
+        yaw = 0.05 * turned + 3e-6 / study.RING_M * numpy.random.default_rng(1).standard_normal(len(times))
+        numpy.testing.assert_allclose(breakaway.starts(times, yaw), [(17.5 + 10.0 * i, 20.0 + 10.0 * i) for i in range(5)], atol=0.35)
+
     def test_peak_and_level(self):
         """A rise that ends anywhere, and a torque that falls within some 20 ms: what the ring shows is not what smoothing leaves of it."""
         times, generator = numpy.arange(280) / 100.0, numpy.random.default_rng(1)

@@ -3,6 +3,7 @@
 
 usage: files_test.py SOURCE_DIRECTORY PROGRAM_DIRECTORY      (in the environment of the package: PROGRAM_DIRECTORY/../../env.sh)
 """
+import math
 import os
 import resource
 import shutil
@@ -270,6 +271,18 @@ class FilesTest(unittest.TestCase):
     def make_bag(self, output, table=None, *options):
         table = table or os.path.join(SOURCE, "config", "grasp_path.csv")
         return run([sys.executable, os.path.join(SOURCE, "scripts", "make_joint_bag.py"), table, output, "--topic", "/a", *options])
+
+    def test_a_joint_that_goes_on_turning_does_so(self):
+        import rosbag
+        angles = [0.04 * i for i in range(150)]
+        self.write("turn.csv", ("time_s,x\n" + "".join("%g,%.9f\n" % (0.01 * i, math.remainder(a, 2.0 * math.pi)) for i, a in enumerate(angles))).encode())
+        done = self.make_bag(self.path("turn.bag"), self.path("turn.csv"))
+        self.assertEqual(done.returncode, 0, done)
+        self.assertIn("go on turning", done.stdout)
+        with rosbag.Bag(self.path("turn.bag")) as bag:
+            got = [message.position[0] for _, message, _ in bag.read_messages()]
+        self.assertLess(max(abs(b - a) for a, b in zip(got, got[1:])), 0.01)
+        self.assertAlmostEqual(got[-1], angles[-1], delta=1e-6)
 
     def test_a_sampled_motion_keeps_its_speed(self):
         """It came to rest at every row: of 10 mm/s became 0 to 15 mm/s, twenty times a second."""

@@ -111,6 +111,16 @@ class TableTest(Folder):
         numpy.testing.assert_allclose(measured.smooth(recording, 0.1).positions_m, recording.positions_m, atol=1e-9)  # a parabola stays
         self.refused(["longer than"], measured.smooth, recording, 2.0)
         self.refused(["leaves 5 samples"], measured.thin, recording, 5.0)
+        # Nor does a sensor that is silent for a while bend it.
+        kept = [i for i in range(500) if not 200 <= i < 218]
+        silent = self.read(["time_s,x_m,y_m,z_m,fz_n"] + ["%.3f,0,0,%.9f,%g" % (0.002 * i, 1e-4 * (0.002 * i) ** 2, i % 2) for i in kept])
+        numpy.testing.assert_allclose(measured.smooth(silent, 0.1).positions_m, silent.positions_m, atol=1e-9)
+        numpy.testing.assert_allclose(measured.parabolas(silent.times_s, silent.positions_m, 51, derivative=1)[:, 2], 2e-4 * silent.times_s, atol=1e-7)
+
+    def test_a_joint_that_goes_on_turning_is_recorded_between_half_turns(self):
+        angles = [0.03 * i for i in range(200)]
+        path = self.write("turn.csv", "\n".join(["time_s,yaw,fz_n"] + ["%.2f,%.9f,%g" % (0.01 * i, math.remainder(a, 2.0 * math.pi), i % 2) for i, a in enumerate(angles)]))
+        numpy.testing.assert_allclose(measured.read(path, ["yaw"], [], "").joints["yaw"], angles, atol=1e-8)
 
 
 class BagTest(Folder):

@@ -143,7 +143,7 @@ class FittedSceneTest(Folder):
         self.assertEqual([tissue["material"]["youngs_modulus_pa"] for tissue in got["tissues"]], [1, 2.0])
 
 
-def closed_form(count, seed, noise=0.05, correlated=False, alike=False, constant=False, outliers=0):
+def closed_form(count, seed, noise=0.05, correlated=False, alike=False, constant=False, outliers=0, model_error=0.0):
     """A press whose force is E (d + offset)^1.5, or with `alike` E t: nothing separates E from t; or with `constant` whatever they are."""
     generator = numpy.random.default_rng(seed)
     times = numpy.linspace(0.0, 1.0, count)
@@ -158,7 +158,7 @@ def closed_form(count, seed, noise=0.05, correlated=False, alike=False, constant
         size = values[0] * numpy.maximum(depth + (0.0 if alike else 1e3 * values[1]), 0.0) ** 1.5 * (values[1] if alike else 1.0)
         force = numpy.zeros((count, 3))
         force[:, 2] = size
-        return forward.Simulated(force, numpy.zeros(count))
+        return forward.Simulated(force, model_error * size)
 
     white = generator.standard_normal(count)
     if correlated:
@@ -198,6 +198,12 @@ class UncertaintyTest(unittest.TestCase):
     def test_outliers_hardly_move_it(self):
         answer, truth = closed_form(400, 3, outliers=20)
         self.assertLess(abs(answer.values[0] / truth[0] - 1.0), 0.03)
+
+    def test_a_model_that_errs_by_a_share_of_the_force_does_so_of_the_modulus(self):
+        """Also where sparks are clipped, which do not take part."""
+        for outliers in (0, 60):
+            answer, _ = closed_form(400, 3, outliers=outliers, model_error=0.05)
+            self.assertAlmostEqual(answer.model_half[0] * numpy.log(100.0), 0.05 * uncertainty.LIKELY, delta=0.005, msg=outliers)
 
     def test_what_is_not_identified(self):
         answer, _ = closed_form(400, 1, alike=True)

@@ -46,6 +46,8 @@ class StudyTest(unittest.TestCase):
         study = self.study("").__class__(self.write("p.yaml", "bags: ['*.bag']\nscenes: [s.yaml, package://p/s.yaml]\n"))
         self.assertEqual([os.path.basename(bag) for bag in study.bags], ["a.bag", "b.bag"])
         self.assertEqual(study.count(), 4)
+        uri = "package://tissue_contact/urdf/probe.urdf"
+        self.assertEqual(self.study("replay: {urdf: '%s'}\n" % uri).options, ["--urdf=" + uri])
 
     def test_a_latin_hypercube_has_one_sample_in_each_part_of_each_range(self):
         text = "latin_hypercube: {samples: 20, seed: %d, ranges: {a: {from: 1, to: 3}, b: {from: 1, to: 1e4, spacing: log}}}\n"
