@@ -134,7 +134,7 @@ def main():
     arguments = parser.parse_args()
     names, rows = read_table(arguments.table)
     linear = arguments.linear or (not arguments.smooth and is_sampled(rows))
-    if linear and is_sampled(rows):
+    if is_sampled(rows):
         rows = unwrapped(rows)
     positions = path(rows, linear)
     write(arguments.output, topics_of(names, arguments.topic), lambda time: positions(rows[0][0] + time),

@@ -65,7 +65,7 @@ class Coefficient:
 
 
 def _turning(speed):
-    """The speed of turns, however long the rests are: half of the way is made at less."""
+    """The speed of turns, also where rests are much longer than they are: half of the way is made at less. Noise makes way, too."""
     slowest_first = numpy.sort(speed)
     way = numpy.cumsum(slowest_first)
     return slowest_first[numpy.searchsorted(way, 0.5 * way[-1])]

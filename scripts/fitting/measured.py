@@ -18,7 +18,7 @@ TWIST = ("z", "yaw", "fz_n", "tz_nm")  # columns of a plate that turns on a ring
 MOST_ROWS = 1000000
 LONGEST_LINE = 10000
 FEWEST_ROWS = 10
-CHUNK = 4096  # windows at a time
+CHUNK = 1000000  # samples of windows at a time
 FEWEST_SMOOTHED = 5  # three make a parabola that smooths nothing
 FARTHEST_M, LARGEST_N, LARGEST_NM, LARGEST_JOINT, LATEST_S = 10.0, 1000.0, 100.0, 1000.0, 1.0e10
 WIDEST_M, LONGEST_S = 1.0, 3600.0  # of a recording
@@ -290,12 +290,12 @@ def unwrapped(positions):
 
 
 def parabolas(times_s, values, samples, derivative=0):
-    """Value, or derivative by time, at each sample of the parabola by least squares through `samples` (odd) samples around it; near the ends that of
+    """Of ascending times: value, or derivative by time, at each sample of the parabola by least squares through `samples` (odd) samples around it; near the ends that of
     the first and the last so many (Savitzky & Golay 1964, here for samples at any times)."""
-    last = len(times_s) - samples
+    last, windows = len(times_s) - samples, max(1, CHUNK // samples)
     result = numpy.empty(numpy.shape(values))
-    for begin in range(0, len(times_s), CHUNK):
-        at = numpy.arange(begin, min(begin + CHUNK, len(times_s)))
+    for begin in range(0, len(times_s), windows):
+        at = numpy.arange(begin, min(begin + windows, len(times_s)))
         window = numpy.clip(at - samples // 2, 0, last)[:, None] + numpy.arange(samples)
         away = times_s[window] - times_s[at][:, None]
         scale = numpy.abs(away).max(axis=1, keepdims=True)

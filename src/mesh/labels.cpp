@@ -108,14 +108,15 @@ MemberRegion membersOf(const CellDataRegion& region, const MeshLabels& labels, c
   const double rounded = std::abs(region.value) <= static_cast<double>(std::numeric_limits<float>::max())
                              ? static_cast<double>(static_cast<float>(region.value))
                              : region.value;
-  const auto is_it = [&](double value) { return value == region.value || value == rounded; };
   std::vector<std::string> names;
   for (const MeshLabels::CellData& data : labels.cell_data) {
     names.push_back(data.name);
     if (data.name != region.name) continue;
+    const bool is_there = std::find(data.values.begin(), data.values.end(), region.value) != data.values.end();
+    const double wanted = is_there ? region.value : rounded;
     std::vector<Vector3> places;
     for (std::size_t e = 0; e < labels.volume_of.size(); ++e) {
-      if (is_it(data.values[static_cast<std::size_t>(labels.volume_of[e])])) {
+      if (data.values[static_cast<std::size_t>(labels.volume_of[e])] == wanted) {
         addPlaces(mesh.positions, mesh.tetrahedra[e], places);
       }
     }

@@ -1,9 +1,8 @@
 /// @file
 /// Room `simulation`: JointStatePlayer begun anew, saved and restored.
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
+#include "instrument/joint_bounds.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 
 namespace tissue_contact {
@@ -78,7 +77,8 @@ void JointStatePlayer::carry(StateArchive& archive) {
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     archive.carry(targets_[i]);
     archive.carry(heard_[i]);
-    archive.check(targets_[i].allFinite(), "a joint position that is not finite");
+    archive.check(std::all_of(targets_[i].begin(), targets_[i].end(), isJointPosition),
+                  "a joint position that is none");
     for (const Heard heard : heard_[i]) archive.requireIndex(static_cast<int>(heard), 0, 3, "the mark of a joint");
     for (Said& said : said_[i]) {
       archive.carry(said.position);
@@ -90,7 +90,7 @@ void JointStatePlayer::carry(StateArchive& archive) {
       archive.check(said.seen_ns >= 0 && said.seen_ns <= kCentury_ns && said.right_ns >= 0 &&
                         said.right_ns <= kCentury_ns && said.arrives_ns >= 0 && said.arrives_ns <= 2 * kCentury_ns,
                     "a joint state that is none");
-      archive.check(std::isfinite(said.position) && std::isfinite(said.turns) && said.stamp_ns >= 0 &&
+      archive.check(isJointPosition(said.position) && isJointPosition(said.turns) && said.stamp_ns >= 0 &&
                         said.stamp_ns <= kCentury_ns,
                     "a joint state that is none");
     }

@@ -73,7 +73,7 @@ std::uint64_t hashOf(const Values& values) {
 void Simulator::Implementation::carry(StateArchive& archive) {
   if (retuned) {
     retune();                  // numbers that the next step has
-    problem.contacts.clear();  // their laws are gone
+    problem.contacts.clear();  // solved with other numbers
     solution.states.clear();
   }
   carryMeshes(archive);

@@ -200,7 +200,7 @@ class UncertaintyTest(unittest.TestCase):
         self.assertLess(abs(answer.values[0] / truth[0] - 1.0), 0.03)
 
     def test_a_model_that_errs_by_a_share_of_the_force_does_so_of_the_modulus(self):
-        """Also where sparks are clipped, which do not take part."""
+        """Also where outliers are clipped, which do not take part."""
         for outliers in (0, 60):
             answer, _ = closed_form(400, 3, outliers=outliers, model_error=0.05)
             self.assertAlmostEqual(answer.model_half[0] * numpy.log(100.0), 0.05 * uncertainty.LIKELY, delta=0.005, msg=outliers)

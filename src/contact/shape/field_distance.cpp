@@ -14,6 +14,31 @@ namespace {
 
 constexpr std::size_t kDrawnTriangles = 6000;  // 0.4 MB of a marker
 
+/// Of the point of the grid's box nearest to p and of some on the faces of the box that p sees, the one by way of which the mesh is nearest.
+Vector3 bestStart(const DistanceGrid& grid, const Vector3& p) {
+  constexpr int kCuts = 20;  // of a face, each way
+  const Eigen::AlignedBox3d box = grid.box();
+  Vector3 best = p.cwiseMax(box.min()).cwiseMin(box.max());
+  double least = (p - best).norm() + grid.valueAt(best);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (p[axis] >= box.min()[axis] && p[axis] <= box.max()[axis]) continue;
+    const int other[2] = {(axis + 1) % 3, (axis + 2) % 3};
+    Vector3 q;
+    q[axis] = p[axis] < box.min()[axis] ? box.min()[axis] : box.max()[axis];
+    for (int i = 0; i <= kCuts; ++i) {
+      q[other[0]] = box.min()[other[0]] + i * box.sizes()[other[0]] / kCuts;
+      for (int j = 0; j <= kCuts; ++j) {
+        q[other[1]] = box.min()[other[1]] + j * box.sizes()[other[1]] / kCuts;
+        const double there = (p - q).norm() + grid.valueAt(q);
+        if (!(there < least)) continue;
+        least = there;
+        best = q;
+      }
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 FieldDistance::FieldDistance(std::shared_ptr<const MeshField> field)
@@ -57,7 +82,7 @@ SignedDistance FieldDistance::atAnyDistance(const Vector3& p_S) const {
   constexpr double kLeastGain = 1e-4;  // spacings
   double least = std::numeric_limits<double>::infinity();
   Vector3 normal_G = Vector3::UnitX();
-  Vector3 q = p.cwiseMax(box.min()).cwiseMin(box.max());
+  Vector3 q = bestStart(field_->grid, p);
   for (int way = 0; way < kMostWays; ++way) {
     const GridSample here = field_->grid.at(q);
     const Vector3 nearest = q - here.distance * here.gradient.normalized();

@@ -28,7 +28,6 @@
 #include "ros/node/shutdown_guard.h"
 #include "ros/parameter.h"
 #include "tissue_contact/core/range.h"
-#include "tissue_contact/core/text.h"
 #include "tissue_contact/core/whole_file.h"
 
 namespace tissue_contact {
@@ -109,7 +108,7 @@ class Haptics {
         output_(readOptions(private_node_)),
         rate_hz_(numberParameter(private_node_, "rate_hz", 1000.0, kDeviceRate)),
         frame_(textParameter(private_node_, "frame_id", "")) {
-    refuseUnknownParameters(private_node_, {kNames, {}}, arguments);
+    refuseUnknownParameters(private_node_, {kNames, {}, true}, arguments);
   }
 
   void run(const ShutdownGuard& guard) {

@@ -130,7 +130,7 @@ class Health {
   std::atomic<int> nodes_;  ///< of all tissues now
   std::atomic<double> max_lag_s_;
 
-  mutable std::mutex mutex_;  ///< guards the members below, up to the next comment
+  mutable std::mutex mutex_;  ///< guards the members up to those of the diagnostics thread
   LiveFigures figures_;
   double silent_joints_until_s_ = 0.0;
   RealTimeFactor real_time_factor_;

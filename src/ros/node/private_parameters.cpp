@@ -56,7 +56,7 @@ std::string refusalText(const std::string& refused, const std::string& own, cons
 }  // namespace
 
 ParameterNames nodeParameters(const Scene* scene) {
-  ParameterNames names{kOwnNames, {}};
+  ParameterNames names{kOwnNames, {}, false};
   if (scene == nullptr) {
     names.urdfs.emplace_back(kRobotDescription);
     return names;
@@ -135,7 +135,8 @@ void refuseUnknownParameters(const ros::NodeHandle& private_node, const Paramete
     const std::string relative = name.substr(own.size() + 1);
     const bool is_argument = contains(arguments, relative);
     if (is_argument) ros::param::del(name);
-    (is_argument || !misspelt(relative, parameters.own).empty() ? refused : ignored).push_back(name);
+    (is_argument || parameters.are_all || !misspelt(relative, parameters.own).empty() ? refused : ignored)
+        .push_back(name);
   }
   if (!refused.empty()) throw std::invalid_argument(refusalText(refused.front(), own, names, arguments));
   ROS_WARN_STREAM("parameters that this node does not read: " << listOf(ignored) << "; it reads " << joined(names));

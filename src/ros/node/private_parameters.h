@@ -16,6 +16,7 @@ namespace tissue_contact {
 struct ParameterNames {
   std::vector<std::string> own;
   std::vector<std::string> urdfs;  ///< of the scene's instruments
+  bool are_all = false;            ///< nothing else may be below the namespace
 };
 
 /// Those of the node that simulates. @param scene names the parameters that hold URDFs; null: not known.
@@ -42,7 +43,7 @@ std::vector<std::string> unknownNames(const std::vector<std::string>& set, const
 std::string misspelt(const std::string& name, const std::vector<std::string>& own);
 
 /// Looks through the parameter server for private parameters that neither the node nor a library it uses reads. Those
-/// that came by the command line of this process, or are misspelt, are refused; one warning names the others. What came by
+/// that came by the command line of this process, or are misspelt, or any that `are_all`, are refused; one warning names the others. What came by
 /// the command line is removed from the server again, so that the next start does not meet it.
 /// @param parameters all that the node reads.
 /// @param arguments see privateArguments().

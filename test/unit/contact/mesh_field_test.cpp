@@ -111,6 +111,22 @@ TEST(MeshField, AtAnyDistanceItIsThatOfTheMesh) {
   EXPECT_GT(short_by, 0.005) << "at() does as well";
 }
 
+/// Two walls 10 mm apart on a floor that lies nearer to the middle of the opening than the walls do.
+TEST(MeshField, FromAfarAHollowShapeIsAsNearAsItsForemostPart) {
+  TriangleMesh trough = boxMesh({0.012, 0.01, 0.001}, 4);
+  append(trough, boxMesh({0.001, 0.01, 0.004}, 4), {0.011, 0.0, 0.003});
+  append(trough, boxMesh({0.001, 0.01, 0.004}, 4), {-0.011, 0.0, 0.003});
+  const auto distance = makeMeshDistance(trough);
+  const auto wall = makeBoxDistance({0.001, 0.01, 0.004});
+  for (const double height : {0.02, 0.1, 1.0, 10.0}) {
+    for (const double x : {0.0, 0.002, 0.02}) {
+      const Vector3 p(x, 0.001, height);
+      const double expected = wall->at(p - Vector3(0.011, 0.0, 0.003)).distance;
+      EXPECT_NEAR(distance->atAnyDistance(p).distance, expected, 1.5 * distance->edgeRadius()) << p.transpose();
+    }
+  }
+}
+
 TEST(MeshField, HolesInnerFacesSecondShellsAndReversedPartsKeepTheSign) {
   const Vector3 half(0.01, 0.006, 0.004);
   TriangleMesh holed = boxMesh(half, 8);
@@ -366,7 +382,6 @@ TEST(MeshField, LowestPointOfATriangleIsFoundAlsoWhereTheShapeIsNotConvex) {
   EXPECT_LE(missed, 10);  // of 1000: in the other of two jaws that are nearly as near
 }
 
-/// Tools of two robots as others made them; what is nearest to tissue must be nearest to its mesh.
 /// A corner of a long tool that pokes into the middle of a triangle far larger than the tool.
 TEST(MeshField, LowestPointOfALargeTriangleIsFound) {
   struct Case {
@@ -403,6 +418,7 @@ TEST(MeshField, LowestPointOfALargeTriangleIsFound) {
   }
 }
 
+/// Tools of two robots as others made them; what is nearest to tissue must be nearest to its mesh.
 TEST(MeshField, ToolsOfRealRobotsLieWithinATenthOfAMillimetreOfTheirMeshes) {
   const std::string data = TISSUE_CONTACT_SHARED_DATA;
   if (!std::filesystem::exists(data + "/dvrk_psm") || !std::filesystem::exists(data + "/surrol_psm")) {

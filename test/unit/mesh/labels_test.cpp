@@ -123,6 +123,8 @@ TEST(MeshLabels, CellDataOfScalarsAndFields) {
   Loaded single = loaded;
   single.labels.cell_data.at(0).values = {0.1F, 0.2F};
   EXPECT_EQ(heldElements(single, CellDataRegion{"region", 0.2}), (std::vector<bool>{false, true}));
+  single.labels.cell_data.at(0).values = {16777216.0, 16777217.0};  // alike in single precision
+  EXPECT_EQ(heldElements(single, CellDataRegion{"region", 16777217.0}), (std::vector<bool>{false, true}));
   EXPECT_EQ(heldNodes(loaded, CellDataRegion{"region", 1.0}), (std::vector<bool>{true, true, true, true, false}))
       << "a triangle's value is not a tetrahedron's";
   expectRefusal([&] { heldNodes(loaded, CellDataRegion{"region", 3.0}); }, {"region", "= 3", "values are: 1, 2"});
