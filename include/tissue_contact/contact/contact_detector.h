@@ -93,7 +93,7 @@ class ContactDetector {
                      const Vector3& way_W, Contact& contact) const;
 
   /// Lowers `closest` to the nearest shape and tissue surface (less half the thickness of a sheet), if any is nearer
-  /// than what `closest` holds. Exact, whatever the distance. Pairs whose bounding boxes are farther apart than that cost
+  /// than what `closest` holds. Exact, whatever the distance; of a mesh, where a lower bound of it is least. Pairs whose bounding boxes are farther apart than that cost
   /// next to nothing, so keep `closest` from call to call. Sizes as for detect(). Not thread-safe.
   void lowerClosestApproach(const std::vector<NodalVectors>& positions, const std::vector<std::vector<Pose>>& X_WL,
                             Approach& closest);

@@ -29,7 +29,7 @@ enum class Verdict {
   kAccepted,        ///< its joints were taken
   kDuplicateStamp,  ///< same stamp as the topic's last one with these joints: ignored
   kBadStamp,        ///< zero or negative stamp, or one that ROS time does not reach: ignored
-  kNotFinite,       ///< a position of a known joint is NaN or infinite: ignored
+  kNotFinite,       ///< a position of a known joint is NaN, infinite or beyond 1e9: ignored
   kBadLength,       ///< as many positions as names are needed: ignored
   kNoKnownJoint,    ///< none of the names means a joint of an instrument on this topic: ignored
   kLate,            ///< its stamp lies before its topic's last with these joints, or in time already simulated: ignored

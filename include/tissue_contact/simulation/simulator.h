@@ -152,8 +152,8 @@ class Simulator {
   /// Advances by `duration_s` (> 0) while the joints move linearly to `joint_positions` (one vector per instrument).
   /// Cuts the interval into equal implicit steps no longer than scene.step.max_step_s, and shorter where an instrument
   /// moves so far that it could pass through tissue. Without limits the result depends on the arguments alone.
-  /// @throws std::invalid_argument when duration or positions are not finite or of the wrong size, or the duration is
-  ///   more than a billion of the longest steps; nothing has moved then.
+  /// @throws std::invalid_argument when duration or positions are not finite or of the wrong size, a position is beyond 1e9 rad or m, or
+  ///   the duration is more than a billion of the longest steps; nothing has moved then.
   void advance(double duration_s, const std::vector<VectorX>& joint_positions, const AdvanceLimits& limits = {});
 
   /// From now on solvers stop iterating once the environment's clock shows `clock_s` and report
