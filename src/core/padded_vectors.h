@@ -57,6 +57,20 @@ TISSUE_CONTACT_INLINE void transpose(const Lanes& a, const Lanes& b, const Lanes
   to[3] = TISSUE_CONTACT_SHUFFLE(odd_ab, odd_cd, 2, 3, 6, 7);
 }
 
+#ifdef TISSUE_CONTACT_WIDE
+TISSUE_CONTACT_INLINE void transpose(const WideLanes& a, const WideLanes& b, const WideLanes& c, const WideLanes& d,
+                                     WideLanes* to) {
+  const WideLanes even_ab = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+  const WideLanes even_cd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
+  const WideLanes odd_ab = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+  const WideLanes odd_cd = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+  to[0] = __builtin_shufflevector(even_ab, even_cd, 0, 1, 8, 9, 4, 5, 12, 13);
+  to[1] = __builtin_shufflevector(odd_ab, odd_cd, 0, 1, 8, 9, 4, 5, 12, 13);
+  to[2] = __builtin_shufflevector(even_ab, even_cd, 2, 3, 10, 11, 6, 7, 14, 15);
+  to[3] = __builtin_shufflevector(odd_ab, odd_cd, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+#endif
+
 /// x, y and z of four nodes.
 TISSUE_CONTACT_INLINE void gather(const PaddedVector* v, const int* nodes, Lanes* to) {
   Lanes a, b, c, d, all[kLanes];
@@ -68,16 +82,34 @@ TISSUE_CONTACT_INLINE void gather(const PaddedVector* v, const int* nodes, Lanes
   for (int r = 0; r < 3; ++r) to[r] = all[r];
 }
 
-/// Node after node, for two may be the same.
-TISSUE_CONTACT_INLINE void scatterAdd(const Lanes* from, const int* nodes, PaddedVector* v) {
-  Lanes added[kLanes];
-  transpose(from[0], from[1], from[2], from[2], added);
+/// The same of each four that L holds.
+template <typename L>
+TISSUE_CONTACT_INLINE void gatherEach(const PaddedVector* v, const std::array<const int*, kFours<L>>& nodes, L* to) {
+  L of_lane[kLanes], all[kLanes];
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    Lanes fours[kFours<L>];
+    for (std::size_t i = 0; i < kFours<L>; ++i) load(v[nodes[i][lane]], fours[i]);
+    join(fours, of_lane[lane]);
+  }
+  transpose(of_lane[0], of_lane[1], of_lane[2], of_lane[3], all);
+  for (int r = 0; r < 3; ++r) to[r] = all[r];
+}
+
+/// Adds to four nodes, one after the other, for two may be the same.
+/// @param added what transpose() makes of their x, y and z.
+TISSUE_CONTACT_INLINE void addTo(const int* nodes, const Lanes* added, PaddedVector* v) {
   for (int lane = 0; lane < kLanes; ++lane) {
     Lanes sum;
     load(v[nodes[lane]], sum);
     sum += added[lane];
     std::memcpy(&v[nodes[lane]], &sum, sizeof(Lanes));
   }
+}
+
+TISSUE_CONTACT_INLINE void scatterAdd(const Lanes* from, const int* nodes, PaddedVector* v) {
+  Lanes added[kLanes];
+  transpose(from[0], from[1], from[2], from[2], added);
+  addTo(nodes, added, v);
 }
 
 /// The last one first: where a node is there twice, its first vector stays.

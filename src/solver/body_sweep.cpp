@@ -83,9 +83,7 @@ TISSUE_CONTACT_INLINE void carry(const Work& all, int slice) {
   if (kDamped) scatterMirrored(*all.body.D, slice, all.body.damping_scale, v, all.lower);
 }
 
-TISSUE_CONTACT_INLINE double sum(const Lanes& lanes) { return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]); }
-
-TISSUE_CONTACT_INLINE DefectsMet sum(const LaneDefects& met) {
+TISSUE_CONTACT_INLINE DefectsMet totalOf(const LaneDefects& met) {
   return {sum(met.squares), Vector3(sum(met.defects[0]), sum(met.defects[1]), sum(met.defects[2]))};
 }
 
@@ -100,7 +98,7 @@ TISSUE_CONTACT_INLINE DefectsMet sweepForth(const Work& all, const std::vector<u
     carry<kDamped>(all, slice);
     add(here, met);
   }
-  return sum(met);
+  return totalOf(met);
 }
 
 template <bool kDamped>
@@ -113,7 +111,7 @@ TISSUE_CONTACT_INLINE DefectsMet sweepBack(const Work& all, const std::vector<un
     relax<kDamped>(all, slice, here);
     add(here, met);
   }
-  return sum(met);
+  return totalOf(met);
 }
 
 TISSUE_CONTACT_CLONES

@@ -8,31 +8,35 @@
 namespace tissue_contact {
 namespace {
 
+template <typename L>
 struct LaneQuaternion {
-  Lanes w, x, y, z;
+  L w, x, y, z;
 };
 
-TISSUE_CONTACT_INLINE void loadQuaternion(const RotationBatch& from, LaneQuaternion& q) {
-  load(from[0], q.w);
-  load(from[1], q.x);
-  load(from[2], q.y);
-  load(from[3], q.z);
+template <typename L>
+TISSUE_CONTACT_INLINE void loadQuaternion(const RotationBatch* from, LaneQuaternion<L>& q) {
+  loadEach(q.w, [=](std::size_t i) { return &from[i][0]; });
+  loadEach(q.x, [=](std::size_t i) { return &from[i][1]; });
+  loadEach(q.y, [=](std::size_t i) { return &from[i][2]; });
+  loadEach(q.z, [=](std::size_t i) { return &from[i][3]; });
 }
 
-TISSUE_CONTACT_INLINE void storeQuaternion(const LaneQuaternion& q, RotationBatch& to) {
-  store(q.w, to[0]);
-  store(q.x, to[1]);
-  store(q.y, to[2]);
-  store(q.z, to[3]);
+template <typename L>
+TISSUE_CONTACT_INLINE void storeQuaternion(const LaneQuaternion<L>& q, RotationBatch* to) {
+  storeEach(q.w, [=](std::size_t i) { return &to[i][0]; });
+  storeEach(q.x, [=](std::size_t i) { return &to[i][1]; });
+  storeEach(q.y, [=](std::size_t i) { return &to[i][2]; });
+  storeEach(q.z, [=](std::size_t i) { return &to[i][3]; });
 }
 
 /// Rotation matrix of a quaternion of any length: exactly orthonormal up to round-off.
-TISSUE_CONTACT_INLINE void rotationMatrix(const LaneQuaternion& q, LaneMatrix& R) {
-  const Lanes s = 2.0 / (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-  const Lanes sx = s * q.x, sy = s * q.y, sz = s * q.z;
-  const Lanes wx = q.w * sx, wy = q.w * sy, wz = q.w * sz;
-  const Lanes xx = q.x * sx, xy = q.x * sy, xz = q.x * sz;
-  const Lanes yy = q.y * sy, yz = q.y * sz, zz = q.z * sz;
+template <typename L>
+TISSUE_CONTACT_INLINE void rotationMatrix(const LaneQuaternion<L>& q, LaneMatrixOf<L>& R) {
+  const L s = 2.0 / (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  const L sx = s * q.x, sy = s * q.y, sz = s * q.z;
+  const L wx = q.w * sx, wy = q.w * sy, wz = q.w * sz;
+  const L xx = q.x * sx, xy = q.x * sy, xz = q.x * sz;
+  const L yy = q.y * sy, yz = q.y * sz, zz = q.z * sz;
   R.m[0] = 1.0 - (yy + zz);
   R.m[1] = xy + wz;
   R.m[2] = xz - wy;
@@ -45,7 +49,8 @@ TISSUE_CONTACT_INLINE void rotationMatrix(const LaneQuaternion& q, LaneMatrix& R
 }
 
 /// S = R' F.
-TISSUE_CONTACT_INLINE void rotateBack(const LaneMatrix& R, const LaneMatrix& F, LaneMatrix& S) {
+template <typename L>
+TISSUE_CONTACT_INLINE void rotateBack(const LaneMatrixOf<L>& R, const LaneMatrixOf<L>& F, LaneMatrixOf<L>& S) {
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t r = 0; r < 3; ++r) {
       S.m[r + 3 * c] = R.m[3 * r] * F.m[3 * c] + R.m[3 * r + 1] * F.m[3 * c + 1] + R.m[3 * r + 2] * F.m[3 * c + 2];
@@ -59,41 +64,48 @@ TISSUE_CONTACT_INLINE void rotateBack(const LaneMatrix& R, const LaneMatrix& F, 
 constexpr double kLastStepSquared = 0.25e-8;
 
 /// One Newton step of nearestRotation() in the active lanes; leaves active those that need another.
-/// `failed` collects those that Newton must not be trusted with.
-TISSUE_CONTACT_INLINE void newtonStep(const LaneMatrix& S, LaneQuaternion& q, Mask& active, Mask& failed) {
-  const Lanes ax = S.m[5] - S.m[7], ay = S.m[6] - S.m[2], az = S.m[1] - S.m[3];
-  const Lanes trace = S.m[0] + S.m[4] + S.m[8];
-  const Lanes dx = trace - S.m[0], dy = trace - S.m[4], dz = trace - S.m[8];
-  const Lanes ox = -0.5 * (S.m[5] + S.m[7]), oy = -0.5 * (S.m[6] + S.m[2]), oz = -0.5 * (S.m[1] + S.m[3]);
-  const Lanes mx = dy * dz - ox * ox, my = dx * dz - oy * oy, mz = dx * dy - oz * oz;
-  const Lanes nx = oy * oz - ox * dx, ny = ox * oz - oy * dy, nz = ox * oy - oz * dz;
-  const Lanes determinant = dx * mx + oz * nz + oy * ny;
-  const Lanes axial_squared = ax * ax + ay * ay + az * az;
-  const Lanes scale = 0.5 / determinant;
-  const Lanes hx = scale * (mx * ax + nz * ay + ny * az);
-  const Lanes hy = scale * (nz * ax + my * ay + nx * az);
-  const Lanes hz = scale * (ny * ax + nx * ay + mz * az);
-  const Lanes squared = hx * hx + hy * hy + hz * hz;
-  const Mask trusted = (dx > 0.0) & (mz > 0.0) & (determinant > 0.0) & (squared < 0.25);
-  failed |= active & ~trusted;
-  const Mask move = active & trusted & (axial_squared >= 1e-31 * trace * trace);
+/// `failed` collects those that Newton must not be trusted with. Both are 1 where they hold, else 0.
+template <typename L>
+TISSUE_CONTACT_INLINE void newtonStep(const LaneMatrixOf<L>& S, LaneQuaternion<L>& q, L& active, L& failed) {
+  const L ax = S.m[5] - S.m[7], ay = S.m[6] - S.m[2], az = S.m[1] - S.m[3];
+  const L trace = S.m[0] + S.m[4] + S.m[8];
+  const L dx = trace - S.m[0], dy = trace - S.m[4], dz = trace - S.m[8];
+  const L ox = -0.5 * (S.m[5] + S.m[7]), oy = -0.5 * (S.m[6] + S.m[2]), oz = -0.5 * (S.m[1] + S.m[3]);
+  const L mx = dy * dz - ox * ox, my = dx * dz - oy * oy, mz = dx * dy - oz * oz;
+  const L nx = oy * oz - ox * dx, ny = ox * oz - oy * dy, nz = ox * oy - oz * dz;
+  const L determinant = dx * mx + oz * nz + oy * ny;
+  const L axial_squared = ax * ax + ay * ay + az * az;
+  const L scale = 0.5 / determinant;
+  const L hx = scale * (mx * ax + nz * ay + ny * az);
+  const L hy = scale * (nz * ax + my * ay + nx * az);
+  const L hz = scale * (ny * ax + nx * ay + mz * az);
+  const L squared = hx * hx + hy * hy + hz * hz;
+  // Where all four are above 0; conditions of eight lanes joined by & GCC 12 takes apart. The last one is no number where any is none.
+  const L room = 0.25 - squared;
+  L least = dx < mz ? dx : mz;
+  least = determinant < least ? determinant : least;
+  least = least < room ? least : room;
+  const L trusted = least > 0.0 ? active : L{};
+  failed += active - trusted;
+  const L move = axial_squared < 1e-31 * trace * trace ? L{} : trusted;
   // q (1, h), its length brought back towards 1 by one Newton step of the inverse square root.
-  const Lanes w = q.w - q.x * hx - q.y * hy - q.z * hz;
-  const Lanes x = q.x + q.w * hx + q.y * hz - q.z * hy;
-  const Lanes y = q.y + q.w * hy + q.z * hx - q.x * hz;
-  const Lanes z = q.z + q.w * hz + q.x * hy - q.y * hx;
-  const Lanes shrink = 1.5 - 0.5 * (w * w + x * x + y * y + z * z);
-  q.w = move ? w * shrink : q.w;
-  q.x = move ? x * shrink : q.x;
-  q.y = move ? y * shrink : q.y;
-  q.z = move ? z * shrink : q.z;
-  active = move & (squared >= kLastStepSquared);
+  const L w = q.w - q.x * hx - q.y * hy - q.z * hz;
+  const L x = q.x + q.w * hx + q.y * hz - q.z * hy;
+  const L y = q.y + q.w * hy + q.z * hx - q.x * hz;
+  const L z = q.z + q.w * hz + q.x * hy - q.y * hx;
+  const L shrink = 1.5 - 0.5 * (w * w + x * x + y * y + z * z);
+  q.w = move > 0.0 ? w * shrink : q.w;
+  q.x = move > 0.0 ? x * shrink : q.x;
+  q.y = move > 0.0 ? y * shrink : q.y;
+  q.z = move > 0.0 ? z * shrink : q.z;
+  active = squared < kLastStepSquared ? L{} : move;
 }
 
 /// The slow, always right way for the lanes in `failed`.
-__attribute__((noinline)) void rotateBySvd(const LaneMatrix& F, const Mask& failed, LaneQuaternion& q) {
-  for (int lane = 0; lane < kLanes; ++lane) {
-    if (failed[lane] == 0) continue;
+template <typename L>
+__attribute__((noinline)) void rotateBySvd(const LaneMatrixOf<L>& F, const L& failed, LaneQuaternion<L>& q) {
+  for (std::size_t lane = 0; lane < kLanes * kFours<L>; ++lane) {
+    if (failed[lane] == 0.0) continue;
     Matrix3 gradient;
     for (int i = 0; i < 9; ++i) gradient.data()[i] = F.m[i][lane];
     const Quaternion rotation = nearestRotation(gradient, Quaternion::Identity());
@@ -105,23 +117,26 @@ __attribute__((noinline)) void rotateBySvd(const LaneMatrix& F, const Mask& fail
 }
 
 /// Newton from the last rotation; leaves R and S = R'F of the answer.
-TISSUE_CONTACT_INLINE void updateRotation(const LaneMatrix& F, LaneQuaternion& q, LaneMatrix& R, LaneMatrix& S) {
+template <typename L>
+TISSUE_CONTACT_INLINE void updateRotation(const LaneMatrixOf<L>& F, LaneQuaternion<L>& q, LaneMatrixOf<L>& R,
+                                          LaneMatrixOf<L>& S) {
   constexpr int kMaxSteps = 8;
-  Mask active = {-1, -1, -1, -1};
-  Mask failed = {0, 0, 0, 0};
-  for (int step = 0; step < kMaxSteps && any(active); ++step) {
+  L active = L{} + 1.0;
+  L failed = {};
+  for (int step = 0; step < kMaxSteps && sum(active) > 0.0; ++step) {
     rotationMatrix(q, R);
     rotateBack(R, F, S);
     newtonStep(S, q, active, failed);
   }
-  failed |= active;
-  if (any(failed)) rotateBySvd(F, failed, q);
+  failed += active;
+  if (sum(failed) > 0.0) rotateBySvd(F, failed, q);
   rotationMatrix(q, R);
   rotateBack(R, F, S);
 }
 
 /// R P.
-TISSUE_CONTACT_INLINE void rotate(const LaneMatrix& R, const LaneMatrix& P, LaneMatrix& turned) {
+template <typename L>
+TISSUE_CONTACT_INLINE void rotate(const LaneMatrixOf<L>& R, const LaneMatrixOf<L>& P, LaneMatrixOf<L>& turned) {
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t r = 0; r < 3; ++r) {
       turned.m[r + 3 * c] = R.m[r] * P.m[3 * c] + R.m[r + 3] * P.m[3 * c + 1] + R.m[r + 6] * P.m[3 * c + 2];
@@ -130,11 +145,11 @@ TISSUE_CONTACT_INLINE void rotate(const LaneMatrix& R, const LaneMatrix& P, Lane
 }
 
 /// Stress P = 2 mu e + lambda tr(e) I, turned by R when there is one.
-template <typename Value>
-TISSUE_CONTACT_INLINE void stress(const Value& lambda, const Value& mu, const LaneMatrix* R, const LaneMatrix& S,
-                                  LaneMatrix& P) {
-  LaneMatrix unturned;
-  const Lanes pressure = lambda * (S.m[0] + S.m[4] + S.m[8] - 3.0);
+template <typename L, typename Value>
+TISSUE_CONTACT_INLINE void stress(const Value& lambda, const Value& mu, const LaneMatrixOf<L>* R,
+                                  const LaneMatrixOf<L>& S, LaneMatrixOf<L>& P) {
+  LaneMatrixOf<L> unturned;
+  const L pressure = lambda * (S.m[0] + S.m[4] + S.m[8] - 3.0);
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t r = 0; r < 3; ++r) unturned.m[r + 3 * c] = mu * (S.m[r + 3 * c] + S.m[c + 3 * r]);
     unturned.m[4 * c] += pressure - 2.0 * mu;
@@ -147,20 +162,22 @@ TISSUE_CONTACT_INLINE void stress(const Value& lambda, const Value& mu, const La
 }
 
 /// |vec(q conj(t))| = sin(angle/2) |q| |t|.
-TISSUE_CONTACT_INLINE unsigned char turnedLanes(const LaneQuaternion& q, const LaneQuaternion& t, double angle) {
-  const Lanes x = q.x * t.w - q.w * t.x - q.y * t.z + q.z * t.y;
-  const Lanes y = q.y * t.w - q.w * t.y - q.z * t.x + q.x * t.z;
-  const Lanes z = q.z * t.w - q.w * t.z - q.x * t.y + q.y * t.x;
-  const Lanes q_squared = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-  const Lanes t_squared = t.w * t.w + t.x * t.x + t.y * t.y + t.z * t.z;
-  return bits(x * x + y * y + z * z > 0.25 * angle * angle * q_squared * t_squared);
+template <typename L>
+TISSUE_CONTACT_INLINE unsigned turnedLanes(const LaneQuaternion<L>& q, const LaneQuaternion<L>& t, double angle) {
+  const L x = q.x * t.w - q.w * t.x - q.y * t.z + q.z * t.y;
+  const L y = q.y * t.w - q.w * t.y - q.z * t.x + q.x * t.z;
+  const L z = q.z * t.w - q.w * t.z - q.x * t.y + q.y * t.x;
+  const L q_squared = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  const L t_squared = t.w * t.w + t.x * t.x + t.y * t.y + t.z * t.z;
+  return bitsWhere<L>(x * x + y * y + z * z > 0.25 * angle * angle * q_squared * t_squared);
 }
 
-/// Brings the rotation of four up to date with F; leaves R and S = R'F.
+/// Brings the rotations up to date with F; leaves R and S = R'F.
 /// @return those that have turned away from `tangent`.
-TISSUE_CONTACT_INLINE unsigned char turn(const LaneMatrix& F, const RotationBatch& tangent, double tangent_angle,
-                                         RotationBatch& rotation, LaneMatrix& R, LaneMatrix& S) {
-  LaneQuaternion q, t;
+template <typename L>
+TISSUE_CONTACT_INLINE unsigned turn(const LaneMatrixOf<L>& F, const RotationBatch* tangent, double tangent_angle,
+                                    RotationBatch* rotation, LaneMatrixOf<L>& R, LaneMatrixOf<L>& S) {
+  LaneQuaternion<L> q, t;
   loadQuaternion(rotation, q);
   loadQuaternion(tangent, t);
   updateRotation(F, q, R, S);
@@ -169,8 +186,9 @@ TISSUE_CONTACT_INLINE unsigned char turn(const LaneMatrix& F, const RotationBatc
 }
 
 /// About that share of the angle of q, of length 1.
-TISSUE_CONTACT_INLINE LaneQuaternion shareOf(const LaneQuaternion& q, double share) {
-  const Lanes along = q.w < 0.0 ? Lanes{-share, -share, -share, -share} : Lanes{share, share, share, share};
+template <typename L>
+TISSUE_CONTACT_INLINE LaneQuaternion<L> shareOf(const LaneQuaternion<L>& q, double share) {
+  const L along = q.w < 0.0 ? L{} - share : L{} + share;
   return {1.0 - share + along * q.w, along * q.x, along * q.y, along * q.z};
 }
 
@@ -180,43 +198,47 @@ TISSUE_CONTACT_INLINE void corotational(const std::vector<ElementBatch>& batches
                                         const PaddedVector* x, const std::vector<RotationBatch>& tangents,
                                         std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned,
                                         PaddedVector* forces) {
-  for (std::size_t b = range.begin; b < range.end; ++b) {
-    LaneMatrix F, R, S, P;
-    typename Material::Value lambda, mu;
-    deformationGradients(batches[b], x, F);
-    turned[b] = turn(F, tangents[b], tangent_angle, rotations[b], R, S);
+  forBatches(range, [&](std::size_t b, auto width) TISSUE_CONTACT_ALWAYS_INLINE {
+    using L = typename decltype(width)::Type;
+    LaneMatrixOf<L> F, R, S, P;
+    typename Material::template Value<L> lambda, mu;
+    deformationGradients(&batches[b], x, F);
+    storeBits<L>(turn(F, &tangents[b], tangent_angle, &rotations[b], R, S), &turned[b]);
     if (share < 1.0) {
-      LaneQuaternion q;
-      loadQuaternion(rotations[b], q);
+      LaneQuaternion<L> q;
+      loadQuaternion(&rotations[b], q);
       rotationMatrix(shareOf(q, share), R);
       rotateBack(R, F, S);
     }
     material.get(b, lambda, mu);
     stress(lambda, mu, &R, S, P);
-    addStressForces(batches[b], P, forces);
-  }
+    addStressForces(&batches[b], P, forces);
+  });
 }
 
 /// Raises `most` to the squared sine of the turn, as the axial part of F has it to first order.
-TISSUE_CONTACT_INLINE void watchTurn(const LaneMatrix& F, Lanes& most) {
-  const Lanes x = F.m[5] - F.m[7], y = F.m[6] - F.m[2], z = F.m[1] - F.m[3];
-  const Lanes squared = 0.25 * (x * x + y * y + z * z);
-  most = squared > most ? squared : most;
+template <typename L>
+TISSUE_CONTACT_INLINE void watchTurn(const LaneMatrixOf<L>& F, Lanes& most) {
+  const L x = F.m[5] - F.m[7], y = F.m[6] - F.m[2], z = F.m[1] - F.m[3];
+  Lanes fours[kFours<L>];
+  split(0.25 * (x * x + y * y + z * z), fours);
+  for (const Lanes& squared : fours) most = squared > most ? squared : most;
 }
 
 template <bool kWatch, typename Material>
 TISSUE_CONTACT_INLINE void linear(const std::vector<ElementBatch>& batches, BatchRange range, const Material& material,
                                   const PaddedVector* x, PaddedVector* forces, double* turn_squared) {
   Lanes most = {0.0, 0.0, 0.0, 0.0};
-  for (std::size_t b = range.begin; b < range.end; ++b) {
-    LaneMatrix F, P;
-    typename Material::Value lambda, mu;
-    deformationGradients(batches[b], x, F);
+  forBatches(range, [&](std::size_t b, auto width) TISSUE_CONTACT_ALWAYS_INLINE {
+    using L = typename decltype(width)::Type;
+    LaneMatrixOf<L> F, P;
+    typename Material::template Value<L> lambda, mu;
+    deformationGradients(&batches[b], x, F);
     material.get(b, lambda, mu);
-    stress(lambda, mu, nullptr, F, P);
-    addStressForces(batches[b], P, forces);
+    stress(lambda, mu, static_cast<const LaneMatrixOf<L>*>(nullptr), F, P);
+    addStressForces(&batches[b], P, forces);
     if (kWatch) watchTurn(F, most);
-  }
+  });
   for (int lane = 0; kWatch && lane < kLanes; ++lane) *turn_squared = std::max(*turn_squared, most[lane]);
 }
 
@@ -257,10 +279,10 @@ TISSUE_CONTACT_INLINE void overstress(const std::vector<ElementBatch>& batches, 
   constexpr std::size_t kPlace[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2};  // of a matrix entry among the six
   for (std::size_t b = 0; b < batches.size(); ++b) {
     LaneMatrix F, R, S, P;
-    typename Material::Value lambda, mu;
-    deformationGradients(batches[b], x, F);
+    typename Material::template Value<Lanes> lambda, mu;
+    deformationGradients(&batches[b], x, F);
     if (turns) {
-      turned[b] = turn(F, tangents[b], tangent_angle, rotations[b], R, S);
+      storeBits<Lanes>(turn(F, &tangents[b], tangent_angle, &rotations[b], R, S), &turned[b]);
     } else {
       S = F;
     }
@@ -274,7 +296,7 @@ TISSUE_CONTACT_INLINE void overstress(const std::vector<ElementBatch>& batches, 
       rotate(R, P, turned_stress);
       P = turned_stress;
     }
-    addStressForces(batches[b], P, forces);
+    addStressForces(&batches[b], P, forces);
   }
 }
 
@@ -318,21 +340,20 @@ void addPatchForces(const PatchElements& patches, BatchRange range, bool turns, 
                     const PaddedVector* x, const std::vector<RotationBatch>& tangents,
                     std::vector<RotationBatch>& rotations, std::vector<unsigned char>& turned, PaddedVector* forces) {
   const VaryingMaterial material{patches.materials};
-  for (std::size_t b = range.begin; b < range.end; ++b) {
-    const PatchBatch& batch = patches.batches[b];
-    const PatchNode* const nodes = &patches.nodes[batch.first];
-    LaneMatrix F, R, S, P;
-    Lanes lambda, mu;
-    meanGradients(nodes, batch.count, x, F);
+  forPatchBatches(patches, range, [&](std::size_t b, auto width) TISSUE_CONTACT_ALWAYS_INLINE {
+    using L = typename decltype(width)::Type;
+    LaneMatrixOf<L> F, R, S, P;
+    L lambda, mu;
+    meanGradients(patches, b, x, F);
     if (turns) {
-      turned[b] = turn(F, tangents[b], tangent_angle, rotations[b], R, S);
+      storeBits<L>(turn(F, &tangents[b], tangent_angle, &rotations[b], R, S), &turned[b]);
     } else {
       S = F;
     }
     material.get(b, lambda, mu);
     stress(lambda, mu, turns ? &R : nullptr, S, P);
-    addPatchStressForces(batch, nodes, P, forces);
-  }
+    addPatchStressForces(patches, b, P, forces);
+  });
 }
 
 TISSUE_CONTACT_CLONES

@@ -9,38 +9,46 @@ namespace tissue_contact {
 namespace {
 
 /// C = dJ/dF: its columns are the cross products of F's.
-TISSUE_CONTACT_INLINE void cofactors(const LaneMatrix& F, LaneMatrix& C) {
+template <typename L>
+TISSUE_CONTACT_INLINE void cofactors(const LaneMatrixOf<L>& F, LaneMatrixOf<L>& C) {
   for (std::size_t c = 0; c < 3; ++c) {
-    const Lanes* const a = F.m + 3 * ((c + 1) % 3);
-    const Lanes* const b = F.m + 3 * ((c + 2) % 3);
+    const L* const a = F.m + 3 * ((c + 1) % 3);
+    const L* const b = F.m + 3 * ((c + 2) % 3);
     C.m[3 * c] = a[1] * b[2] - a[2] * b[1];
     C.m[3 * c + 1] = a[2] * b[0] - a[0] * b[2];
     C.m[3 * c + 2] = a[0] * b[1] - a[1] * b[0];
   }
 }
 
-TISSUE_CONTACT_INLINE unsigned char changedLanes(const LaneMatrix& F, const MatrixBatch& tangent, double change) {
-  Lanes squared = {0.0, 0.0, 0.0, 0.0};
-  for (std::size_t i = 0; i < 9; ++i) {
-    Lanes t;
-    load(tangent[i], t);
-    squared += (F.m[i] - t) * (F.m[i] - t);
+template <typename L>
+TISSUE_CONTACT_INLINE unsigned changedLanes(const LaneMatrixOf<L>& F, const MatrixBatch* tangents, double change) {
+  L squared = {};
+  for (std::size_t k = 0; k < 9; ++k) {
+    L t;
+    loadEach(t, [=](std::size_t i) { return &tangents[i][k]; });
+    squared += (F.m[k] - t) * (F.m[k] - t);
   }
-  return bits(squared > change * change);
+  return bitsWhere<L>(squared > change * change);
+}
+
+template <typename L>
+TISSUE_CONTACT_INLINE void keep(const LaneMatrixOf<L>& F, MatrixBatch* deformations) {
+  for (std::size_t k = 0; k < 9; ++k) storeEach(F.m[k], [=](std::size_t i) { return &deformations[i][k]; });
 }
 
 /// P = along_F F + along_C C, the terms of neo_hookean.h. @param pressure to along_C, beside those.
-template <typename Value>
-TISSUE_CONTACT_INLINE void stress(const Value& lambda, const Value& mu, const LaneMatrix& F, const LaneMatrix& C,
-                                  const Lanes& J, const Lanes& pressure, LaneMatrix& P) {
-  Lanes I = F.m[0] * F.m[0];
+template <typename L, typename Value>
+TISSUE_CONTACT_INLINE void stress(const Value& lambda, const Value& mu, const LaneMatrixOf<L>& F,
+                                  const LaneMatrixOf<L>& C, const L& J, const L& pressure, LaneMatrixOf<L>& P) {
+  L I = F.m[0] * F.m[0];
   for (std::size_t i = 1; i < 9; ++i) I += F.m[i] * F.m[i];
-  const Lanes along_F = mu - mu / (I + 1.0);
-  const Lanes along_C = lambda * (J - 1.0) - 0.75 * mu + pressure;
+  const L along_F = mu - mu / (I + 1.0);
+  const L along_C = lambda * (J - 1.0) - 0.75 * mu + pressure;
   for (std::size_t i = 0; i < 9; ++i) P.m[i] = along_F * F.m[i] + along_C * C.m[i];
 }
 
-TISSUE_CONTACT_INLINE void determinant(const LaneMatrix& F, const LaneMatrix& C, Lanes& J) {
+template <typename L>
+TISSUE_CONTACT_INLINE void determinant(const LaneMatrixOf<L>& F, const LaneMatrixOf<L>& C, L& J) {
   J = F.m[0] * C.m[0] + F.m[1] * C.m[1] + F.m[2] * C.m[2];
 }
 
@@ -50,24 +58,28 @@ TISSUE_CONTACT_INLINE void neoHookean(const std::vector<ElementBatch>& batches, 
                                       const std::vector<MatrixBatch>& tangents, std::vector<MatrixBatch>& deformations,
                                       std::vector<unsigned char>& changed, double flat_modulus,
                                       ElementValues* volume_ratios, PaddedVector* forces) {
-  for (std::size_t b = range.begin; b < range.end; ++b) {
-    LaneMatrix F, C, P;
-    typename Material::Value lambda, mu;
-    deformationGradients(batches[b], x, F);
+  forBatches(range, [&](std::size_t b, auto width) TISSUE_CONTACT_ALWAYS_INLINE {
+    using L = typename decltype(width)::Type;
+    LaneMatrixOf<L> F, C, P;
+    typename Material::template Value<L> lambda, mu;
+    deformationGradients(&batches[b], x, F);
     cofactors(F, C);
     material.get(b, lambda, mu);
-    Lanes J, against_flat = {};
+    L J, against_flat = {};
     determinant(F, C, J);
     if (flat_modulus > 0.0) {
-      const Lanes flat = J - kFlat;
-      against_flat = flat_modulus * mu * (flat < 0.0 ? flat : Lanes{});
+      const L flat = J - kFlat;
+      against_flat = flat_modulus * mu * (flat < 0.0 ? flat : L{});
     }
-    if (volume_ratios != nullptr) store(J, volume_ratios[b]);
+    if (volume_ratios != nullptr) {
+      ElementValues* const ratios = &volume_ratios[b];
+      storeEach(J, [=](std::size_t i) { return &ratios[i]; });
+    }
     stress(lambda, mu, F, C, J, against_flat, P);
-    addStressForces(batches[b], P, forces);
-    for (std::size_t i = 0; i < 9; ++i) store(F.m[i], deformations[b][i]);
-    changed[b] = changedLanes(F, tangents[b], tangent_change);
-  }
+    addStressForces(&batches[b], P, forces);
+    keep(F, &deformations[b]);
+    storeBits<L>(changedLanes(F, &tangents[b], tangent_change), &changed[b]);
+  });
 }
 
 }  // namespace
@@ -112,20 +124,19 @@ void addNeoHookeanPatchForces(const PatchElements& patches, BatchRange range, do
                               std::vector<MatrixBatch>& deformations, std::vector<unsigned char>& changed,
                               PaddedVector* forces) {
   const VaryingMaterial material{patches.materials};
-  for (std::size_t b = range.begin; b < range.end; ++b) {
-    const PatchBatch& batch = patches.batches[b];
-    const PatchNode* const nodes = &patches.nodes[batch.first];
-    LaneMatrix F, C, P;
-    Lanes lambda, mu, J;
-    meanGradients(nodes, batch.count, x, F);
+  forPatchBatches(patches, range, [&](std::size_t b, auto width) TISSUE_CONTACT_ALWAYS_INLINE {
+    using L = typename decltype(width)::Type;
+    LaneMatrixOf<L> F, C, P;
+    L lambda, mu, J;
+    meanGradients(patches, b, x, F);
     cofactors(F, C);
     determinant(F, C, J);
     material.get(b, lambda, mu);
-    stress(lambda, mu, F, C, J, Lanes{}, P);
-    for (std::size_t i = 0; i < 9; ++i) store(F.m[i], deformations[b][i]);
-    changed[b] = changedLanes(F, tangents[b], tangent_change);
-    addPatchStressForces(batch, nodes, P, forces);
-  }
+    stress(lambda, mu, F, C, J, L{}, P);
+    keep(F, &deformations[b]);
+    storeBits<L>(changedLanes(F, &tangents[b], tangent_change), &changed[b]);
+    addPatchStressForces(patches, b, P, forces);
+  });
 }
 
 TISSUE_CONTACT_CLONES
@@ -140,7 +151,7 @@ void addCofactorForces(const std::vector<ElementBatch>& batches, BatchRange rang
     for (std::size_t i = 0; i < 9; ++i) load(deformations[b][i], F.m[i]);
     cofactors(F, P);
     for (Lanes& entry : P.m) entry *= pressure;
-    addStressForces(batches[b], P, forces);
+    addStressForces(&batches[b], P, forces);
   }
 }
 

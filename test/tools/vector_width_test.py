@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""The same bits with every vector width: replays with the kernels that this processor gets, and with those for any processor.
+"""The same bits with every vector width: replays with the kernels that this processor gets, and with narrower ones.
 
-usage: vector_width_test.py SOURCE_DIRECTORY REPLAY CORE_LIBRARY PLAIN_KERNELS
-PLAIN_KERNELS: the kernels' sources compiled without TISSUE_CONTACT_CLONES; the dynamic linker puts it before the core library.
+usage: vector_width_test.py SOURCE_DIRECTORY REPLAY CORE_LIBRARY PLAIN_KERNELS AVX2_KERNELS
+PLAIN_KERNELS, AVX2_KERNELS: the kernels' sources compiled without TISSUE_CONTACT_CLONES, and without AVX-512; the dynamic linker puts
+one before the core library.
 """
 import itertools
 import os
@@ -12,7 +13,7 @@ import sys
 import tempfile
 import unittest
 
-SOURCE = REPLAY = CORE = PLAIN = ""
+SOURCE = REPLAY = CORE = PLAIN = AVX2 = ""
 DEADLINE_S = 300.0
 
 # A stiffer part of the block, so that elements bring their own numbers.
@@ -66,6 +67,10 @@ class VectorWidthTest(unittest.TestCase):
             stream.write("endsolid octahedron\n")
         return file
 
+    def features(self):
+        with open("/proc/cpuinfo", encoding="ascii", errors="replace") as stream:
+            return set(stream.read().split())
+
     def bound(self):
         """(from, to, function) as the dynamic linker found each function when it was first called."""
         pattern = re.compile(r"binding file (\S+) \[\d+\] to (\S+) \[\d+\]: normal symbol `(\w+)'")
@@ -77,14 +82,22 @@ class VectorWidthTest(unittest.TestCase):
         return found
 
     def test_the_same_bits_with_plain_kernels(self):
-        with open("/proc/cpuinfo", encoding="ascii", errors="replace") as stream:
-            if "avx2" not in stream.read().split():
-                self.skipTest("this processor has no AVX2: both replays would run the same kernels")
+        if "avx2" not in self.features():
+            self.skipTest("this processor has no AVX2: both replays would run the same kernels")
+        self.assertFalse(functions(PLAIN)[1])
+        self.compare(PLAIN)
+
+    def test_the_same_bits_without_avx512(self):
+        if not {"avx512vl", "avx512_vbmi2"} <= self.features():
+            self.skipTest("this processor has no AVX-512: both replays would run the same kernels")
+        self.assertEqual(functions(AVX2)[1], functions(CORE)[1])
+        self.compare(AVX2)
+
+    def compare(self, library):
         chosen = functions(CORE)[1]
-        plain, chosen_of_plain = functions(PLAIN)
+        narrower = functions(library)[0]
         self.assertTrue(chosen)
-        self.assertLessEqual(chosen, plain)
-        self.assertFalse(chosen_of_plain)
+        self.assertLessEqual(chosen, narrower)
 
         demo = ["--scene", SOURCE + "/config/press_drag.yaml", "--bag", SOURCE + "/config/press_drag.bag"]
         press = [*demo, "--from", "0.5", "--duration", "0.5"]
@@ -109,18 +122,18 @@ class VectorWidthTest(unittest.TestCase):
             expected = self.replay(name + ".csv", arguments)
             results.add(expected)
             with self.subTest(replay=name):
-                self.assertTrue(self.replay(name + " plain.csv", arguments, LD_PRELOAD=PLAIN, LD_DEBUG="bindings",
+                self.assertTrue(self.replay(name + " narrower.csv", arguments, LD_PRELOAD=library, LD_DEBUG="bindings",
                                             LD_DEBUG_OUTPUT=os.path.join(self.directory, "bindings")) == expected)
         self.assertEqual(len(results), len(replays), "each goes another way, so that all of them touch")
-        core, kernels = os.path.basename(CORE), os.path.basename(PLAIN)
+        core, kernels = os.path.basename(CORE), os.path.basename(library)
         bound = self.bound()
         called = {function for start, end, function in bound if start in (core, kernels) and end == kernels}
         self.assertEqual(chosen - called, set(), "kernels that no replay ran")
         for room in ("BodySweep", "CoarseMotions"):
             self.assertTrue([name for name in called if room in name], "its kernels are called by itself alone")
-        self.assertEqual({function for _, end, function in bound if end == core and function in plain}, set())
+        self.assertEqual({function for _, end, function in bound if end == core and function in narrower}, set())
 
 
 if __name__ == "__main__":
-    SOURCE, REPLAY, CORE, PLAIN = sys.argv[1:5]
+    SOURCE, REPLAY, CORE, PLAIN, AVX2 = sys.argv[1:6]
     unittest.main(argv=sys.argv[:1], verbosity=2)
