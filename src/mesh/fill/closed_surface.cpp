@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -232,19 +233,33 @@ void requireOneBody(TriangleMesh& mesh, const std::string& source, std::vector<s
   const std::vector<int> root = partsOf(mesh);
   const std::vector<Part> parts = listParts(mesh, root);
   if (parts.size() < 2) return;
-  TriangleMesh body{mesh.vertices, {}};
-  for (const Triangle& t : mesh.triangles) {
-    if (root[t[0]] == parts.front().root) body.triangles.push_back(t);
-  }
-  const WindingTree tree(body);
-  for (std::size_t p = 1; p < parts.size(); ++p) {
-    if (tree.windingNumber(mesh.vertices.col(parts[p].root)) > 0.5) continue;
+  const auto treeOf = [&](const Part& part) {
+    TriangleMesh own{mesh.vertices, {}};
+    for (const Triangle& t : mesh.triangles) {
+      if (root[t[0]] == part.root) own.triangles.push_back(t);
+    }
+    return std::make_unique<WindingTree>(own);
+  };
+  const auto refuse = [&](const Part& part, const std::string& what) {
     const Crossings crossings = findCrossings(mesh);
     if (crossings.count > 0) throw std::invalid_argument(source + ": it cannot be filled: " + crossingText(crossings));
-    throw std::invalid_argument(
-        source + ": it has " + std::to_string(parts.size()) + " separate parts, one of them around " +
-        placeText(parts[p].box.center()) + " and " + millimetres(parts[p].size()) +
-        " across; a tissue is one body: save each part in a file of its own and make it a tissue");
+    throw std::invalid_argument(source + ": it has " + std::to_string(parts.size()) +
+                                " separate parts, one of them around " + placeText(part.box.center()) + " and " +
+                                millimetres(part.size()) + " across" + what +
+                                "; a tissue is one body: save each part in a file of its own and make it a tissue");
+  };
+  std::vector<std::unique_ptr<WindingTree>> trees(parts.size());  // of those that others may lie in
+  for (std::size_t p = 1; p < parts.size(); ++p) {
+    const Vector3 place = mesh.vertices.col(parts[p].root);
+    const auto isInside = [&](std::size_t other) {
+      if (!parts[other].box.contains(place)) return false;
+      if (trees[other] == nullptr) trees[other] = treeOf(parts[other]);
+      return trees[other]->windingNumber(place) > 0.5;
+    };
+    if (!isInside(0)) refuse(parts[p], "");
+    for (std::size_t cavity = 1; cavity < p; ++cavity) {
+      if (isInside(cavity)) refuse(parts[p], ", loose in the cavity of another");
+    }
   }
   for (Triangle& t : mesh.triangles) {
     if (root[t[0]] != parts.front().root) std::swap(t[1], t[2]);

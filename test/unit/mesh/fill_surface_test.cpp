@@ -301,6 +301,14 @@ TEST_F(FillSurface, ClosedPartsInsideStayHollow) {
   expectContains(said_, {"hollow"});
 }
 
+// Within two surfaces: it was taken for a cavity, which gmsh cannot fill, and smaller cells were said to help.
+TEST_F(FillSurface, ABodyInACavityIsRefusedAsOne) {
+  const std::string refusal = refusalOf(together(together(ball(20.0), ball(12.0)), ball(5.0)));
+  expectContains(refusal, {"3 separate parts", "17 mm across, loose in the cavity of another", "one body"});
+  fill(together(together(ball(20.0), ball(5.0, {10, 0, 0})), ball(5.0, {-10, 0, 0})));
+  expectContains(said_, {"left 2 closed parts inside it hollow"});
+}
+
 TEST_F(FillSurface, WallsInsideAreRefused) {
   TriangleMesh surface = ball(20.0);
   surface.triangles.push_back({0, 1, surface.triangles[0][1]});
