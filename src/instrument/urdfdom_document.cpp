@@ -8,7 +8,9 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "instrument/xml_tags.h"
 #include "tissue_contact/core/text.h"
@@ -77,14 +79,33 @@ void checkText(const std::string& xml, const std::string& source) {
   }
   checkXmlNesting(xml, source, kMaxXmlDepth);
   std::size_t links = 0;
+  int shapes = 0;  // of the last <geometry>
   bool is_root = true;
+  std::vector<std::string_view> open;
   XmlTagScanner scanner(xml);
   for (XmlTag tag; scanner.next(tag);) {
     if (std::exchange(is_root, false) && tag.name != "robot") {
       throw std::invalid_argument(source + ": its outermost element is <" + printable(std::string(tag.name)) +
                                   ">, and that of a URDF is <robot>: convert it, if it is SDF or MJCF");
     }
-    links += tag.kind != XmlTag::Kind::kClose && tag.name == "link" ? 1 : 0;
+    if (tag.kind == XmlTag::Kind::kClose) {
+      if (!open.empty()) open.pop_back();
+      continue;
+    }
+    links += tag.name == "link" ? 1 : 0;
+    shapes = tag.name == "geometry" ? 0 : shapes + 1;
+    const auto isWithin = [&](std::size_t up, std::string_view name) {
+      return open.size() > up && open[open.size() - 1 - up] == name;
+    };
+    // What urdfdom leaves out without a word.
+    const auto refuse = [&](const std::string& what) {
+      throw std::invalid_argument(source + ":" + std::to_string(lineOf(xml, tag.position)) + ": " + what);
+    };
+    if (tag.name == "link" && isWithin(0, "link")) refuse("a <link> within a <link> is not read; move it out");
+    if (shapes > 1 && isWithin(0, "geometry") && isWithin(1, "collision")) {
+      refuse("a second shape in a <geometry> is not read; give it a <collision> of its own");
+    }
+    if (tag.kind == XmlTag::Kind::kOpen) open.push_back(tag.name);
   }
   if (links > kMaxLinks) {
     throw std::invalid_argument(source + ": the URDF has " + std::to_string(links) + " links; at most " +

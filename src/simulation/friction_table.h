@@ -15,9 +15,9 @@
 
 namespace tissue_contact {
 
-/// What a contact was like at the end of the step before: for laws that depend on it. A new contact: zeros.
+/// What a contact was like at the end of the step before: for laws that depend on it.
 struct ContactBefore {
-  double sliding_speed = 0.0;  ///< m/s
+  double sliding_speed = 0.0;  ///< m/s; of an open one, of the instrument over the tissue
   double pressure = 0.0;       ///< Pa
 };
 

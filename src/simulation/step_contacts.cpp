@@ -157,7 +157,8 @@ void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, doubl
     ContactRow& row = rows[c];
     placeRow(c, dt, row);
     row.was_sliding = before.state == ContactState::kKinetic;
-    row.law = friction_.at(before.contact, x, motion_.startPoses(), beforeOf(before, x, last_dt));
+    const double air_speed = relativeVelocity(row, solution.v).tail<2>().norm();
+    row.law = friction_.at(before.contact, x, motion_.startPoses(), beforeOf(before, x, last_dt, air_speed));
     u_besides_[c].setZero();
     if (before.state == ContactState::kStatic) {
       u_besides_[c] = -(R_WC.rightCols<2>().transpose() * before.slip_W) / back_time_s_;
@@ -172,9 +173,12 @@ void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, doubl
   settling_.advance(dt);
 }
 
-ContactBefore StepContacts::beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x,
-                                     double last_dt) const {
+/// @param air_speed how fast the tool moves over the tissue at this point, which is how fast it has slid where the contact is new (it comes
+/// under the tool, or takes another's place) and how fast it will land, m/s.
+ContactBefore StepContacts::beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x, double last_dt,
+                                     double air_speed) const {
   ContactBefore before;
+  if (inherited.state == ContactState::kOpen) before.sliding_speed = air_speed;
   if (inherited.state == ContactState::kKinetic && last_dt > 0.0) {
     before.sliding_speed = inherited.slip_W.norm() / last_dt;
   }

@@ -97,7 +97,8 @@ class StepContacts {
     double first_touch = 1.0;  ///< share of the step that is over then
   };
   void placeRow(std::size_t contact, double dt, ContactRow& row) const;
-  ContactBefore beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x, double last_dt) const;
+  ContactBefore beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x, double last_dt,
+                         double air_speed) const;
   void land(const std::vector<NodalVectors>& v, double dt, std::vector<ContactRow>& rows);
   double& firstTouch(const ContactKey& key);
   void requireContact(const StateArchive& archive, const SolvedContact& solved,

@@ -43,6 +43,13 @@ const Malformed kTexts[] = {
      robot(kTwoLinks +
            "<joint name=\"j\" type=\"fixed\"><origin xyz=\" 0\n 0\"/><parent link=\"a\"/><child link=\"b\"/></joint>"),
      {"urdfdom refuses", "[0?]"}},
+    {"TwoShapes",
+     robot("<link name=\"a\">\n<collision><geometry><sphere radius=\"0.01\"/>\n<box size=\"1 1 "
+           "1\"/></geometry></collision></link>"),
+     {"test.urdf:3:", "second shape in a <geometry>", "<collision> of its own"}},
+    {"LinkInALink",
+     robot("<link name=\"a\">\n<link name=\"b\"/></link>"),
+     {"test.urdf:2:", "a <link> within a <link>", "move it out"}},
     {"UnclosedElement",
      "<robot name=\"r\">\n  <link name=\"a\">\n</robot>",
      {"test.urdf:3:", "</robot>", "<link> of line 2"}},

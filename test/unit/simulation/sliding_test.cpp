@@ -70,6 +70,22 @@ TEST(Sliding, NormalsDoNotLagByTheStep) {
       << lagOf({0.005, 0.15, coarse_for_the_ball, ""});
 }
 
+// Above 20 mm/s friction is .2, by the law as by a constant. Points that come under the ball, or take another's place under it, had the friction
+// at rest, .5, for a step: 1.83 times as much in all.
+TEST(Sliding, NewContactsHaveTheFrictionOfTheirSpeed) {
+  const auto alongOf = [](const std::string& law) {
+    const std::vector<Vector3> forces = forcesOf({0.005, 0.05, "size_m: [0.06, 0.04, 0.02], cells: [12, 8, 4]",
+                                                  "friction: [{instrument: probe, tissue: block, " + law + "}]\n"},
+                                                 0.004);
+    double sum = 0.0;
+    for (std::size_t k = forces.size() / 5; k < forces.size(); ++k) sum += forces[k].x();
+    return sum;
+  };
+  const double expected = alongOf("static: 0.2");
+  EXPECT_NEAR(alongOf("static: 0.5, speeds_m_per_s: [0, 0.02], speed_factors: [1, 0.4]"), expected,
+              0.05 * std::abs(expected));
+}
+
 // A held point moves with the tool, whatever it did before: frames of its own velocity would turn by 0.02 rad as the tool sets off.
 TEST(Sliding, WhatIsHeldKeepsItsNormal) {
   Simulator simulator =
