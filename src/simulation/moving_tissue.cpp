@@ -132,22 +132,21 @@ void MovingTissue::assemble(double dt) {
   system_.stiffness_scale = dt * (dt + tissue_.damping().stiffness_s);
   system_.damping_scale = system_.D != nullptr ? dt : 0.0;
   system_.mass = (1.0 + dt * tissue_.damping().mass_per_s) * tissue_.nodeMasses();
-  system_.b = v_ * tissue_.nodeMasses().asDiagonal();
-  system_.b += dt * loads_;
-  // Lazy: Eigen's outer product would allocate.
   const Vector3 fall = dt * scene_.gravity_m_per_s2;
-  system_.b += fall.lazyProduct(tissue_.nodeMasses().transpose());
-  if (sleep_) loads_ += scene_.gravity_m_per_s2.lazyProduct(tissue_.nodeMasses().transpose());
-  for (int i = 0; i < tissue_.nodeCount(); ++i) {
-    if ((*system_.fixed)[i]) system_.b.col(i).setZero();
-  }
+  system_.b.resize(3, tissue_.nodeCount());
   double squared = 0.0;
   Vector3 net = Vector3::Zero();
   for (int i = 0; i < tissue_.nodeCount(); ++i) {
-    const Vector3 change = system_.b.col(i) - system_.mass[i] * v_.col(i);
+    const double mass = tissue_.nodeMasses()[i];
+    Vector3 b = Vector3::Zero();
+    if (!(*system_.fixed)[i]) b = mass * v_.col(i) + dt * loads_.col(i) + mass * fall;
+    system_.b.col(i) = b;
+    const Vector3 change = b - system_.mass[i] * v_.col(i);
     squared += change.squaredNorm();
     net += change;
   }
+  // Lazy: Eigen's outer product would allocate.
+  if (sleep_) loads_ += scene_.gravity_m_per_s2.lazyProduct(tissue_.nodeMasses().transpose());
   system_.change_n_s = std::sqrt(squared);
   system_.net_change_n_s = is_free_ ? net.norm() : -1.0;
   const bool turns = is_free_ && model_ != ElasticModel::kLinear;  // its forces do not turn with it

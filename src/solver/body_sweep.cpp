@@ -236,15 +236,17 @@ void BodySweep::prepareSlices() {
     const bool repeats = lane > 0 && i == rows[place - lane];
     const bool free = !repeats && !(*body.fixed)[i];
     SymmetricBlocks& block = diagonal_[slice];
+    const double mass = free ? body.mass[i] : 1.0;  // of rows that stay: anything with an inverse
+    std::array<double, 6> sum{};
     const auto add = [&](double scale, const Matrix3& matrix) {
-      for (std::size_t k = 0; k < 6; ++k) block.at[k][lane] += scale * matrix.data()[kLowerPart[k]];
+      for (std::size_t k = 0; k < 6; ++k) sum[k] += scale * matrix.data()[kLowerPart[k]];
     };
-    for (std::size_t k = 0; k < 6; ++k) block.at[k][lane] = 0.0;
     if (free) add(body.stiffness_scale, body.K->diagonal[i]);
     if (free && body.D != nullptr) add(body.damping_scale, body.D->diagonal[i]);
-    const double mass = free ? body.mass[i] : 1.0;  // of rows that stay: anything with an inverse
-    for (const std::size_t k : {0, 3, 5}) block.at[k][lane] += mass;
-    for (std::size_t r = 0; r < 3; ++r) right_[slice].at[r][lane] = body.b(static_cast<Eigen::Index>(r), i);
+    for (const std::size_t k : {0, 3, 5}) sum[k] += mass;
+    for (std::size_t k = 0; k < 6; ++k) block.at[k][lane] = sum[k];
+    const double* const b = body.b.data() + 3 * static_cast<std::ptrdiff_t>(i);
+    for (std::size_t r = 0; r < 3; ++r) right_[slice].at[r][lane] = b[r];
     free_[slice][lane] = free ? 1.0 : 0.0;
     moves_[slice] = static_cast<unsigned char>((lane > 0 ? moves_[slice] : 0) | static_cast<int>(free));
   }
