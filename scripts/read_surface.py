@@ -132,7 +132,9 @@ def read_ply(data):
             elements[-1][2].append(words[1:])
     vertices, triangles = [], []
     for element, count, properties in elements:
-        for _ in range(count):
+        if not 0 <= count <= len(data):  # a byte each is the least, and a number of no bytes would be counted through for hours
+            raise ValueError("its header has %d times %s, more than the %d bytes of the file can hold" % (count, element, len(data)))
+        for _ in range(count if properties else 0):
             row = {}
             for kind in properties:
                 if kind[0] == "list":
