@@ -5,6 +5,7 @@ import struct
 import numpy
 
 MOST_BYTES = 64 << 20  # as the simulator reads
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 PLY_TYPES = {"char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
              "uint16": "u2", "int": "i4", "int32": "i4", "uint": "u4", "uint32": "u4", "float": "f4", "float32": "f4",
              "double": "f8", "float64": "f8"}
@@ -42,7 +43,10 @@ def read_surface(path):
 
 def read_stl(data):
     count = struct.unpack("<I", data[80:84])[0] if len(data) >= 84 else 0
-    is_text = data[:5].lower() == b"solid" and b"facet" in data[:1024].lower()
+    text = (data[3:] if data.startswith(BYTE_ORDER_MARK) else data).lstrip()
+    name_end = min((at for at in (text.find(b"\n"), text.find(b"\r")) if at >= 0), default=0)
+    facet_near = b"facet" in text[:1024].lower() or b"facet" in text[name_end:name_end + 1024].lower()  # behind a long name
+    is_text = text[:5].lower() == b"solid" and facet_near
     rest = len(data) - 84 - 50 * count
     if rest == 0 or (count > 0 and 0 < rest < 50 and not is_text):  # some write a few bytes behind
         return numpy.frombuffer(data, "(3,)<f4, (3, 3)<f4, <u2", count, 84)["f1"].astype(float)
@@ -55,7 +59,7 @@ def read_stl(data):
 
 def text_of(data):
     """Numbers and keywords are ASCII; names and comments may be anything, and come after a byte-order mark at times."""
-    return (data[3:] if data.startswith(b"\xef\xbb\xbf") else data).decode("latin-1")
+    return (data[3:] if data.startswith(BYTE_ORDER_MARK) else data).decode("latin-1")
 
 
 def fan(face):
@@ -77,7 +81,7 @@ def read_obj(data):
         raise ValueError("it is an .obj of MNI's tools, not of Wavefront's; save it as .stl or .ply")
     word = []
     for number, line in enumerate(lines, 1):
-        word = (word[:-1] if word[-1:] == ["\\"] else []) + line.split()  # which goes on in the next line
+        word = (word[:-1] if word[-1:] == ["\\"] else []) + line.split("#")[0].split()  # goes on in the next line
         if word[-1:] == ["\\"]:
             continue
         try:

@@ -314,9 +314,12 @@ class OrganTest(unittest.TestCase):
         text = "solid Leber gr\u00f6\u00dfe\n" + "".join(
             "facet normal 0 0 0\nouter loop\n%sendloop\nendfacet\n" % "".join("vertex %.9g %.9g %.9g\n" % vertices[v] for v in triangle)
             for triangle in triangles) + "endsolid\n"
+        indefinite = text.replace("normal 0 0 0", "normal -1.#IND -nan(ind) 1.#QNAN")  # as Microsoft's compiler writes what is no number
+        named = "\n \n" + text.replace("Leber", 2000 * "n")
         wavefront = obj(vertices, triangles)
         forces = []
-        for name, content in {"a.stl": stl(vertices, triangles), "latin1.stl": text.encode("latin-1"), "utf8.stl": text.encode(), "capitals.stl": text.upper().encode(),
+        for name, content in {"a.stl": stl(vertices, triangles), "latin1.stl": text.encode("latin-1"), "utf8.stl": text.encode(), "capitals.stl": text.upper().encode(), "indefinite.stl": indefinite.encode(), "named.stl": named.encode(),
+                              "comments.obj": wavefront.replace(b"\n", b" 0.1 0.2 0.3 1 # rgba\n", len(vertices)).replace(b"//1\n", b"//1 # comment\n"),
                               "more.stl": stl(vertices, triangles) + b"written by a program", "bom.obj": b"\xef\xbb\xbf# gr\xf6\xdfe\n" + wavefront,
                               "blank.obj": b"# with blank lines\n\n" + wavefront.replace(b"\nf", b"\n\nf", 1),
                               "probe.ply": ply(vertices, triangles), "1.3.6." + 20 * "12345." + "stl": stl(vertices, triangles)}.items():

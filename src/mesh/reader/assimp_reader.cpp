@@ -9,7 +9,6 @@
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <new>
 #include <stdexcept>
@@ -17,7 +16,8 @@
 #include <utility>
 
 #include "mesh/reader/isolated.h"
-#include "tissue_contact/core/read_file.h"
+#include "mesh/reader/surface_bytes.h"
+#include "tissue_contact/core/text.h"
 
 namespace tissue_contact {
 namespace {
@@ -25,6 +25,7 @@ namespace {
 constexpr std::size_t kMaxTriangles = 2000000;  // a collision surface has some hundred to some ten thousand
 constexpr unsigned kMaxSeconds = 60;            // a mesh of 64 MB takes a few
 constexpr std::size_t kMaxMemory = 1u << 30;    // bytes; a mesh of 64 MB takes some hundred MB
+constexpr std::size_t kMostText = 300;          // bytes of what assimp says
 
 using Matrix4 = Eigen::Matrix4d;
 
@@ -79,38 +80,6 @@ std::string lowerCase(std::string_view text) {
   return lower;
 }
 
-constexpr std::size_t kStlHeader = 84;  // bytes, with the number of triangles
-constexpr std::size_t kStlTriangle = 50;
-
-/// An STL that assimp does not read as others do; empty for all others.
-std::string withoutOddities(std::string stl) {
-  std::size_t size = 0;  // of a binary one
-  if (stl.size() >= kStlHeader) {
-    std::uint32_t count = 0;
-    std::memcpy(&count, &stl[kStlHeader - sizeof count], sizeof count);
-    size = count > 0 ? kStlHeader + kStlTriangle * std::size_t{count} : 0;
-  }
-  if (stl.size() == size) return {};
-  const std::string_view start = std::string_view(stl).substr(0, 1024);
-  const std::string lower = lowerCase(start);
-  const std::size_t facet = lower.find("facet");
-  if (lower.rfind("solid", 0) == 0 && facet != std::string::npos) {  // a text
-    const bool is_read = start.substr(0, 5) == "solid" && start.substr(facet, 5) == "facet";
-    return is_read ? "" : lowerCase(stl);  // keywords in capitals
-  }
-  if (size == 0 || stl.size() < size || stl.size() - size >= kStlTriangle) return {};
-  stl.resize(size);  // some write a few bytes behind the triangles; more may be another part
-  return stl;
-}
-
-/// The bytes of a file, where it is to be read in other ones than it has.
-std::string otherBytes(const std::string& file, const std::string& ending) {
-  if (ending != "stl" && ending != "obj") return {};
-  std::string bytes = readFile(file, "mesh file", kMaxSurfaceBytes);
-  if (ending == "stl") return withoutOddities(std::move(bytes));
-  return bytes.rfind("\xEF\xBB\xBF", 0) == 0 ? bytes.substr(3) : "";  // a byte-order mark
-}
-
 TriangleSoup readWithAssimp(const std::string& file) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
@@ -124,7 +93,8 @@ TriangleSoup readWithAssimp(const std::string& file) {
   if (scene == nullptr || scene->mRootNode == nullptr) {
     const std::string error = importer.GetErrorString();  // assimp catches everything, this too:
     if (error.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
-    throw std::invalid_argument(error);
+    // It may quote all that is left of the file.
+    throw std::invalid_argument(printable(error, kMostText));
   }
   TriangleSoup soup;
   appendNode(*scene, *scene->mRootNode, Matrix4::Identity(), soup);
