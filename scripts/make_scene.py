@@ -231,21 +231,26 @@ def read_organ(arguments):
 
 
 def require_filling(path, scale, cell_m):
-    """Refuses a surface that the simulator cannot fill, as a replay would; what it fills it with is kept for that."""
+    """Refuses a surface that the simulator cannot fill, as a replay would; what it fills it with is kept for that.
+
+    Corners of the filled body's surface, m: loose crumbs of the file are none of it. None where nothing here can fill it.
+    """
     if not shutil.which("gmsh"):
         print("gmsh, which fills surfaces, is not installed here: apt-get install gmsh (doc/organ.md)")
-        return
+        return None
     log = logging.getLogger("tissue_contact")  # what comes of the filling
     log.setLevel(logging.INFO)
     log.addHandler(logging.StreamHandler(sys.stdout))
     try:
         import tissue_contact
         mesh = "{file: %s, scale_m_per_unit: %g, cell_size_m: %r}" % (quoted(path), scale, cell_m)
-        tissue_contact.Simulator(tissue_contact.parse_scene("tissues: [{name: organ, mesh: %s, material: liver}]" % mesh))
+        scene = tissue_contact.parse_scene("tissues: [{name: organ, mesh: %s, material: liver}]" % mesh)
+        topology = tissue_contact.Simulator(scene).topology("organ")
     except ImportError:
-        return  # the replay looks
+        return None  # the replay looks
     except ValueError as error:
         fail(within_mesh(error))
+    return topology.rest_positions[topology.triangles]
 
 
 def require_material(name):
@@ -285,6 +290,15 @@ def require_organ_size(size, scale):
              (size.min(), "xyz"[size.argmin()]))
 
 
+def measured(corners, arguments):
+    """Sides of the box around an organ, m, which is one, and bears the depth that is asked for."""
+    size = numpy.ptp(corners.reshape(-1, 3), axis=0)
+    require_organ_size(size, arguments.scale)
+    if arguments.depth and arguments.depth > 0.5 * size[2]:
+        fail("--depth %g m is more than half of the organ's height, %.3g m: press less deep, no tissue bears that" % (arguments.depth, size[2]))
+    return size
+
+
 def parse_arguments():
     def positive(text):
         value = float(text)
@@ -306,13 +320,10 @@ def main():
     arguments = parse_arguments()
     require_material(arguments.material)
     corners, cells, cell_m = read_organ(arguments)
-    low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
-    size = high - low
-    require_organ_size(size, arguments.scale)
-    if arguments.depth and arguments.depth > 0.5 * size[2]:
-        fail("--depth %g m is more than half of the organ's height, %.3g m: press less deep, no tissue bears that" % (arguments.depth, size[2]))
-    if cell_m:
-        require_filling(os.path.abspath(arguments.organ), arguments.scale, cell_m)
+    size = measured(corners, arguments)
+    filled = require_filling(os.path.abspath(arguments.organ), arguments.scale, cell_m) if cell_m else None
+    if filled is not None:
+        corners, size = filled, measured(filled, arguments)
     held, percent, stands = held_height(corners)
     depth = arguments.depth or min(0.005, 0.1 * size[2])
     path = drag_path(corners, depth, min(0.02, 0.2 * size[:2].max()))
