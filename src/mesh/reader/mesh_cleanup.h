@@ -16,8 +16,9 @@ namespace tissue_contact {
 /// @param vertices finite.
 TriangleMesh mergeVertices(const std::vector<Vector3>& vertices, const std::vector<Triangle>& triangles);
 
-/// Gives every closed, orientable connected part one orientation and a positive enclosed volume; other parts stay as
-/// they are, since nothing tells their outside.
+/// Gives every closed, orientable connected part one orientation and a positive enclosed volume, and so every such part with
+/// holes of up to some 1 % of its area, whose sign is clear without them; other parts stay as they are, since nothing tells
+/// their outside. Of a closed part that stands there twice, once each way round, one is left.
 void orientOutward(TriangleMesh& mesh);
 
 /// Drops triangles whose corners lie on a line (area below 1e-10 of the longest edge squared). Call it after
