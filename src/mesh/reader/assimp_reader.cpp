@@ -2,7 +2,6 @@
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
@@ -16,6 +15,7 @@
 #include <utility>
 
 #include "mesh/reader/isolated.h"
+#include "mesh/reader/polygon.h"
 #include "mesh/reader/surface_bytes.h"
 #include "tissue_contact/core/text.h"
 
@@ -43,11 +43,31 @@ class SingleFileSystem : public Assimp::DefaultIOSystem {
   std::string file_;
 };
 
-/// Appends a mesh, moved by its node's transform.
-void appendMesh(const aiMesh& mesh, const Matrix4& X, TriangleSoup& soup) {
-  if (soup.triangles.size() + mesh.mNumFaces > kMaxTriangles || soup.vertices.size() > 3 * kMaxTriangles) {
+/// The triangles of a face, as corners of it: as it is where it has three; none of a line or point.
+std::vector<Triangle> trianglesOf(const aiMesh& mesh, const aiFace& face) {
+  if (face.mNumIndices < 3) return {};
+  if (face.mNumIndices == 3) return {{0, 1, 2}};
+  std::vector<Vector3> corners;
+  for (unsigned k = 0; k < face.mNumIndices; ++k) {
+    const unsigned vertex = face.mIndices[k];
+    if (vertex >= mesh.mNumVertices) {
+      throw std::invalid_argument("a face names vertex " + std::to_string(vertex) + " of " +
+                                  std::to_string(mesh.mNumVertices));
+    }
+    corners.emplace_back(mesh.mVertices[vertex].x, mesh.mVertices[vertex].y, mesh.mVertices[vertex].z);
+  }
+  return cutPolygon(corners);
+}
+
+void requireFewTriangles(std::size_t count, const TriangleSoup& soup) {
+  if (count > kMaxTriangles || soup.vertices.size() > 3 * kMaxTriangles) {
     throw std::invalid_argument("it has more than " + std::to_string(kMaxTriangles) + " triangles; simplify it");
   }
+}
+
+/// Appends a mesh, moved by its node's transform.
+void appendMesh(const aiMesh& mesh, const Matrix4& X, TriangleSoup& soup) {
+  requireFewTriangles(soup.triangles.size() + mesh.mNumFaces, soup);
   const auto first = static_cast<int>(soup.vertices.size());
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     const aiVector3D& v = mesh.mVertices[i];
@@ -56,11 +76,13 @@ void appendMesh(const aiMesh& mesh, const Matrix4& X, TriangleSoup& soup) {
   const bool mirrored = X.topLeftCorner<3, 3>().determinant() < 0.0;
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
     const aiFace& face = mesh.mFaces[i];
-    if (face.mNumIndices != 3) continue;
-    Triangle triangle{};
-    for (unsigned k = 0; k < 3; ++k) triangle[k] = first + static_cast<int>(face.mIndices[k]);
-    if (mirrored) std::swap(triangle[1], triangle[2]);  // a mirror turns triangles inside out
-    soup.triangles.push_back(triangle);
+    for (const Triangle& corners : trianglesOf(mesh, face)) {
+      Triangle triangle{};
+      for (std::size_t k = 0; k < 3; ++k) triangle[k] = first + static_cast<int>(face.mIndices[corners[k]]);
+      if (mirrored) std::swap(triangle[1], triangle[2]);  // a mirror turns triangles inside out
+      soup.triangles.push_back(triangle);
+    }
+    requireFewTriangles(soup.triangles.size(), soup);
   }
 }
 
@@ -87,9 +109,9 @@ TriangleSoup readWithAssimp(const std::string& file) {
   const std::string bytes = otherBytes(file, ending);
   importer.SetIOHandler(
       new SingleFileSystem(file));  // the importer deletes it; what is read from memory asks it for other files, too
-  const aiScene* scene =
-      bytes.empty() ? importer.ReadFile(file, aiProcess_Triangulate)
-                    : importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, ending.c_str());
+  // Without aiProcess_Triangulate, which cuts ears that have corners of a concave polygon on their edges.
+  const aiScene* scene = bytes.empty() ? importer.ReadFile(file, 0)
+                                       : importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.c_str());
   if (scene == nullptr || scene->mRootNode == nullptr) {
     const std::string error = importer.GetErrorString();  // assimp catches everything, this too:
     if (error.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
