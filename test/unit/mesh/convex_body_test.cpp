@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "tissue_contact/mesh/tet_mesh.h"
@@ -61,6 +63,83 @@ TEST(ConvexBody, DentedCutAndSplitBodiesAreNot) {
   }
   EXPECT_FALSE(isConvex(mesh.positions, boundaryTriangles(corner)));
   EXPECT_FALSE(isConvex(mesh.positions, boundaryTriangles(gap)));
+}
+
+/// As the definition has it: every node behind every triangle.
+bool isBehindAll(const NodalVectors& x, const std::vector<Triangle>& surface) {
+  const double rounding = 1e-9 * (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).norm();
+  for (const Triangle& t : surface) {
+    const Vector3 n = (x.col(t[1]) - x.col(t[0])).cross(x.col(t[2]) - x.col(t[0])).normalized();
+    for (const Triangle& other : surface) {
+      for (const int node : other) {
+        if (!(n.dot(x.col(node) - x.col(t[0])) <= rounding)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+// Ellipsoids, some of them with a node moved in or out, also such that it takes its row of triangles with it.
+TEST(ConvexBody, TheEdgesTellWhatAllNodesAndTrianglesTell) {
+  const TetMesh mesh = makeBlock();
+  const std::vector<Triangle> surface = boundaryTriangles(mesh.tetrahedra);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  int convex = 0;
+  for (int k = 0; k < 60; ++k) {
+    NodalVectors x = mesh.positions;
+    const Vector3 centre(0.0, 0.0, 0.01);
+    for (Eigen::Index i = 0; i < x.cols(); ++i) {  // on spheres: no two triangles in one plane
+      const Vector3 p = Vector3(x.col(i)) - centre;
+      if (k % 3 > 0) x.col(i) = centre + 0.02 * p / std::max(p.norm(), 1e-6);
+    }
+    const double moved = k % 3 == 1 || k % 6 == 0 ? 0.0 : std::pow(10.0, -2.0 - 6.0 * uniform(random));
+    x.col(surface[static_cast<std::size_t>(uniform(random) * static_cast<double>(surface.size()))][0]) *= 1.0 + moved;
+    const bool expected = isBehindAll(x, surface);
+    EXPECT_EQ(isConvex(turned(x), surface), expected) << k;
+    convex += static_cast<int>(expected);
+  }
+  EXPECT_GT(convex, 5);
+  EXPECT_LT(convex, 55);
+}
+
+TEST(ConvexBody, HollowDoubledAndRewoundSurfacesAreNot) {
+  const TetMesh mesh = makeBlock();
+  const std::vector<Triangle> once = boundaryTriangles(mesh.tetrahedra);
+  const auto count = static_cast<int>(mesh.positions.cols());
+  NodalVectors x(3, 2 * count);
+  std::vector<Triangle> both = once, hollow = once;
+  for (const Triangle& t : once) {
+    both.push_back({t[0] + count, t[1] + count, t[2] + count});
+    hollow.push_back({t[0] + count, t[2] + count, t[1] + count});
+  }
+  for (const double scale : {1.0, 0.5}) {
+    x << mesh.positions, scale * mesh.positions;
+    EXPECT_FALSE(isConvex(x, both)) << "each is convex at all its edges";
+  }
+  EXPECT_FALSE(isConvex(x, hollow));
+}
+
+// Along a groove's floor, triangles lower than the rounding: neighbours meet them at any angle.
+TEST(ConvexBody, AFoldBehindLowTrianglesIsSeen) {
+  const std::vector<Vector3> nodes = {{0, 0, 0},  {2, 0, 0}, {2, 1, 0}, {0, 1, 0},   {0, 0, 1},
+                                      {2, 0, 1},  {2, 1, 1}, {0, 1, 1}, {1, 0, 0.9}, {1 + 1e-10, 0.5, 0.9},
+                                      {1, 1, 0.9}};
+  const std::vector<Triangle> surface = {{0, 2, 1},  {0, 3, 2},  {0, 4, 3},  {3, 4, 7},  {1, 2, 5},  {2, 6, 5},
+                                         {0, 1, 8},  {0, 8, 4},  {1, 5, 8},  {2, 3, 10}, {2, 10, 6}, {3, 7, 10},
+                                         {4, 8, 10}, {4, 10, 7}, {8, 9, 10}, {8, 5, 9},  {9, 5, 6},  {9, 6, 10}};
+  NodalVectors x(3, static_cast<Eigen::Index>(nodes.size()));
+  for (std::size_t i = 0; i < nodes.size(); ++i) x.col(static_cast<Eigen::Index>(i)) = nodes[i];
+  EXPECT_FALSE(isConvex(x, surface));
+}
+
+// 160 x 160 x 4 cells took 28 s to start beside themselves where 4.4 are right; these alone 4 s.
+TEST(ConvexBody, LargeBodiesAreAskedInAMoment) {
+  BlockDescription block;
+  block.size_m = Vector3(0.1, 0.1, 0.002);
+  block.cells = {120, 120, 1};
+  const TetMesh mesh = makeBlockMesh(block);
+  EXPECT_TRUE(isConvex(mesh.positions, boundaryTriangles(mesh.tetrahedra)));
 }
 
 // Stretched, bent and jittered, beyond the limit and back, in small ways and large: what is remembered must not change
