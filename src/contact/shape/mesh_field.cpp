@@ -102,7 +102,9 @@ void measureDeviation(const TriangleMesh& outer, double points, MeshField& field
 /// Says how far a long preparation has come.
 class Progress {
  public:
-  Progress(const std::string& name, const MeshPreparation& preparation) : name_(name), preparation_(preparation) {
+  /// @param done behind the share: what that is.
+  Progress(const std::string& name, const std::string& done, const MeshPreparation& preparation)
+      : name_(name), done_(done), preparation_(preparation) {
     if (preparation.clock) last_ = preparation.clock();
   }
   void at(double share) {
@@ -110,26 +112,39 @@ class Progress {
     const double now = preparation_.clock();
     if (now - last_ < 1.0) return;
     last_ = now;
-    preparation_.say("mesh " + name_ + ": " + std::to_string(static_cast<int>(100.0 * share)) + " % prepared");
+    preparation_.say("mesh " + name_ + ": " + std::to_string(static_cast<int>(100.0 * share)) + " % " + done_);
   }
 
  private:
   const std::string& name_;
+  const std::string done_;
   const MeshPreparation& preparation_;
   double last_ = 0.0;
 };
+
+void reportLeft(const std::string& name, const TriangleMesh& mesh, std::size_t left,
+                const MeshPreparation& preparation) {
+  if (left == 0 || !preparation.say) return;
+  preparation.say("mesh " + name + ": it passes through itself all over; inner parts of the last " +
+                  std::to_string(left) + " of its " + std::to_string(mesh.triangles.size()) +
+                  " triangles count as its surface, so forces deep inside may be too small; unite its parts into one");
+}
 
 MeshField build(const TriangleMesh& mesh, const std::string& name, const MeshPreparation& preparation,
                 double sample_count) {
   const GridPlan plan = planGrid(mesh, sample_count);
   const WindingTree all(mesh);
-  const TriangleMesh outer = outerSurface(mesh, all, GridPlan::kBlock * plan.spacing);
+  Progress looked_at(name, "looked through for where it passes through itself", preparation);
+  std::size_t left = 0;
+  const TriangleMesh outer = outerSurface(
+      mesh, all, GridPlan::kBlock * plan.spacing, [&](double share) { looked_at.at(share); }, &left);
+  reportLeft(name, mesh, left, preparation);
   MeshField field;
   field.low = mesh.vertices.rowwise().minCoeff();
   field.high = mesh.vertices.rowwise().maxCoeff();
   if (outer.triangles.empty()) requireInside(field.grid, name);
   const TriangleTree outer_tree(outer.vertices, outer.triangles);
-  Progress progress(name, preparation);
+  Progress progress(name, "prepared", preparation);
   field.grid = sampleDistance(all, outer_tree, plan, [&](double share) { progress.at(share); });
   requireInside(field.grid, name);
   measureDeviation(outer, sample_count / kSamplesPerDeviationPoint, field);

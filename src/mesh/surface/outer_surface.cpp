@@ -73,6 +73,7 @@ class OuterSurface {
   void add(const std::array<Vector3, 3>& corners) {
     const Vector3 normal = triangleNormal(corners[0], corners[1], corners[2]);
     if (normal.isZero(0.0)) return;
+    if (!hasTime()) return keep(corners);
     const int outer = outerPoints(corners, normal);
     const std::array<double, 3> edges = {(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(),
                                          (corners[0] - corners[2]).norm()};
@@ -82,8 +83,7 @@ class OuterSurface {
     constexpr double kTold = 16.0;
     const bool is_told = (outer == 0 || outer == 4) && longest < kTold * finest_;
     if (longest < finest_ || (is_told && !isMet(corners, normal))) {
-      if (outer == 0) return;
-      for (const Vector3& corner : corners) points_.push_back(corner);
+      if (outer > 0) keep(corners);
       return;
     }
     if (is_told) looks_left_ -= std::min(looks_left_, kSplit);
@@ -97,15 +97,20 @@ class OuterSurface {
     add({middle, b, c});
   }
 
+  /// Whether the points of another triangle may be looked at.
+  bool hasTime() const { return point_looks_ < kMostPointLooks; }
+
+  void keep(const std::array<Vector3, 3>& corners) { points_.insert(points_.end(), corners.begin(), corners.end()); }
+
   TriangleMesh mesh() const { return separateTriangles(points_); }
 
  private:
   /// Of the middle and three points near the corners: how many do not have the inside on both sides.
-  int outerPoints(const std::array<Vector3, 3>& corners, const Vector3& normal) const {
+  int outerPoints(const std::array<Vector3, 3>& corners, const Vector3& normal) {
     const Vector3 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     const auto isOuter = [&](const Vector3& p) {
       const Vector3 aside = kAside * finest_ * normal;
-      return !(tree_.isInside(p + aside) && tree_.isInside(p - aside));
+      return !(tree_.isInside(p + aside, point_looks_) && tree_.isInside(p - aside, point_looks_));
     };
     int count = isOuter(middle) ? 1 : 0;
     for (const Vector3& corner : corners) count += isOuter(0.9 * corner + 0.1 * middle) ? 1 : 0;
@@ -151,8 +156,11 @@ class OuterSurface {
   static constexpr int kSplit =
       500;  // looks that a cut costs as much as: eight points, twice each, in the winding tree
 
+  static constexpr std::size_t kMostPointLooks = 1000000000;  // half a minute of them
+
   const WindingTree& tree_;
   double finest_;
+  std::size_t point_looks_ = 0;  ///< at boxes and triangles, for the points of pieces
   std::vector<Vector3> points_;
   std::vector<int> waiting_;
   int looks_left_ = 50000000;  ///< at boxes and triangles
@@ -160,11 +168,18 @@ class OuterSurface {
 
 }  // namespace
 
-TriangleMesh outerSurface(const TriangleMesh& mesh, const WindingTree& tree, double finest) {
+TriangleMesh outerSurface(const TriangleMesh& mesh, const WindingTree& tree, double finest,
+                          const std::function<void(double share)>& progress, std::size_t* left) {
   OuterSurface surface(tree, finest);
-  for (const Triangle& t : mesh.triangles) {
+  const double count = static_cast<double>(mesh.triangles.size());
+  std::size_t done = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    if (progress) progress(static_cast<double>(i) / count);
     surface.add({mesh.vertices.col(t[0]), mesh.vertices.col(t[1]), mesh.vertices.col(t[2])});
+    if (surface.hasTime()) ++done;
   }
+  if (left != nullptr) *left = mesh.triangles.size() - done;
   return surface.mesh();
 }
 

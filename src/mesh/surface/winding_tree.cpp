@@ -39,7 +39,9 @@ WindingTree::WindingTree(const TriangleMesh& mesh)
   }
 }
 
-double WindingTree::solidAngle(int node, const Vector3& p) const {
+template <typename Look>
+double WindingTree::solidAngle(int node, const Vector3& p, const Look& look) const {
+  look();
   const Dipole& dipole = dipoles_[node];
   const Vector3 way = dipole.centre - p;
   const double squared = way.squaredNorm();
@@ -47,9 +49,17 @@ double WindingTree::solidAngle(int node, const Vector3& p) const {
     return dipole.area_normal.dot(way) / (squared * std::sqrt(squared));
   }
   const TriangleTree::Node& here = triangles_.nodes()[node];
-  if (here.triangle < 0) return solidAngle(here.children, p) + solidAngle(here.children + 1, p);
+  if (here.triangle < 0) return solidAngle(here.children, p, look) + solidAngle(here.children + 1, p, look);
   const Vector3* const c = triangles_.corners(here.triangle);
   return solidAngleOfTriangle(c[0] - p, c[1] - p, c[2] - p);
+}
+
+double WindingTree::solidAngle(int node, const Vector3& p) const {
+  return solidAngle(node, p, [] {});
+}
+
+bool WindingTree::isInside(const Vector3& p, std::size_t& looks) const {
+  return std::abs(solidAngle(0, p, [&looks] { ++looks; }) / (4.0 * M_PI)) > 0.4;
 }
 
 }  // namespace tissue_contact

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "mesh/surface/triangle_tree.h"
@@ -25,6 +26,9 @@ class WindingTree {
   /// the inside see half a turn less; walls are the likelier.
   bool isInside(const Vector3& p) const { return std::abs(windingNumber(p)) > 0.4; }
 
+  /// The same, counting the boxes and triangles that were looked at: most of them, where a mesh passes through itself all over.
+  bool isInside(const Vector3& p, std::size_t& looks) const;
+
   const TriangleTree& triangles() const { return triangles_; }
 
  private:
@@ -36,6 +40,8 @@ class WindingTree {
   };
 
   double solidAngle(int node, const Vector3& p) const;
+  template <typename Look>
+  double solidAngle(int node, const Vector3& p, const Look& look) const;
 
   TriangleTree triangles_;
   std::vector<Dipole> dipoles_;  ///< per node

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
+#include <vector>
 
 #include "mesh/surface/triangle_geometry.h"
 
@@ -46,6 +49,47 @@ TEST(OuterSurface, TheLongTrianglesOfAShaftAreCutAcross) {
   double whole = 0.0;
   for (const Triangle& t : mesh.triangles) whole += triangleArea(mesh.vertices, t);
   EXPECT_NEAR(area, whole, 1e-12 * whole) << "nothing of it is inside";
+}
+
+/// Bars from everywhere to everywhere in a ball of 100 mm.
+TriangleMesh tangle(int bars) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  TriangleMesh mesh;
+  mesh.vertices.resize(3, 3 * bars * 2);
+  for (int i = 0; i < bars; ++i) {
+    const Vector3 from = 0.1 * Vector3(normal(random), normal(random), normal(random)).normalized();
+    const Vector3 to = 0.1 * Vector3(normal(random), normal(random), normal(random)).normalized();
+    const Vector3 aside = 0.004 * (to - from).unitOrthogonal();
+    const Vector3 up = 0.004 * aside.cross(to - from).normalized();
+    const int a = 6 * i;
+    for (const int end : {0, 1}) {
+      const Vector3& p = end == 0 ? from : to;
+      mesh.vertices.col(a + 3 * end) = p + aside;
+      mesh.vertices.col(a + 3 * end + 1) = p - 0.5 * aside + up;
+      mesh.vertices.col(a + 3 * end + 2) = p - 0.5 * aside - up;
+    }
+    mesh.triangles.push_back({a, a + 2, a + 1});
+    mesh.triangles.push_back({a + 3, a + 4, a + 5});
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3;
+      mesh.triangles.push_back({a + k, a + next, a + 3 + next});
+      mesh.triangles.push_back({a + k, a + 3 + next, a + 3 + k});
+    }
+  }
+  return mesh;
+}
+
+// Silent before, however long it took.
+TEST(OuterSurface, SaysHowFarItIs) {
+  const TriangleMesh mesh = tangle(5);
+  std::vector<double> shares;
+  std::size_t left = 1;
+  outerSurface(
+      mesh, WindingTree(mesh), 0.004, [&](double share) { shares.push_back(share); }, &left);
+  EXPECT_EQ(shares.size(), mesh.triangles.size());
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_EQ(left, 0U);
 }
 
 }  // namespace outer_surface_test
