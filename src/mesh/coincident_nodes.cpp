@@ -1,6 +1,7 @@
 #include "mesh/coincident_nodes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -8,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mesh/edge_table.h"
 #include "mesh/nodes.h"
 #include "mesh/point_grid.h"
 
@@ -54,13 +56,14 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// Of the edges at each node; kNone at those of no element.
-std::vector<double> shortestEdges(const TetMesh& mesh) {
-  std::vector<double> shortest(static_cast<std::size_t>(mesh.positions.cols()), kNone);
-  for (const Tetrahedron& tet : mesh.tetrahedra) {
-    for (std::size_t i = 0; i < 4; ++i) {
+template <std::size_t N>
+std::vector<double> shortestEdges(const NodalVectors& positions, const std::vector<std::array<int, N>>& elements) {
+  std::vector<double> shortest(static_cast<std::size_t>(positions.cols()), kNone);
+  for (const auto& element : elements) {
+    for (std::size_t i = 0; i < N; ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        const double edge = (mesh.positions.col(tet[i]) - mesh.positions.col(tet[j])).norm();
-        for (const int node : {tet[i], tet[j]}) {
+        const double edge = (positions.col(element[i]) - positions.col(element[j])).norm();
+        for (const int node : {element[i], element[j]}) {
           double& at = shortest[static_cast<std::size_t>(node)];
           at = std::min(at, edge);
         }
@@ -78,18 +81,28 @@ std::vector<bool> nodesOfSurface(const TetMesh& mesh) {
   return outside;
 }
 
-}  // namespace
+std::vector<bool> nodesOfBorder(const TriangleMesh& mesh) {
+  std::vector<bool> outside(static_cast<std::size_t>(mesh.vertices.cols()), false);
+  for (const EdgeTable::Edge& edge : EdgeTable(mesh.triangles)) {
+    if (edge.count != 1) continue;
+    for (const int node : edge.nodes) outside[static_cast<std::size_t>(node)] = true;
+  }
+  return outside;
+}
 
-NearNodes findNearNodes(const TetMesh& mesh) {
+/// @param nodesOutside says which nodes are, where any are near to each other.
+template <std::size_t N, class NodesOutside>
+NearNodes findNear(const NodalVectors& positions, const std::vector<std::array<int, N>>& elements,
+                   const NodesOutside& nodesOutside) {
   constexpr double kNear = 0.01;
-  const std::vector<double> shortest = shortestEdges(mesh);
+  const std::vector<double> shortest = shortestEdges(positions, elements);
   std::vector<double> usual;
   std::copy_if(shortest.begin(), shortest.end(), std::back_inserter(usual),
                [](double edge) { return edge > 0.0 && edge < kNone; });
   if (usual.empty()) return {};
   const auto middle = usual.begin() + static_cast<std::ptrdiff_t>(usual.size() / 2);
   std::nth_element(usual.begin(), middle, usual.end());
-  const auto [low, high] = boxOf(mesh.positions, [&](std::size_t node) { return shortest[node] != kNone; });
+  const auto [low, high] = boxOf(positions, [&](std::size_t node) { return shortest[node] != kNone; });
   const double diagonal = (high - low).stableNorm();
   if (!std::isfinite(diagonal)) return {};
   // No nearer than nodes in one place, or cells of the grid would be too many to count.
@@ -99,7 +112,7 @@ NearNodes findNearNodes(const TetMesh& mesh) {
   for (int i = 0; i < static_cast<int>(shortest.size()); ++i) {
     const double edge = shortest[static_cast<std::size_t>(i)];
     if (edge == kNone) continue;
-    const Vector3 here = mesh.positions.col(i);
+    const Vector3 here = positions.col(i);
     const auto point = static_cast<std::size_t>(grid.findOrAdd(here));
     if (point == filed.size()) {
       filed.push_back(i);
@@ -107,17 +120,27 @@ NearNodes findNearNodes(const TetMesh& mesh) {
     }
     const int other = filed[point];
     const double limit = kNear * std::min(edge, shortest[static_cast<std::size_t>(other)]);
-    if ((here - mesh.positions.col(other)).norm() < limit) pairs.emplace_back(other, i);
+    if ((here - positions.col(other)).norm() < limit) pairs.emplace_back(other, i);
   }
   if (pairs.empty()) return {};
   const std::vector<bool> outside =
-      nodesOfSurface(mesh);  // where a mesh is cut open there is one; flat elements have near nodes, too
+      nodesOutside();  // where a mesh is cut open there is one; flat elements have near nodes, too
   NearNodes near;
   for (const auto& [one, other] : pairs) {
     if (!outside[static_cast<std::size_t>(one)] || !outside[static_cast<std::size_t>(other)]) continue;
     if (near.count++ == 0) near = {1, one, other};
   }
   return near;
+}
+
+}  // namespace
+
+NearNodes findNearNodes(const TetMesh& mesh) {
+  return findNear(mesh.positions, mesh.tetrahedra, [&] { return nodesOfSurface(mesh); });
+}
+
+NearNodes findNearNodes(const TriangleMesh& mesh) {
+  return findNear(mesh.vertices, mesh.triangles, [&] { return nodesOfBorder(mesh); });
 }
 
 }  // namespace tissue_contact

@@ -8,6 +8,7 @@
 
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/mesh/tet_mesh.h"
+#include "tissue_contact/mesh/triangle_mesh.h"
 
 namespace tissue_contact {
 
@@ -25,5 +26,7 @@ struct NearNodes {
   int one = -1, other = -1;  ///< the first two
 };
 NearNodes findNearNodes(const TetMesh& mesh);
+/// Nodes of a shell's border. @pre triangles of three different nodes each.
+NearNodes findNearNodes(const TriangleMesh& mesh);
 
 }  // namespace tissue_contact

@@ -10,6 +10,7 @@
 #include "mesh/conformity.h"
 #include "mesh/labels.h"
 #include "mesh/region.h"
+#include "mesh/shell_notes.h"
 #include "tissue/body_edges.h"
 #include "tissue/element_patches.h"
 #include "tissue_contact/core/entry_error.h"
@@ -120,7 +121,7 @@ void setSheet(TriangleMesh mesh, double thickness, const std::string& source, co
 }
 
 void setMembrane(const TissueDescription& description, const std::string& source, const MeshSizeCheck& on_size,
-                 PlacedMesh& placed) {
+                 const MeshPreparation& preparation, PlacedMesh& placed) {
   if (const auto* sheet = std::get_if<SheetDescription>(&description.geometry)) {
     atEntry("sheet", [&] { setSheet(makeSheetMesh(*sheet), sheet->thickness_m, source, on_size, placed); });
   } else {
@@ -128,6 +129,10 @@ void setMembrane(const TissueDescription& description, const std::string& source
     TriangleMesh read = atEntry("shell.file", [&] { return loadShellMesh(shell); });
     const std::string owner = source + ", mesh file '" + shell.file + "'";
     atEntry("shell", [&] { setSheet(std::move(read), shell.thickness_m, owner, on_size, placed); });
+    if (!preparation.say) return;
+    for (const std::string& note : shellNotes({placed.rest, placed.surface})) {
+      preparation.say("mesh file '" + shell.file + "': " + note);
+    }
   }
 }
 
@@ -285,7 +290,7 @@ PlacedMesh placeMesh(const TissueDescription& given, const Pose& X_WT, const Mes
   PlacedMesh placed;
   VolumeMesh made;
   if (isMembrane(given)) {
-    setMembrane(given, source, on_size, placed);
+    setMembrane(given, source, on_size, preparation, placed);
   } else {
     made = volumeMesh(given, source, on_size, preparation);
   }

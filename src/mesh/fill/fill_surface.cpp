@@ -16,6 +16,7 @@
 #include "mesh/fill/crossing_triangles.h"
 #include "mesh/fill/gmsh.h"
 #include "mesh/reader/assimp_reader.h"
+#include "mesh/reader/flat_triangles.h"
 #include "mesh/reader/mesh_cleanup.h"
 #include "mesh/reader/mesh_file.h"
 #include "mesh/surface/triangle_tree.h"
@@ -136,6 +137,7 @@ ClosedSurface readSurface(const MeshDescription& description) {
   const TriangleSoup soup = readTriangleSoup(description.file);
   TriangleMesh mesh = mergeVertices(soup.vertices, soup.triangles);
   if (mesh.triangles.empty()) throw std::invalid_argument(source + " has no triangles with an area");
+  absorbFlatTriangles(mesh);  // gmsh finds no plane of them
   mesh.vertices *= description.scale_m_per_unit;
   if (!mesh.vertices.allFinite()) {
     throw std::invalid_argument(source + " has vertices that are not finite after scaling; reduce scale_m_per_unit");

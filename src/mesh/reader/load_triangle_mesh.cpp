@@ -8,6 +8,7 @@
 
 #include "mesh/nodes.h"
 #include "mesh/reader/assimp_reader.h"
+#include "mesh/reader/flat_triangles.h"
 #include "mesh/reader/mesh_cleanup.h"
 #include "tissue_contact/core/read_file.h"
 #include "tissue_contact/mesh/triangle_mesh.h"
@@ -49,6 +50,7 @@ TriangleMesh loadTriangleMesh(const std::string& file, const Vector3& scale) {
   if (soup.triangles.empty()) refuseFile(file, "has no triangles");
   TriangleMesh mesh = mergeVertices(soup.vertices, soup.triangles);
   orientOutward(mesh);
+  absorbFlatTriangles(mesh);
   dropFlatTriangles(mesh);
   dropUnusedNodes(mesh.vertices, mesh.triangles);
   if (mesh.triangles.empty()) refuseFile(file, "has degenerate triangles only");

@@ -16,8 +16,6 @@
 namespace tissue_contact {
 namespace {
 
-constexpr double kFlatArea = 1e-10;  // of the longest edge squared
-
 constexpr double kNoBorder = std::numeric_limits<double>::infinity();
 
 /// Orients one connected part after another. Edges of exactly two triangles connect them.
@@ -173,6 +171,19 @@ void dropBacks(TriangleMesh& mesh) {
   mesh.triangles.resize(kept);
 }
 
+/// Between corners of a triangle that do not lie in one place; infinity where there are none.
+double shortestEdge(const std::vector<Vector3>& vertices, const std::vector<Triangle>& triangles) {
+  double squared = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double edge =
+          (vertices[static_cast<std::size_t>(t[k])] - vertices[static_cast<std::size_t>(t[(k + 1) % 3])]).squaredNorm();
+      if (edge > 0.0) squared = std::min(squared, edge);
+    }
+  }
+  return std::sqrt(squared);
+}
+
 }  // namespace
 
 TriangleMesh mergeVertices(const std::vector<Vector3>& vertices, const std::vector<Triangle>& triangles) {
@@ -187,8 +198,11 @@ TriangleMesh mergeVertices(const std::vector<Vector3>& vertices, const std::vect
     }
   }
   const double diagonal = (high - low).stableNorm();
-  if (!(diagonal > 0.0)) return mesh;  // one point: every triangle is degenerate
-  PointGrid grid(low, kMergeDistance * diagonal);
+  if (!(diagonal > 0.0)) return mesh;           // one point: every triangle is degenerate
+  constexpr double kSinglePrecision = 0x1p-21;  // as firstInPlace() has it
+  const double resolved = kSinglePrecision * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+  PointGrid grid(low,
+                 std::max(kMergeDistance * diagonal, std::min(resolved, 1e-3 * shortestEdge(vertices, triangles))));
   std::vector<int> merged(vertices.size(), -1);
   for (const Triangle& triangle : triangles) {
     Triangle t{};

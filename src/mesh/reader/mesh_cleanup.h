@@ -9,7 +9,10 @@
 
 namespace tissue_contact {
 
-/// Merges vertices nearer to each other than 1e-7 of the bounding box's diagonal: STL repeats every vertex per
+constexpr double kFlatArea = 1e-10;  ///< of the longest edge squared: below it a triangle is flat
+
+/// Merges vertices nearer to each other than 1e-7 of the bounding box's diagonal, or, as far as that is a thousandth of the shortest edge, than
+/// single precision resolves at their distance from the origin (firstInPlace()): STL repeats every vertex per
 /// triangle, and mesh files store single precision, so equal points may differ in the last digit after a node's
 /// transform. The first of each group is kept, and triangles left with two equal corners are dropped. Linear in the
 /// number of vertices.
@@ -21,7 +24,7 @@ TriangleMesh mergeVertices(const std::vector<Vector3>& vertices, const std::vect
 /// their outside. Of a closed part that stands there twice, once each way round, one is left.
 void orientOutward(TriangleMesh& mesh);
 
-/// Drops triangles whose corners lie on a line (area below 1e-10 of the longest edge squared). Call it after
+/// Drops triangles whose corners lie on a line (kFlatArea). Call it after
 /// orientOutward(): such a triangle may well close a surface.
 void dropFlatTriangles(TriangleMesh& mesh);
 
