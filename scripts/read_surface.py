@@ -137,7 +137,7 @@ def read_ply(data):
     vertices, triangles = [], []
     for element, count, properties in elements:
         if not 0 <= count <= len(data):  # a byte each is the least, and a number of no bytes would be counted through for hours
-            raise ValueError("its header has %d times %s, more than the %d bytes of the file can hold" % (count, element, len(data)))
+            raise ValueError("its header has %d times %s; it may be 0 to %d, as the bytes of the file" % (count, element, len(data)))
         for _ in range(count if properties else 0):
             row = {}
             for kind in properties:

@@ -71,18 +71,7 @@ TISSUE_CONTACT_INLINE void transpose(const WideLanes& a, const WideLanes& b, con
 }
 #endif
 
-/// x, y and z of four nodes.
-TISSUE_CONTACT_INLINE void gather(const PaddedVector* v, const int* nodes, Lanes* to) {
-  Lanes a, b, c, d, all[kLanes];
-  load(v[nodes[0]], a);
-  load(v[nodes[1]], b);
-  load(v[nodes[2]], c);
-  load(v[nodes[3]], d);
-  transpose(a, b, c, d, all);
-  for (int r = 0; r < 3; ++r) to[r] = all[r];
-}
-
-/// The same of each four that L holds.
+/// x, y and z of four nodes, of each four that L holds.
 template <typename L>
 TISSUE_CONTACT_INLINE void gatherEach(const PaddedVector* v, const std::array<const int*, kFours<L>>& nodes, L* to) {
   L of_lane[kLanes], all[kLanes];
@@ -93,6 +82,10 @@ TISSUE_CONTACT_INLINE void gatherEach(const PaddedVector* v, const std::array<co
   }
   transpose(of_lane[0], of_lane[1], of_lane[2], of_lane[3], all);
   for (int r = 0; r < 3; ++r) to[r] = all[r];
+}
+
+TISSUE_CONTACT_INLINE void gather(const PaddedVector* v, const int* nodes, Lanes* to) {
+  gatherEach<Lanes>(v, {nodes}, to);
 }
 
 /// Adds to four nodes, one after the other, for two may be the same.

@@ -66,6 +66,8 @@ class CapturedErrors : public console_bridge::OutputHandler {
   bool lost_something_ = false;
 };
 
+bool isShape(std::string_view tag) { return tag == "box" || tag == "cylinder" || tag == "sphere" || tag == "mesh"; }
+
 void checkText(const std::string& xml, const std::string& source) {
   if (xml.empty()) throw std::invalid_argument(source + ": the URDF is empty");
   if (xml.size() > kMaxUrdfBytes) {
@@ -93,7 +95,8 @@ void checkText(const std::string& xml, const std::string& source) {
       continue;
     }
     links += tag.name == "link" ? 1 : 0;
-    shapes = tag.name == "geometry" ? 0 : shapes + 1;
+    if (tag.name == "geometry") shapes = 0;
+    if (isShape(tag.name)) ++shapes;
     const auto isWithin = [&](std::size_t up, std::string_view name) {
       return open.size() > up && open[open.size() - 1 - up] == name;
     };
@@ -102,7 +105,7 @@ void checkText(const std::string& xml, const std::string& source) {
       throw std::invalid_argument(source + ":" + std::to_string(lineOf(xml, tag.position)) + ": " + what);
     };
     if (tag.name == "link" && isWithin(0, "link")) refuse("a <link> within a <link> is not read; move it out");
-    if (shapes > 1 && isWithin(0, "geometry") && isWithin(1, "collision")) {
+    if (shapes > 1 && isShape(tag.name) && isWithin(0, "geometry") && isWithin(1, "collision") && isWithin(2, "link")) {
       refuse("a second shape in a <geometry> is not read; give it a <collision> of its own");
     }
     if (tag.kind == XmlTag::Kind::kOpen) open.push_back(tag.name);

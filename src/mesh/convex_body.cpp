@@ -41,9 +41,10 @@ bool isBehindAll(const NodalVectors& x, const std::vector<Triangle>& surface) {
   return true;
 }
 
-/// Whether a triangle is so low that a fold could hide behind it: its neighbours meet it within the rounding at any angle.
+/// Whether a triangle is so low that its neighbours meet it within the rounding at any angle: a fold could hide between two of them.
 bool hasLowTriangle(const NodalVectors& x, const std::vector<Triangle>& surface) {
-  constexpr double kLow = 1e4;  // roundings: what passes for flat then is bent by less than 1e-4
+  constexpr double kLow =
+      1e5;  // roundings: an edge that passes for flat is bent inwards by 1e-5 at most, ten thousand in a row by .1
   const double least = kLow * kRounding * sizeOf(x);
   return std::any_of(surface.begin(), surface.end(), [&](const Triangle& t) {
     const Vector3 a = x.col(t[1]) - x.col(t[0]);

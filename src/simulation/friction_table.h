@@ -17,7 +17,7 @@ namespace tissue_contact {
 
 /// What a contact was like at the end of the step before: for laws that depend on it.
 struct ContactBefore {
-  double sliding_speed = 0.0;  ///< m/s; of an open one, of the instrument over the tissue
+  double sliding_speed = 0.0;  ///< m/s; of one that was open: how fast the instrument moved over the tissue there
   double pressure = 0.0;       ///< Pa
 };
 

@@ -157,8 +157,8 @@ void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, doubl
     ContactRow& row = rows[c];
     placeRow(c, dt, row);
     row.was_sliding = before.state == ContactState::kKinetic;
-    const double air_speed = relativeVelocity(row, solution.v).tail<2>().norm();
-    row.law = friction_.at(before.contact, x, motion_.startPoses(), beforeOf(before, x, last_dt, air_speed));
+    const double speed_over_tissue = relativeVelocity(row, solution.v).tail<2>().norm();
+    row.law = friction_.at(before.contact, x, motion_.startPoses(), beforeOf(before, x, last_dt, speed_over_tissue));
     u_besides_[c].setZero();
     if (before.state == ContactState::kStatic) {
       u_besides_[c] = -(R_WC.rightCols<2>().transpose() * before.slip_W) / back_time_s_;
@@ -173,12 +173,12 @@ void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, doubl
   settling_.advance(dt);
 }
 
-/// @param air_speed how fast the tool moves over the tissue at this point, which is how fast it has slid where the contact is new (it comes
-/// under the tool, or takes another's place) and how fast it will land, m/s.
+/// @param speed_over_tissue tangential speed of what touches over the tissue here as the last step ended, m/s. A contact that was open has
+/// no slip of its own, so this stands for it: whether its point has just come under the tool, takes another's place, or lands in this step.
 ContactBefore StepContacts::beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x, double last_dt,
-                                     double air_speed) const {
+                                     double speed_over_tissue) const {
   ContactBefore before;
-  if (inherited.state == ContactState::kOpen) before.sliding_speed = air_speed;
+  if (inherited.state == ContactState::kOpen) before.sliding_speed = speed_over_tissue;
   if (inherited.state == ContactState::kKinetic && last_dt > 0.0) {
     before.sliding_speed = inherited.slip_W.norm() / last_dt;
   }

@@ -98,7 +98,7 @@ class StepContacts {
   };
   void placeRow(std::size_t contact, double dt, ContactRow& row) const;
   ContactBefore beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x, double last_dt,
-                         double air_speed) const;
+                         double speed_over_tissue) const;
   void land(const std::vector<NodalVectors>& v, double dt, std::vector<ContactRow>& rows);
   double& firstTouch(const ContactKey& key);
   void requireContact(const StateArchive& archive, const SolvedContact& solved,

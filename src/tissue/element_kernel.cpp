@@ -80,7 +80,8 @@ TISSUE_CONTACT_INLINE void newtonStep(const LaneMatrixOf<L>& S, LaneQuaternion<L
   const L hy = scale * (nz * ax + my * ay + nx * az);
   const L hz = scale * (ny * ax + nx * ay + mz * az);
   const L squared = hx * hx + hy * hy + hz * hz;
-  // Where all four are above 0; conditions of eight lanes joined by & GCC 12 takes apart. The last one is no number where any is none.
+  // Trusted where dx, mz, determinant and room are all above 0: where the least of them is, since GCC 12 takes conditions of eight lanes
+  // that are joined by & apart. Where any of them is no number, room is none either, and it comes last.
   const L room = 0.25 - squared;
   L least = dx < mz ? dx : mz;
   least = determinant < least ? determinant : least;

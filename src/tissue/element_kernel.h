@@ -1,5 +1,5 @@
 /// @file
-/// Room `tissue`, private: rotations and elastic forces of four tetrahedra at a time, linear and corotational. Node
+/// Room `tissue`, private: rotations and elastic forces of four tetrahedra at a time, or eight, linear and corotational. Node
 /// positions in; rotations, nodal forces and a mark for elements whose stiffness is out of date out. The formulas are
 /// those of tet_elasticity.h, where nearestRotation() is the plain version this is tested against.
 #pragma once

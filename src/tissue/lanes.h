@@ -81,7 +81,7 @@ TISSUE_CONTACT_INLINE unsigned char bits(const Mask& mask) {
   return set;
 }
 
-/// The same where `condition` is, by numbers: GCC 12 takes masks of eight lanes apart.
+/// Bit `lane` set where `condition` holds. A sum of powers of two, since GCC 12 takes masks of eight lanes apart into scalars.
 template <typename L, typename Condition>
 TISSUE_CONTACT_INLINE unsigned bitsWhere(const Condition& condition) {
   L powers;

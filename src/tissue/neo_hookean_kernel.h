@@ -1,5 +1,5 @@
 /// @file
-/// Room `tissue`, private: neo-Hookean forces of four tetrahedra at a time. Node positions in; deformation gradients,
+/// Room `tissue`, private: neo-Hookean forces of four tetrahedra at a time, or eight. Node positions in; deformation gradients,
 /// nodal forces and a mark for elements whose stiffness is out of date out. The formulas are those of neo_hookean.h.
 #pragma once
 

@@ -1,5 +1,5 @@
 /// @file
-/// Room `tissue`, private: what the force kernels of patches share: four patches at a time, each an element of several nodes. Node
+/// Room `tissue`, private: what the force kernels of patches share: four patches at a time, or eight, each an element of several nodes. Node
 /// positions in, mean deformation gradients out; stresses in, nodal forces out.
 #pragma once
 

@@ -14,7 +14,7 @@ namespace tissue_contact {
 
 /// Whether a closed surface bounds a convex body: across none of its edges does the node of a neighbour lie before a triangle by more
 /// than 1e-9 of the size of its bounding box (the rounding of coordinates), and it goes once around its middle. Linear in the
-/// number of triangles; with a triangle lower than 1e-5 of the size, nodes x triangles, all against all.
+/// number of triangles; with a triangle lower than 1e-4 of the size, nodes x triangles, all against all.
 bool isConvex(const NodalVectors& x, const std::vector<Triangle>& surface);
 
 /// Holds a cache: not thread-safe.

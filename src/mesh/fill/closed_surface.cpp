@@ -233,11 +233,16 @@ void requireOneBody(TriangleMesh& mesh, const std::string& source, std::vector<s
   const std::vector<int> root = partsOf(mesh);
   const std::vector<Part> parts = listParts(mesh, root);
   if (parts.size() < 2) return;
+  std::map<int, std::vector<Triangle>> triangles_of;  // parts, by their root
+  for (const Triangle& t : mesh.triangles) triangles_of[root[t[0]]].push_back(t);
   const auto treeOf = [&](const Part& part) {
-    TriangleMesh own{mesh.vertices, {}};
-    for (const Triangle& t : mesh.triangles) {
-      if (root[t[0]] == part.root) own.triangles.push_back(t);
+    std::map<int, int> own_place;
+    TriangleMesh own{{}, triangles_of[part.root]};
+    for (Triangle& t : own.triangles) {
+      for (int& v : t) v = own_place.emplace(v, static_cast<int>(own_place.size())).first->second;
     }
+    own.vertices.resize(3, static_cast<Eigen::Index>(own_place.size()));
+    for (const auto& [v, place] : own_place) own.vertices.col(place) = mesh.vertices.col(v);
     return std::make_unique<WindingTree>(own);
   };
   const auto refuse = [&](const Part& part, const std::string& what) {

@@ -45,6 +45,16 @@ std::string withLines(std::string_view text, const Change& change) {
   return result;
 }
 
+/// Where a line's first `count` words end; its end where it has fewer.
+std::size_t behindWords(std::string_view line, int count) {
+  std::size_t at = 0;
+  for (int word = 0; word < count; ++word) {
+    at += skippedBlanks(line.substr(at));
+    at = std::min(line.find_first_of(kBlanks, at), line.size());
+  }
+  return at;
+}
+
 /// An STL of text that assimp does not read as others do; empty for all others. Whether it is a text at all is told by `facet`
 /// near its start, or behind a name that is longer than that.
 std::string withoutOddities(std::string_view stl, bool& is_text) {
@@ -64,7 +74,11 @@ std::string withoutOddities(std::string_view stl, bool& is_text) {
   std::string other = (is_long ? "solid" : "") + (is_capital ? lowerCase(text) : std::string(text));
   if (!is_odd) return other;
   return withLines(other, [](std::string_view line, std::string& result) {
-    result += startsWith(line.substr(skippedBlanks(line)), "facet") ? "facet normal 0 0 0" : line;
+    const std::size_t behind = behindWords(line, 5);  // facet normal x y z
+    const bool is_normal = startsWith(line.substr(skippedBlanks(line)), "facet") &&
+                           line.substr(0, behind).find_first_of("#(") != std::string_view::npos;
+    if (is_normal) result += "facet normal 0 0 0";
+    result += is_normal ? line.substr(behind) : line;
   });
 }
 

@@ -210,6 +210,14 @@ TEST(ParseUrdf, NothingIsPrinted) {
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }
 
+// What others write beside a shape, or where urdfdom does not look, is no second shape.
+TEST(ParseUrdf, OtherElementsBesideAShapeAreLeftAlone) {
+  const std::string shape = "<geometry><sphere radius=\"0.01\"/><verbose/></geometry>";
+  const std::string two = "<geometry><sphere radius=\"0.01\"/><box size=\"1 1 1\"/></geometry>";
+  EXPECT_NO_THROW(parse("<link name=\"a\"><collision>" + shape + "</collision></link>"));
+  EXPECT_NO_THROW(parse("<link name=\"a\"/><gazebo><collision>" + two + "</collision></gazebo>"));
+}
+
 TEST(ParseUrdf, CommentsAndCdataAreNoElements) {
   EXPECT_NO_THROW(
       parse("<!-- <link name=\"c\"> --><link name=\"a\"/><!-- > -- </x> --><gazebo><![CDATA[<a>]]></gazebo>"));

@@ -52,7 +52,15 @@ TEST_F(SurfaceBytes, NormalsThatAreNoNumbersDoNotMatter) {
     expectRead("a.stl", text);
     expectRead("b.stl", replaced(text, "\n", "\r\n"));
     expectRead("c.stl", replaced(replaced(text, "facet", "FACET"), "vertex", "VERTEX"));
+    expectRead("d.stl", replaced(replaced(text, "\n", " "), "facet normal", "\nfacet normal") + "\n");
   }
+}
+
+// Its triangles were lost with the rest of their lines.
+TEST_F(SurfaceBytes, ANameWithANumberLeavesFacetsOfOneLineAsTheyAre) {
+  const std::string text = replaced(replaced(asciiStl(), "\n", " "), "facet normal", "\nfacet normal");
+  expectRead("a.stl", text + " (2)\n");
+  expectRead("b.stl", replaced(text, "endsolid", "\nendsolid Part (1)") + "\n");
 }
 
 // "Failed to determine STL storage representation", "Node name too long".
