@@ -68,6 +68,10 @@ class CapturedErrors : public console_bridge::OutputHandler {
 
 bool isShape(std::string_view tag) { return tag == "box" || tag == "cylinder" || tag == "sphere" || tag == "mesh"; }
 
+[[noreturn]] void refuseAt(const XmlTag& tag, const std::string& xml, const std::string& source, const char* what) {
+  throw std::invalid_argument(source + ":" + std::to_string(lineOf(xml, tag.position)) + ": " + what);
+}
+
 void checkText(const std::string& xml, const std::string& source) {
   if (xml.empty()) throw std::invalid_argument(source + ": the URDF is empty");
   if (xml.size() > kMaxUrdfBytes) {
@@ -101,12 +105,10 @@ void checkText(const std::string& xml, const std::string& source) {
       return open.size() > up && open[open.size() - 1 - up] == name;
     };
     // What urdfdom leaves out without a word.
-    const auto refuse = [&](const std::string& what) {
-      throw std::invalid_argument(source + ":" + std::to_string(lineOf(xml, tag.position)) + ": " + what);
-    };
-    if (tag.name == "link" && isWithin(0, "link")) refuse("a <link> within a <link> is not read; move it out");
+    if (tag.name == "link" && isWithin(0, "link"))
+      refuseAt(tag, xml, source, "a <link> within a <link> is not read; move it out");
     if (shapes > 1 && isShape(tag.name) && isWithin(0, "geometry") && isWithin(1, "collision") && isWithin(2, "link")) {
-      refuse("a second shape in a <geometry> is not read; give it a <collision> of its own");
+      refuseAt(tag, xml, source, "a second shape in a <geometry> is not read; give it a <collision> of its own");
     }
     if (tag.kind == XmlTag::Kind::kOpen) open.push_back(tag.name);
   }

@@ -19,8 +19,10 @@ std::vector<Vector2> seenAlongNormal(const std::vector<Vector3>& corners) {
   const int axis = size.x() > std::max(size.y(), size.z()) ? 0 : size.y() > size.z() ? 1 : 2;
   const bool is_behind = normal[axis] < 0.0;
   std::vector<Vector2> seen;
-  for (const Vector3& p : corners)
+  seen.reserve(corners.size());
+  for (const Vector3& p : corners) {
     seen.emplace_back(p[(axis + (is_behind ? 2 : 1)) % 3], p[(axis + (is_behind ? 1 : 2)) % 3]);
+  }
   return seen;
 }
 
