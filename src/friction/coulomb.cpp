@@ -37,4 +37,20 @@ ContactAnswer solveCoulombContact(const Matrix3& W, const Vector3& q, const Coul
   return answer;
 }
 
+bool holdsMoreAtRest(const CoulombLaw& law) { return law.anisotropic != nullptr || law.mu_static > law.mu_kinetic; }
+
+ContactAnswer holdContact(const Matrix3& W, const Vector3& q, const CoulombLaw& law) {
+  ContactAnswer answer;
+  if (!(q[0] < 0.0)) return answer;
+  const Vector3 sticking = -(W.inverse() * q);
+  // What is torn off, or shut by friction alone, is left to the law of what slides.
+  if (!(sticking[0] > 0.0)) return solveCoulombContact(W, q, law, false);
+  const double use = frictionUse(law, sticking.tail<2>(), false);
+  if (use <= sticking[0]) return {sticking, ContactState::kStatic};
+  const Vector3 per_normal(1.0, sticking[1] / use, sticking[2] / use);
+  const double opens = W.row(0).dot(per_normal);
+  if (!(opens > 0.0)) return solveCoulombContact(W, q, law, false);
+  return {per_normal * (-q[0] / opens), ContactState::kKinetic};
+}
+
 }  // namespace tissue_contact

@@ -157,6 +157,7 @@ void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, doubl
     ContactRow& row = rows[c];
     placeRow(c, dt, row);
     row.was_sliding = before.state == ContactState::kKinetic;
+    row.was_static = before.state == ContactState::kStatic;
     const double speed_over_tissue = relativeVelocity(row, solution.v).tail<2>().norm();
     row.law = friction_.at(before.contact, x, motion_.startPoses(), beforeOf(before, x, last_dt, speed_over_tissue));
     u_besides_[c].setZero();

@@ -1,6 +1,6 @@
 /// @file
 /// Room `solver`, private: solves one contact, given its local operator and its velocity, and remembers what matters for
-/// that within a step: how often the contact has changed between sticking and sliding. Serves every iteration that goes
+/// that within a step: how often the contact has changed between sticking and sliding, and whether it is still held. Serves every iteration that goes
 /// from contact to contact: the method's, on J P^-1 J', and the baselines', on the Delassus matrix.
 #pragma once
 
@@ -28,10 +28,27 @@ class ContactCorrector {
   /// @param sliding tangential velocity of a contact in the warm start, m/s; asked for rivals only.
   void prepare(std::size_t contacts, const std::function<Vector2(std::size_t)>& sliding);
 
+  /// Contacts that have been static so far are held at the static limit (holdContact()) while others still move, each until it is released.
+  /// Where many hold one body the first that is visited would otherwise be offered the whole body's change, let go, and the others after it.
+  void hold(const ContactProblem& problem);
+
+  /// Releases those that are at the static limit; to be called once all else is solved.
+  /// @return there were such.
+  bool releaseOverloaded();
+
+  /// Releases all.
+  /// @return some were at the static limit.
+  bool releaseAll();
+
   /// Solves u = W r + q for one contact; q contains what closes the gap.
   /// @param before the contact's state so far.
   ContactAnswer solve(std::size_t contact, const Matrix3& W, const Vector3& q, const CoulombLaw& law, bool was_sliding,
                       ContactState before) {
+    if (held_[contact] != Held::kNo) {
+      const ContactAnswer answer = holdContact(W, q, law);
+      held_[contact] = answer.state == ContactState::kKinetic ? Held::kAtLimit : Held::kYes;
+      return answer;
+    }
     unsigned char& flips = flips_[contact];
     const bool kinetic_limit = was_sliding || flips > kMaxFlips;
     ContactAnswer answer = rival_ ? rival_(W, q, law, kinetic_limit, previous_sliding_[contact])
@@ -54,8 +71,11 @@ class ContactCorrector {
   /// tissue is far from solved contacts change for other reasons, and a grip that is held to the kinetic limit for them slips.
   static constexpr int kMaxFlips = 24;
 
+  enum class Held : unsigned char { kNo, kYes, kAtLimit };
+
   ContactRival rival_;
   std::vector<unsigned char> flips_;       ///< per contact, this step
+  std::vector<Held> held_;                 ///< per contact
   std::vector<Vector2> previous_sliding_;  ///< per contact, m/s; for rivals only
 };
 

@@ -197,6 +197,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
   corrector_.prepare(problem.contacts.size(), [&](std::size_t c) -> Vector2 {
     return slidingVelocity(problem.contacts[c], solution.v, solution.impulses[c]);
   });
+  corrector_.hold(problem);
   SolverReport report;
   first_change_ = std::numeric_limits<double>::infinity();
   for (bool stop = false; !stop;) {
@@ -205,7 +206,14 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
     ++report.iterations;
     const double until = report.iterations >= kLeastBeforePrompt ? std::min(hard_s, prompt_s_) : hard_s;
     stop = true;
-    if (had_settled && balanced(problem, met, solution)) {
+    const bool solved = had_settled && balanced(problem, met, solution);
+    bool released = false;
+    if (2 * report.iterations >= options_.iterations) {
+      released = corrector_.releaseAll();
+    } else if (solved) {
+      released = corrector_.releaseOverloaded();
+    }
+    if (solved && !released) {
       report.stop = StopReason::kTolerance;
     } else if (report.iterations >= options_.iterations) {
       report.stop = StopReason::kIterations;
@@ -217,6 +225,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
       relaxation_->foresee(forecast_.iterationsLeft());
     }
   }
+  if (corrector_.releaseAll()) pass(problem, solution);  // cut short: what slides has kinetic friction all the same
   relaxation_->finish(problem, solution);
   return report;
 }

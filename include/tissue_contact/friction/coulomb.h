@@ -40,4 +40,12 @@ struct ContactAnswer {
 /// @param q velocity without this contact's impulse, m/s, with the gap's share gap/dt added to its normal component.
 ContactAnswer solveCoulombContact(const Matrix3& W, const Vector3& q, const CoulombLaw& law, bool was_sliding);
 
+/// Whether static friction holds more than kinetic friction anywhere.
+bool holdsMoreAtRest(const CoulombLaw& law);
+
+/// A contact that static friction holds as far as it can, for the time in which an iteration does not know yet whether that is enough: the
+/// sticking impulse, or of its direction as much as the static limit allows (state kKinetic), with u_n = 0. No answer of a step: what slides
+/// has kinetic friction. W, q and law as for solveCoulombContact().
+ContactAnswer holdContact(const Matrix3& W, const Vector3& q, const CoulombLaw& law);
+
 }  // namespace tissue_contact

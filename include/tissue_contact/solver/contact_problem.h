@@ -66,6 +66,7 @@ struct ContactRow {
   Vector3 u_tool = Vector3::Zero();
   CoulombLaw law;
   bool was_sliding = false;  ///< it was kinetic at the end of the previous step
+  bool was_static = false;   ///< it was static at the end of the previous step
   /// The contact pair, by what touches the nodes: an instrument, or -1 - a tissue. Answers do not depend on it, but steps go on
   /// until the forces of each are known.
   int pair = 0;

@@ -6,6 +6,8 @@
 #include <Eigen/Eigenvalues>
 #include <random>
 
+#include "tissue_contact/friction/friction_law.h"
+
 namespace tissue_contact {
 namespace coulomb_test {
 
@@ -102,6 +104,51 @@ TEST(SolveCoulombContact, HardContactsAreSolvedAsWell) {
     ASSERT_LE((r.tail<2>() * u_t.norm() + mu * r[0] * u_t).norm(), 1e-14 * jammed_scale * r.norm());
   }
   EXPECT_GT(slid, 5000);
+}
+
+TEST(HoldContact, GivesAllThatStaticFrictionCan) {
+  FrictionLawDescription description;
+  description.kind = FrictionLawDescription::Kind::kAsymmetric;
+  description.static_coefficients = {0.6, 0.9, 0.4};
+  description.kinetic_coefficients = {0.3, 0.5, 0.2};
+  const auto asymmetric = makeAnisotropicFriction(description);
+  CoulombLaw along;
+  along.anisotropic = asymmetric.get();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int held = 0;
+  int at_limit = 0;
+  for (int sample = 0; sample < 4000; ++sample) {
+    const CoulombLaw law = sample % 2 == 0 ? CoulombLaw{0.6, 0.3} : along;
+    const Matrix3 W = randomCompliance(random, 0.3);
+    const Vector3 q(-std::abs(uniform(random)), 2.0 * uniform(random), 2.0 * uniform(random));
+    const Vector3 sticking = -(W.inverse() * q);
+    if (!(sticking[0] > 0.0)) continue;
+    const ContactAnswer answer = holdContact(W, q, law);
+    const Vector3& r = answer.impulse;
+    if (answer.state == ContactState::kStatic) {
+      ++held;
+      ASSERT_EQ(r, sticking);
+      ASSERT_LE(frictionUse(law, r.tail<2>(), false), r[0]);
+    } else if (W(0, 0) > W.row(0).tail<2>().norm()) {  // else friction may hold it shut
+      ++at_limit;
+      ASSERT_NEAR(frictionUse(law, r.tail<2>(), false), r[0], 10.0 * kRoundOff * r.norm());
+      ASSERT_NEAR(r.tail<2>().normalized().dot(sticking.tail<2>().normalized()), 1.0, kRoundOff);
+      ASSERT_NEAR(W.row(0).dot(r) + q[0], 0.0, 10.0 * kRoundOff * W.norm() * r.norm());
+    }
+  }
+  EXPECT_GT(held, 500);
+  EXPECT_GT(at_limit, 500);
+}
+
+// An impulse that would have to pull: the law of what slides has the last word. Nor is there anything to hold apart.
+TEST(HoldContact, LeavesToTheLawWhatItCannotHold) {
+  Matrix3 W = Matrix3::Identity();
+  W(0, 1) = W(1, 0) = 0.9;
+  const Vector3 torn(-0.1, -1.0, 0.0);
+  ASSERT_LT(-(W.inverse() * torn)[0], 0.0);
+  EXPECT_EQ(holdContact(W, torn, {0.6, 0.3}).impulse, solveCoulombContact(W, torn, {0.6, 0.3}, false).impulse);
+  EXPECT_EQ(holdContact(W, Vector3(0.1, 1.0, 0.0), {0.6, 0.3}).state, ContactState::kOpen);
 }
 
 }  // namespace coulomb_test

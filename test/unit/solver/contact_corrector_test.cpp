@@ -37,6 +37,49 @@ TEST(ContactCorrector, AContactThatWasSlidingHasTheKineticLimit) {
   EXPECT_EQ(corrector.solve(0, kW, q, {0.5, 0.3}, true, ContactState::kOpen).state, ContactState::kKinetic);
 }
 
+/// One contact that was static, with the friction of kLaw.
+ContactProblem staticContact() {
+  ContactProblem problem;
+  problem.contacts.emplace_back();
+  problem.contacts[0].was_static = true;
+  problem.contacts[0].law = {0.5, 0.3};
+  return problem;
+}
+
+TEST(ContactCorrector, AContactThatWasStaticHasTheStaticLimitUntilItIsReleased) {
+  ContactCorrector corrector;
+  const ContactProblem problem = staticContact();
+  const Vector3 within(-1.0, 0.4, 0.0);
+  const Vector3 beyond(-1.0, 0.8, 0.0);
+  const auto frictionOf = [&](const Vector3& q) {
+    const Vector3 r = corrector.solve(0, kW, q, problem.contacts[0].law, false, ContactState::kStatic).impulse;
+    return -r[1] / r[0];
+  };
+  corrector.prepare(1, [](std::size_t) { return kNoSliding; });
+  corrector.hold(problem);
+  for (int visit = 0; visit < 100; ++visit) {
+    EXPECT_DOUBLE_EQ(frictionOf(within), 0.4);
+    EXPECT_DOUBLE_EQ(frictionOf(beyond), 0.5);
+  }
+  EXPECT_DOUBLE_EQ(frictionOf(within), 0.4);
+  EXPECT_FALSE(corrector.releaseOverloaded());  // it is held again
+  EXPECT_DOUBLE_EQ(frictionOf(beyond), 0.5);
+  EXPECT_TRUE(corrector.releaseOverloaded());
+  EXPECT_DOUBLE_EQ(frictionOf(beyond), 0.3);
+  EXPECT_FALSE(corrector.releaseOverloaded());
+}
+
+TEST(ContactCorrector, AllAreReleasedWithinTheLimitAsWell) {
+  ContactCorrector corrector;
+  const ContactProblem problem = staticContact();
+  corrector.prepare(1, [](std::size_t) { return kNoSliding; });
+  corrector.hold(problem);
+  EXPECT_FALSE(corrector.releaseAll());  // none was beyond it
+  const Vector3 beyond(-1.0, 0.8, 0.0);
+  const Vector3 r = corrector.solve(0, kW, beyond, problem.contacts[0].law, false, ContactState::kStatic).impulse;
+  EXPECT_DOUBLE_EQ(-r[1] / r[0], 0.3);
+}
+
 TEST(ContactCorrector, ARivalIsToldHowTheContactSlidBefore) {
   Vector2 told = kNoSliding;
   ContactCorrector corrector([&](const Matrix3&, const Vector3&, const CoulombLaw&, bool, const Vector2& previous) {
