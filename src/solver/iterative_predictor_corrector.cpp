@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "solver/residual_measures.h"
+#include "solver/rigid_prediction.h"
 
 namespace tissue_contact {
 namespace {
@@ -191,6 +192,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
   const double hard_s =
       options_.time_budget_s > 0.0 ? std::min(deadline_s_, clock_() + options_.time_budget_s) : deadline_s_;
   load_scale_ = changeScale(problem);
+  predictRigidMotions(problem, solution);
   relaxation_->prepare(problem, solution);
   momentum_.prepare(problem);
   forecast_.begin();

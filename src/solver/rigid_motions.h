@@ -21,6 +21,11 @@ namespace tissue_contact {
 /// Nodes that contacts may move have no part in it (Deflation): the rest of the part moves beside them.
 class RigidMotions {
  public:
+  using Rows = Eigen::Matrix<double, 3, 6>;
+
+  /// Velocity at `arm` from the middle of what moves, of three shifts and three turns.
+  static Rows motionsOf(const Vector3& arm);
+
   /// Of a step. Allocates only for more parts, or larger ones in their places, than before.
   /// @param body with stiff parts; stays until the next begin() or none().
   /// @param excluded nodes that contacts may move, ascending.
@@ -60,7 +65,6 @@ class RigidMotions {
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  using Rows = Eigen::Matrix<double, 3, 6>;
 
   struct Member {
     int node;
@@ -86,7 +90,6 @@ class RigidMotions {
   static Vector3 velocityOf(const Vector6& motion, const Vector3& arm) {
     return motion.head<3>() + motion.tail<3>().cross(arm);
   }
-  static Rows motionsOf(const Vector3& arm);
   /// Z' of a vector (N s) at a member.
   static Vector6 along(const Vector3& arm, const Vector3& vector);
 

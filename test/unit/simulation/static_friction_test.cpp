@@ -39,7 +39,8 @@ LetGo pull(Simulator simulator, double kinetic) {
   LetGo found;
   simulator.advance(0.1, {Vector3::Zero()});
   for (int k = 1; k <= 70 && !found.slides; ++k) {
-    simulator.advance(kStep, {Vector3(0.01 * kStep * k, 0.0, 0.0)});
+    const double t = kStep * k;
+    simulator.advance(kStep, {Vector3(0.01 * (t < 0.1 ? 5.0 * t * t : t - 0.05), 0.0, 0.0)});
     Vector3 sum = Vector3::Zero();
     found.slides = true;
     for (const SolvedContact& solved : simulator.contacts()) {
@@ -56,7 +57,8 @@ LetGo pull(Simulator simulator, double kinetic) {
   return found;
 }
 
-// In steps of 10 ms all 25 contacts let go while the most loaded one had .470 of its normal force; 49 at .404.
+// A plate that sets off at .1 m/s^2, for which a hundredth of the weight is enough, left the block behind: sweeps pass on where it goes by too
+// little. Where they began with its motion all 25 contacts let go while the most loaded one had .530 of its normal force.
 TEST(StaticFriction, ManyContactsHoldAsMuchAsOne) {
   for (const int cells : {2, 4, 6}) {
     const LetGo found = pull(blockOnPlate(cells, "static: 0.6, kinetic: 0.3"), 0.3);
@@ -68,8 +70,9 @@ TEST(StaticFriction, ManyContactsHoldAsMuchAsOne) {
 }
 
 TEST(StaticFriction, SoDoLawsThatHaveADirection) {
-  const std::string laws[] = {"law: orthotropic, static: [0.6, 0.5], kinetic: [0.3, 0.25], axis: [1, 0, 0]",
-                              "law: asymmetric, static: [0.6, 0.6, 0.5], kinetic: [0.3, 0.3, 0.25], axis: [1, 0, 0]"};
+  const std::string laws[] = {
+      "law: orthotropic, static: [0.6, 0.5], kinetic: [0.3, 0.25], axis: {link_direction: [1, 0, 0]}",
+      "law: asymmetric, static: [0.6, 0.6, 0.5], kinetic: [0.3, 0.3, 0.25], axis: {link_direction: [1, 0, 0]}"};
   for (const std::string& law : laws) {
     const LetGo found = pull(blockOnPlate(4, law), 0.3);
     EXPECT_GT(found.worst, 0.57) << law;
