@@ -20,7 +20,7 @@ class DelassusSystem {
   /// @throws std::invalid_argument for more than kMostDenseContacts.
   explicit DelassusSystem(const ContactProblem& contacts);
 
-  const DelassusProblem& problem() const { return problem_; }
+  DelassusProblem& problem() { return problem_; }
 
   /// v = A^-1 (b + J' r) per body, m/s; 0 at fixed nodes.
   /// @param r 3n, N s.

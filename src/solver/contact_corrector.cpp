@@ -1,12 +1,9 @@
 #include "solver/contact_corrector.h"
 
-#include <algorithm>
-
 namespace tissue_contact {
 
 void ContactCorrector::prepare(std::size_t contacts, const std::function<Vector2(std::size_t)>& sliding) {
-  flips_.assign(contacts, 0);
-  held_.assign(contacts, Held::kNo);
+  past_.assign(contacts, Past());
   if (!rival_) return;
   previous_sliding_.resize(contacts);
   for (std::size_t c = 0; c < contacts; ++c) previous_sliding_[c] = sliding(c);
@@ -14,21 +11,25 @@ void ContactCorrector::prepare(std::size_t contacts, const std::function<Vector2
 
 void ContactCorrector::hold(const ContactProblem& problem) {
   if (rival_) return;
-  for (std::size_t c = 0; c < held_.size(); ++c) {
+  for (std::size_t c = 0; c < past_.size(); ++c) {
     const ContactRow& row = problem.contacts[c];
-    if (row.was_static && holdsMoreAtRest(row.law)) held_[c] = Held::kYes;
+    if (row.was_static && holdsMoreAtRest(row.law)) past_[c].held = Held::kYes;
   }
 }
 
 bool ContactCorrector::releaseOverloaded() {
-  const bool some = std::find(held_.begin(), held_.end(), Held::kAtLimit) != held_.end();
-  std::replace(held_.begin(), held_.end(), Held::kAtLimit, Held::kNo);
+  bool some = false;
+  for (Past& past : past_) {
+    if (past.held != Held::kAtLimit) continue;
+    past.held = Held::kNo;
+    some = true;
+  }
   return some;
 }
 
 bool ContactCorrector::releaseAll() {
   const bool some = releaseOverloaded();
-  std::fill(held_.begin(), held_.end(), Held::kNo);
+  for (Past& past : past_) past.held = Held::kNo;
   return some;
 }
 

@@ -44,12 +44,13 @@ class ContactCorrector {
   /// @param before the contact's state so far.
   ContactAnswer solve(std::size_t contact, const Matrix3& W, const Vector3& q, const CoulombLaw& law, bool was_sliding,
                       ContactState before) {
-    if (held_[contact] != Held::kNo) {
+    Past& past = past_[contact];
+    if (past.held != Held::kNo) {
       const ContactAnswer answer = holdContact(W, q, law);
-      held_[contact] = answer.state == ContactState::kKinetic ? Held::kAtLimit : Held::kYes;
+      past.held = answer.state == ContactState::kKinetic ? Held::kAtLimit : Held::kYes;
       return answer;
     }
-    unsigned char& flips = flips_[contact];
+    unsigned char& flips = past.flips;
     const bool kinetic_limit = was_sliding || flips > kMaxFlips;
     ContactAnswer answer = rival_ ? rival_(W, q, law, kinetic_limit, previous_sliding_[contact])
                                   : solveCoulombContact(W, q, law, kinetic_limit);
@@ -73,9 +74,13 @@ class ContactCorrector {
 
   enum class Held : unsigned char { kNo, kYes, kAtLimit };
 
+  struct Past {
+    unsigned char flips = 0;
+    Held held = Held::kNo;
+  };
+
   ContactRival rival_;
-  std::vector<unsigned char> flips_;       ///< per contact, this step
-  std::vector<Held> held_;                 ///< per contact
+  std::vector<Past> past_;                 ///< per contact, this step
   std::vector<Vector2> previous_sliding_;  ///< per contact, m/s; for rivals only
 };
 

@@ -202,6 +202,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
   corrector_.hold(problem);
   SolverReport report;
   first_change_ = std::numeric_limits<double>::infinity();
+  bool released = false;
   for (bool stop = false; !stop;) {
     const MomentumDefect& met = relaxation_->relax(problem, report.iterations, corrector_, solution);
     const bool had_settled = correctContacts(problem, solution);
@@ -209,11 +210,10 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
     const double until = report.iterations >= kLeastBeforePrompt ? std::min(hard_s, prompt_s_) : hard_s;
     stop = true;
     const bool solved = had_settled && balanced(problem, met, solution);
-    bool released = false;
     if (2 * report.iterations >= options_.iterations) {
       released = corrector_.releaseAll();
-    } else if (solved) {
-      released = corrector_.releaseOverloaded();
+    } else {
+      released = solved && corrector_.releaseOverloaded();
     }
     if (solved && !released) {
       report.stop = StopReason::kTolerance;
@@ -227,7 +227,8 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
       relaxation_->foresee(forecast_.iterationsLeft());
     }
   }
-  if (corrector_.releaseAll()) pass(problem, solution);  // cut short: what slides has kinetic friction all the same
+  // Cut short: what slides has kinetic friction all the same.
+  if (corrector_.releaseAll() || released) pass(problem, solution);
   relaxation_->finish(problem, solution);
   return report;
 }
