@@ -107,10 +107,11 @@ CompliantJoints::CompliantJoints(const std::vector<Instrument>& instruments, con
 }
 
 /// Effort of the contacts on a joint, and the nodes that they move with it.
-double CompliantJoints::effortOn(Joint& joint, const ContactProblem& problem, const ContactSolution& solution,
-                                 const std::vector<SolvedContact>& contacts, const std::vector<Pose>& X_WL) {
+void CompliantJoints::findEffort(Joint& joint, const ContactProblem& problem, const ContactSolution& solution,
+                                 const std::vector<SolvedContact>& contacts, const std::vector<Pose>& X_WL,
+                                 InstrumentMotion::JointLoad& load) {
   const Instrument& instrument = instruments_[joint.instrument];
-  double effort = 0.0;
+  load.effort = load.friction = 0.0;
   bool touches = false;
   joint.moved.clear();
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
@@ -121,14 +122,16 @@ double CompliantJoints::effortOn(Joint& joint, const ContactProblem& problem, co
     const Vector3 way = pointWay(instrument.model(), X_WL, link, joint.compliance.joint, p_W);
     if (way.isZero(0.0)) continue;
     touches = touches || !solution.impulses[c].isZero(0.0);
-    effort -= way.dot(contacts[c].force_on_tissue_n);
+    const Vector3& force_n = contacts[c].force_on_tissue_n;
+    load.effort -= way.dot(force_n);
     // What slides, or is only near, resists along its normal alone.
     const Vector3 n = problem.contacts[c].R_WC.col(0);
-    const Vector3 resisted = solution.states[c] == ContactState::kStatic ? way : n * n.dot(way);
+    const bool held = solution.states[c] == ContactState::kStatic;
+    const Vector3 resisted = held ? way : n * n.dot(way);
+    if (!held) load.friction -= way.dot(force_n - n * n.dot(force_n));
     addMoved(problem, problem.contacts[c], {contact.key.link, 0, 0, static_cast<int>(c), resisted, 0.0}, joint.moved);
   }
   if (!touches) joint.moved.clear();  // what is only near does not hold it up
-  return effort;
 }
 
 /// What contacts add to the effort on a joint, backwards, for each rad or m that it moves in a step of the problem's length: the sum over the
@@ -217,7 +220,7 @@ void CompliantJoints::load(const ContactProblem& problem, const ContactSolution&
   for (Joint& joint : joints_) {
     InstrumentMotion::JointLoad load = motion.load(joint.instrument, joint.compliance.joint);
     load.effort_before = load.effort;
-    load.effort = effortOn(joint, problem, solution, contacts, motion.startPoses()[joint.instrument]);
+    findEffort(joint, problem, solution, contacts, motion.startPoses()[joint.instrument], load);
     load.stiffness = resistance(joint, problem, solution);
     load.step_s = problem.dt_s;
     motion.setLoad(joint.instrument, joint.compliance.joint, load);
@@ -245,7 +248,14 @@ void CompliantJoints::give(double dt, InstrumentMotion& motion) const {
       const double stays = delta - moved;  // where it would be, had it not moved with its joint state
       const double most = joint.longest_way + std::abs(moved);
       const double effort = 0.5 * (load.effort + load.effort_before);
-      next = restOf(joint.compliance, stays, effort, load.caution * load.stiffness * shorter * shorter);
+      const double resists = load.caution * load.stiffness * shorter * shorter;
+      next = restOf(joint.compliance, stays, effort, resists);
+      // Friction opposes sliding. A way against that is made only where friction turned round cannot hold the joint either.
+      const bool turns_back = (next - stays) * load.friction > 0.0;
+      if (turns_back) {
+        const double turned = restOf(joint.compliance, stays, effort - 2.0 * load.friction, resists);
+        next = (turned - stays) * load.friction > 0.0 ? turned : stays;
+      }
       if (next * effort < 0.0) next = 0.0;  // what pushes the other way holds no joint back from its joint state
       next = std::clamp(next, stays - most, stays + most);
       const double way = next - stays;

@@ -59,8 +59,9 @@ class CompliantJoints {
     Vector3 normal_W;  ///< into the sheet
   };
   static bool beforeNode(const PressedSide& one, const PressedSide& other);
-  double effortOn(Joint& joint, const ContactProblem& problem, const ContactSolution& solution,
-                  const std::vector<SolvedContact>& contacts, const std::vector<Pose>& X_WL);
+  void findEffort(Joint& joint, const ContactProblem& problem, const ContactSolution& solution,
+                  const std::vector<SolvedContact>& contacts, const std::vector<Pose>& X_WL,
+                  InstrumentMotion::JointLoad& load);
   double resistance(Joint& joint, const ContactProblem& problem, const ContactSolution& solution);
   void findPressed(const ContactProblem& problem, const ContactSolution& solution);
   bool isPressedBehind(const ContactProblem& problem, const Moved& one) const;

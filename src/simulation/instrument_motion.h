@@ -39,6 +39,7 @@ class InstrumentMotion {
   struct JointLoad {
     double effort = 0.0;         ///< N m or N, along the joint
     double effort_before = 0.0;  ///< of the step before
+    double friction = 0.0;       ///< of `effort`: of contacts that slide, against how they do
     double stiffness = 0.0;      ///< what they take off it for each rad or m in that step; 0: nothing touches
     double step_s = 0.0;         ///< its length
     double way = 0.0;            ///< that the joint gave way in it, rad or m

@@ -270,7 +270,7 @@ void JointStatePlayer::play(const Moment& moment, PlayedSample& played) {
   for (std::size_t t = 0; t < topic_states_.size(); ++t) take(moment, static_cast<int>(t), played);
   goToSamples(moment);
   for (const Topic& topic : topic_states_) headForNext(moment, topic);
-  placeNewJoints();
+  placeNewJoints(played);
   advanceTo(moment.stamp_ns, played);
   settle(played);
 }

@@ -87,8 +87,8 @@ Verdict JointStatePlayer::judgeJoints(const JointStateSample& sample, const Topi
       any_known = true;
       if (!isJointPosition(sample.positions[k])) {
         std::ostringstream text;
-        text << "position of joint '" << printable(sample.names[k]) << "' is " << sample.positions[k]
-             << "; it must be " << kJointPositionRange;
+        text << "position of joint '" << printable(sample.names[k]) << "' is " << sample.positions[k] << "; it must be "
+             << kJointPositionRange;
         detail = text.str();
         return Verdict::kNotFinite;
       }

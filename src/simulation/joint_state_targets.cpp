@@ -2,6 +2,7 @@
 /// Room `simulation`: where JointStatePlayer has the joints at a moment.
 #include <algorithm>
 #include <cstdint>
+#include <sstream>
 #include <utility>
 
 #include "tissue_contact/simulation/joint_state_player.h"
@@ -159,17 +160,26 @@ std::optional<double> JointStatePlayer::idle_s(int topic) const {
   return secondsBetween(*own.taken_at_ns, *time_ns_);
 }
 
-void JointStatePlayer::placeNewJoints() {
+void JointStatePlayer::placeNewJoints(PlayedSample& played) {
+  std::ostringstream late;
   for (std::size_t i = 0; i < heard_.size(); ++i) {
     if (std::find(heard_[i].begin(), heard_[i].end(), Heard::kNow) == heard_[i].end()) continue;
+    const Instrument& instrument = simulator_.instruments()[i];
     VectorX placed = simulator_.jointPositions(static_cast<int>(i));
     for (std::size_t k = 0; k < heard_[i].size(); ++k) {
       if (heard_[i][k] != Heard::kNow) continue;
-      placed[static_cast<Eigen::Index>(k)] = targets_[i][static_cast<Eigen::Index>(k)];
+      const double target = targets_[i][static_cast<Eigen::Index>(k)];
+      const double stood = std::exchange(placed[static_cast<Eigen::Index>(k)], target);
+      if (time_ns_ && stood != target) {
+        late << "joint '" << instrument.model().joints()[k].name << "' of '" << instrument.name()
+             << "' is heard for the first time and goes from " << stood << " to " << target
+             << " at once, through what is between; ";
+      }
       heard_[i][k] = Heard::kBefore;
     }
     simulator_.placeInstrument(static_cast<int>(i), placed);
   }
+  if (late.tellp() > 0) played.placed = late.str() + "initial_joint_positions in the scene say where joints begin";
 }
 
 }  // namespace tissue_contact

@@ -97,6 +97,8 @@ class StepContacts {
     double first_touch = 1.0;  ///< share of the step that is over then
   };
   void placeRow(std::size_t contact, double dt, ContactRow& row) const;
+  Vector3 turningOf(const Contact& contact, const std::vector<NodalVectors>& x,
+                    const std::vector<NodalVectors>& v) const;
   ContactBefore beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x, double last_dt,
                          double speed_over_tissue) const;
   void land(const std::vector<NodalVectors>& v, double dt, std::vector<ContactRow>& rows);

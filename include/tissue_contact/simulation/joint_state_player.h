@@ -43,11 +43,13 @@ const char* verdictText(Verdict verdict);
 /// A moment that was played, or one sample that was refused.
 struct PlayedSample {
   Verdict verdict = Verdict::kAccepted;
-  int topic = -1;                ///< of the refused sample; of a moment: the first topic that triggered it
-  std::int64_t stamp_ns = 0;     ///< of the refused sample; of a moment: where the simulator is now
-  std::string detail;            ///< names the joint and value for a refused sample; empty if accepted
-  bool was_reset = false;        ///< time went backwards (bag loop): the scene was reset before this moment
-  bool was_resumed = false;      ///< time went on where it was before a stamp far off, without a reset
+  int topic = -1;             ///< of the refused sample; of a moment: the first topic that triggered it
+  std::int64_t stamp_ns = 0;  ///< of the refused sample; of a moment: where the simulator is now
+  std::string detail;         ///< names the joint and value for a refused sample; empty if accepted
+  bool was_reset = false;     ///< time went backwards (bag loop): the scene was reset before this moment
+  bool was_resumed = false;   ///< time went on where it was before a stamp far off, without a reset
+  std::string
+      placed;  ///< which joints were heard for the first time after the run had begun, and so placed; empty: none
   bool was_gap = false;          ///< the interval was longer than max_gap_s and was simulated as that long
   bool interrupted = false;      ///< AdvanceLimits ended it before the samples' stamp: it owes no wrench
   int accepted = 0;              ///< samples of this moment, those of topics that only update included
@@ -262,7 +264,7 @@ class JointStatePlayer {
   void goToSamples(const Moment& moment);
   static bool isSqueezed(std::int64_t own_ns, std::int64_t left_ns);
   void headForNext(const Moment& moment, const Topic& topic);
-  void placeNewJoints();
+  void placeNewJoints(PlayedSample& played);
   void carry(StateArchive& archive);
   void forgetSamples();
   void startLoop();

@@ -11,6 +11,22 @@ double longestEdge(const MovingSurface& surface, const SurfacePoint& point) {
   return longest;
 }
 
+/// The point among the corners of a triangle that its feature is of, for whoever asks how a sheet turns there.
+SurfacePoint inTriangle(const MovingSurface& surface, const SurfaceFeature& feature, const SurfacePoint& point) {
+  if (surface.halfThickness() == 0.0) return point;
+  SurfacePoint among{point.nodes, Vector3::Zero()};
+  surface.anyTriangleOf(feature, [&](int first) {
+    among.nodes = surface.triangles()[first];
+    return true;
+  });
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (among.nodes[i] == point.nodes[k]) among.weights[i] += point.weights[k];
+    }
+  }
+  return among;
+}
+
 }  // namespace
 
 bool SurfacePair::nearAtRest(const SurfacePoint& on_own, const SurfacePoint& on_other) const {
@@ -29,10 +45,12 @@ void SurfacePair::add(const SurfaceFeature& own_feature, const SurfacePoint& on_
   contact.key.feature = own_feature;
   contact.key.other_tissue = other.tissue();
   contact.key.other_feature = other_feature;
-  contact.nodes = on_own.nodes;
-  contact.weights = on_own.weights;
-  contact.other_nodes = on_other.nodes;
-  contact.other_weights = on_other.weights;
+  const SurfacePoint own_point = inTriangle(own, own_feature, on_own);
+  const SurfacePoint other_point = inTriangle(other, other_feature, on_other);
+  contact.nodes = own_point.nodes;
+  contact.weights = own_point.weights;
+  contact.other_nodes = other_point.nodes;
+  contact.other_weights = other_point.weights;
   contact.p_WC = on_own.in(own.positions());
   contact.R_WC = contactFrame(n);
   contact.gap_m = distance - apart();

@@ -43,6 +43,16 @@ void requireJointStates(const BagReader& bag, const BagConnection& connection) {
 
 }  // namespace
 
+std::string nothingPlayed(const std::string& file, const std::string& first_refusal) {
+  if (!first_refusal.empty()) {
+    return "no joint state of bag '" + file + "' was accepted; the first was refused: " + first_refusal;
+  }
+  return "no joint state of bag '" + file +
+         "' was played: its topics only update joints at the moments of others, of which it has none; in the scene, "
+         "give one of them "
+         "'triggers: true' (joint_state_topics), or record the others too";
+}
+
 std::string joinedNames(const std::set<std::string>& names) {
   constexpr std::size_t kMost = 100;  // robots record some fifty topics
   return names.empty() ? "none" : listOf({names.begin(), names.end()}, kMost);

@@ -55,6 +55,9 @@ class JointStateBag {
   std::set<std::string> missing_;
 };
 
+/// Why nothing of a bag was played. @param first_refusal empty: none of its joint states was refused.
+std::string nothingPlayed(const std::string& file, const std::string& first_refusal);
+
 /// "a, b", or "none".
 std::string joinedNames(const std::set<std::string>& names);
 

@@ -104,6 +104,7 @@ void Health::warn(const PlayedSample& played, int steps) {
     ROS_WARN_STREAM("a stamp far off was followed on " << topic << ", which now goes on where it was, at "
                                                        << toTime(played.stamp_ns) << " s: so does the simulation");
   }
+  if (!played.placed.empty() && placed_.pass()) ROS_WARN_STREAM(toTime(played.stamp_ns) << " s: " << played.placed);
   if (played.was_gap && gaps_.pass()) {
     ROS_WARN_STREAM("no joint state for more than max_gap_s before " << topic << " at " << toTime(played.stamp_ns)
                                                                      << " s: simulated as "

@@ -115,6 +115,7 @@ class Health {
   std::array<Throttle, kVerdictCount> refusals_;
   std::function<std::string(int topic)> publishers_;
   Throttle gaps_;
+  Throttle placed_{3};             // an arm and its jaw, of two
   Throttle resets_{3};             // short recordings in a loop
   Throttle contacts_at_first_{3};  // as resets
   Throttle resumptions_;

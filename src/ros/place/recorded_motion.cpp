@@ -50,8 +50,7 @@ void playMotion(const Scene& scene, const SceneEnvironment& environment, const s
   player.finish();
   playAll();
   if (player.count(Verdict::kAccepted) == 0) {
-    throw std::runtime_error("no joint state of bag '" + bag_file +
-                             "' was accepted; the first was refused: " + refusal);
+    throw std::runtime_error(nothingPlayed(bag_file, refusal));
   }
 }
 

@@ -151,8 +151,7 @@ class Replay {
     requireDumped();
     if (recorded_.isZero()) throw std::runtime_error("no joint state was recorded between --from and its --duration");
     if (player_.count(Verdict::kAccepted) == 0) {
-      throw std::runtime_error("no joint state of bag '" + options_.bag_file +
-                               "' was accepted; the first was refused: " + findings_.firstRefusal());
+      throw std::runtime_error(nothingPlayed(options_.bag_file, findings_.firstRefusal()));
     }
     if (table_) table_->finish();
     if (timing_) timing_->finish();

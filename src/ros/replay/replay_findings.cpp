@@ -22,6 +22,7 @@ void ReplayFindings::note(const PlayedSample& played, long steps) {
   if (played.verdict != Verdict::kAccepted && first_refusal_.empty()) {
     first_refusal_ = std::string(verdictText(played.verdict)) + ": " + played.detail;
   }
+  if (!played.placed.empty()) warn(played, played.placed);
   if (steps == 0) return;
   const StepReport& report = simulator_.report();
   jumps_ += static_cast<long>(report.jumped);

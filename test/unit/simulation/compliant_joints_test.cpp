@@ -268,5 +268,44 @@ TEST(CompliantJoints, AreNoneUnlessAsked) {
   EXPECT_EQ(simulator.jointDeflections(0).size(), 0);
 }
 
+/// A ball on stiff tissue, dragged at 5 mm/s along x; returns the largest of what `measure` makes of each step's force.
+template <class Measure>
+double mostInADrag(const std::string& youngs_modulus_pa, const std::string& compliance, const std::string& friction,
+                   double depth_m, const Measure& measure) {
+  std::string tissue = blockScene("[0.06, 0.03, 0.01]", "[6, 3, 1]", "poissons_ratio: 0.3");
+  tissue.replace(tissue.find("5000"), 4, youngs_modulus_pa);
+  std::string ball = onlyBall("[-0.01, 0, 0.0155]");
+  ball.insert(ball.rfind("}\n"), ", compliant_joints: " + compliance);
+  Simulator simulator = makeSimulator(tissue + ball + "friction: [{instrument: probe, tissue: block, " + friction +
+                                          "}]\nsolver: {iterations: 100, tolerance: 1.0e-5}\n",
+                                      {{"probe", probeUrdf(0.005)}});
+  press(simulator, -0.0005 - depth_m);
+  double most = 0.0;
+  for (int k = 1; k <= 800; ++k) {
+    simulator.advance(kStep, {Vector3(5e-6 * k, 0.0, -0.0005 - depth_m)});
+    most = std::max(most, measure(simulator.wrench(0).force));
+  }
+  return most;
+}
+
+// A joint along the way gave way by all of its spring's force at once where the ball slid, friction turned round, and the ball went deeper by
+// the square of its way: 7.2 N at .2 MPa where the joint that presses bears .1.
+TEST(CompliantJoints, PressNoHarderThanTheirLimitWhileFrictionDragsThem) {
+  for (const char* modulus : {"5.0e4", "2.0e5"}) {
+    const double most = mostInADrag(
+        modulus, "[{joint: x, stiffness_n_per_m: 200}, {joint: z, stiffness_n_per_m: 2000, force_limit_n: 0.1}]",
+        "static: 0.6, kinetic: 0.3", 0.0005, [](const Vector3& force) { return force.z(); });
+    EXPECT_LT(most, 0.2) << modulus;  // as it lets go, once
+    EXPECT_GT(most, 0.1) << modulus;
+  }
+}
+
+// One coefficient for both: friction is against the drag, always. It was up to .35 of the normal force along it.
+TEST(CompliantJoints, FrictionDoesNotTurnRoundInADrag) {
+  EXPECT_LT(mostInADrag("1.0e6", "[{joint: x, stiffness_n_per_m: 200}]", "static: 0.3", 1e-4,
+                        [](const Vector3& force) { return force.x() / force.z(); }),
+            0.02);
+}
+
 }  // namespace compliant_joints_test
 }  // namespace tissue_contact

@@ -270,5 +270,24 @@ TEST(JointStateMoments, NoOrderOfArrivalMattersWithinMaxGap) {
   }
 }
 
+// Nothing is known of its way there: a jaw that is heard late may throw what it should hold.
+TEST(JointStateMoments, AJointHeardOnceTheRunHasBegunIsToldOf) {
+  const auto simulator = armAndJaw();
+  JointStatePlayer player(*simulator);
+  std::vector<std::string> told;
+  for (int i = 0; i < 6; ++i) {
+    const std::int64_t stamp = kSecond + i * 10 * kMillisecond;
+    player.push(0, arm(stamp, 0.0));
+    if (i >= 3) player.push(1, jaw(stamp, -0.001));
+    player.stopWaiting();
+    while (const auto played = player.playNext()) {
+      if (!played->placed.empty()) told.push_back(played->placed);
+    }
+  }
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_NE(told[0].find("'z' of 'a' is heard for the first time and goes from 0 to -0.001 at once"), std::string::npos)
+      << told[0];
+}
+
 }  // namespace joint_state_moments_test
 }  // namespace tissue_contact
