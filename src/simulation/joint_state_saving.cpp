@@ -36,7 +36,7 @@ void JointStatePlayer::forgetSamples() {
   epoch_ = 0;
 }
 
-const char* JointStatePlayer::stateTitle() { return "tissue_contact state 8"; }
+const char* JointStatePlayer::stateTitle() { return "tissue_contact state 9"; }
 
 std::string JointStatePlayer::saveState() {
   StateArchive archive(stateTitle());

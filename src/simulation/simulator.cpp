@@ -17,7 +17,7 @@ namespace tissue_contact {
 namespace {
 
 /// With the version of what follows it.
-constexpr const char* kStateTitle = "tissue_contact simulation 8";
+constexpr const char* kStateTitle = "tissue_contact simulation 9";
 
 NodalVectors handOver(NodalVectors& values) {
   NodalVectors copy = values;

@@ -18,7 +18,9 @@
 /// Reconstructed choices (the source text stops before its method section):
 ///  - the corrector solves the one-contact problem exactly (solveCoulombContact) instead of taking one predictor step;
 ///  - hysteresis works from step to step; within a step a contact that keeps changing between static and kinetic is
-///    held to the kinetic limit (ContactCorrector), which ends cycles between two consistent solutions.
+///    held to the kinetic limit (ContactCorrector), which ends cycles between two consistent solutions;
+///  - contacts that were static are held at the static limit until all else is solved (ContactCorrector::hold), and what they carry begins
+///    with its instrument's motion (predictRigidMotions()).
 /// "Predictor-corrector" here has nothing to do with Incremental Potential Contact.
 #pragma once
 
