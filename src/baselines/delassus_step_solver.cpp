@@ -31,13 +31,13 @@ class DelassusStepSolver : public ContactSolver {
     SolverReport report;
     report.stop = StopReason::kTolerance;
     if (count > 0) {
-      if (description_.method == SolverMethod::kReference) holdStaticContacts(problem, system.problem().laws);
+      if (description_.method == SolverMethod::kReference) holdStaticContacts(problem, system.laws());
       do {
         const DelassusReport solved = solveDelassus(system.problem(), description_, answer);
         if (solved.overflowed) throw std::runtime_error("no finite answer");
         report.iterations += solved.iterations;
         report.stop = solved.converged ? StopReason::kTolerance : StopReason::kIterations;
-      } while (releaseOverloaded(problem, answer.states, system.problem().laws));
+      } while (release(problem, answer.states, report.stop != StopReason::kTolerance, system.laws()));
     }
     for (Eigen::Index c = 0; c < count; ++c) solution.impulses[c] = answer.r.segment<3>(3 * c);
     solution.states = answer.states;
@@ -45,23 +45,25 @@ class DelassusStepSolver : public ContactSolver {
     return report;
   }
 
-  // As the iterative predictor-corrector does (ContactCorrector::hold()): contacts that were static let go of what all others leave them only.
-  // Anisotropic laws have no such form.
+  /// As the iterative predictor-corrector does (ContactCorrector::hold()): contacts that were static have the static limit until the step is
+  /// solved with it, then those that slide have kinetic friction, and so on. Not with anisotropic laws.
   static void holdStaticContacts(const ContactProblem& problem, std::vector<CoulombLaw>& laws) {
     for (std::size_t c = 0; c < laws.size(); ++c) {
       if (problem.contacts[c].was_static) laws[c].mu_kinetic = laws[c].mu_static;
     }
   }
 
-  /// @return there were such.
-  static bool releaseOverloaded(const ContactProblem& problem, const std::vector<ContactState>& states,
-                                std::vector<CoulombLaw>& laws) {
+  /// Of what slides. @param all what does not as well: the step was not solved.
+  /// @return some slide that were held, so that the step is to be solved again.
+  static bool release(const ContactProblem& problem, const std::vector<ContactState>& states, bool all,
+                      std::vector<CoulombLaw>& laws) {
     bool some = false;
     for (std::size_t c = 0; c < laws.size(); ++c) {
       const double kinetic = problem.contacts[c].law.mu_kinetic;
-      if (states[c] != ContactState::kKinetic || laws[c].mu_kinetic == kinetic) continue;
-      laws[c].mu_kinetic = kinetic;
-      some = true;
+      if (laws[c].mu_kinetic == kinetic) continue;
+      const bool slides = states[c] == ContactState::kKinetic;
+      some = some || slides;
+      if (slides || all) laws[c].mu_kinetic = kinetic;
     }
     return some;
   }

@@ -20,7 +20,8 @@ class DelassusSystem {
   /// @throws std::invalid_argument for more than kMostDenseContacts.
   explicit DelassusSystem(const ContactProblem& contacts);
 
-  DelassusProblem& problem() { return problem_; }
+  const DelassusProblem& problem() const { return problem_; }
+  std::vector<CoulombLaw>& laws() { return problem_.laws; }
 
   /// v = A^-1 (b + J' r) per body, m/s; 0 at fixed nodes.
   /// @param r 3n, N s.

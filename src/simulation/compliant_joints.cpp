@@ -220,6 +220,7 @@ void CompliantJoints::load(const ContactProblem& problem, const ContactSolution&
   for (Joint& joint : joints_) {
     InstrumentMotion::JointLoad load = motion.load(joint.instrument, joint.compliance.joint);
     load.effort_before = load.effort;
+    load.friction_before = load.friction;
     findEffort(joint, problem, solution, contacts, motion.startPoses()[joint.instrument], load);
     load.stiffness = resistance(joint, problem, solution);
     load.step_s = problem.dt_s;
@@ -251,10 +252,10 @@ void CompliantJoints::give(double dt, InstrumentMotion& motion) const {
       const double resists = load.caution * load.stiffness * shorter * shorter;
       next = restOf(joint.compliance, stays, effort, resists);
       // Friction opposes sliding. A way against that is made only where friction turned round cannot hold the joint either.
-      const bool turns_back = (next - stays) * load.friction > 0.0;
-      if (turns_back) {
-        const double turned = restOf(joint.compliance, stays, effort - 2.0 * load.friction, resists);
-        next = (turned - stays) * load.friction > 0.0 ? turned : stays;
+      const double friction = 0.5 * (load.friction + load.friction_before);
+      if ((next - stays) * friction > 0.0) {
+        const double turned = restOf(joint.compliance, stays, effort - 2.0 * friction, resists);
+        next = (turned - stays) * friction > 0.0 ? turned : stays;
       }
       if (next * effort < 0.0) next = 0.0;  // what pushes the other way holds no joint back from its joint state
       next = std::clamp(next, stays - most, stays + most);

@@ -115,14 +115,16 @@ void InstrumentMotion::carry(int instrument, StateArchive& archive) {
     archive.carry(load.effort);
     archive.carry(load.effort_before);
     archive.carry(load.friction);
+    archive.carry(load.friction_before);
     archive.carry(load.stiffness);
     archive.carry(load.step_s);
     archive.carry(load.way);
     archive.carry(load.caution);
     archive.carry(load.least_caution);
     archive.check(std::isfinite(load.effort + load.effort_before) && std::isfinite(load.stiffness + load.step_s) &&
-                      std::isfinite(load.way + load.caution + load.friction) && load.stiffness >= 0.0 &&
-                      load.step_s >= 0.0 && load.caution > 0.0 && load.least_caution > 0.0 && load.least_caution <= 1.0,
+                      std::isfinite(load.way + load.caution + load.friction + load.friction_before) &&
+                      load.stiffness >= 0.0 && load.step_s >= 0.0 && load.caution > 0.0 && load.least_caution > 0.0 &&
+                      load.least_caution <= 1.0,
                   "an effort of a joint that is not finite");
   }
   if (!archive.isReading()) return;

@@ -37,14 +37,15 @@ class InstrumentMotion {
 
   /// What contacts did to a compliant joint in the step that was finished last.
   struct JointLoad {
-    double effort = 0.0;         ///< N m or N, along the joint
-    double effort_before = 0.0;  ///< of the step before
-    double friction = 0.0;       ///< of `effort`: of contacts that slide, against how they do
-    double stiffness = 0.0;      ///< what they take off it for each rad or m in that step; 0: nothing touches
-    double step_s = 0.0;         ///< its length
-    double way = 0.0;            ///< that the joint gave way in it, rad or m
-    double least_caution = 1.0;  ///< below which that may not be
-    double caution = 1.0;        ///< what `stiffness` is multiplied by, as the joint's way so far tells
+    double effort = 0.0;           ///< N m or N, along the joint
+    double effort_before = 0.0;    ///< of the step before
+    double friction = 0.0;         ///< of `effort`: of contacts that slide, against how they do
+    double friction_before = 0.0;  ///< of `effort_before`
+    double stiffness = 0.0;        ///< what they take off it for each rad or m in that step; 0: nothing touches
+    double step_s = 0.0;           ///< its length
+    double way = 0.0;              ///< that the joint gave way in it, rad or m
+    double least_caution = 1.0;    ///< below which that may not be
+    double caution = 1.0;          ///< what `stiffness` is multiplied by, as the joint's way so far tells
   };
   void setLoad(int instrument, int joint, const JointLoad& load) { states_[instrument].loads[joint] = load; }
   const JointLoad& load(int instrument, int joint) const { return states_[instrument].loads[joint]; }

@@ -270,7 +270,7 @@ void JointStatePlayer::play(const Moment& moment, PlayedSample& played) {
   for (std::size_t t = 0; t < topic_states_.size(); ++t) take(moment, static_cast<int>(t), played);
   goToSamples(moment);
   for (const Topic& topic : topic_states_) headForNext(moment, topic);
-  placeNewJoints(played);
+  placeNewJoints(moment.stamp_ns, played);
   advanceTo(moment.stamp_ns, played);
   settle(played);
 }
@@ -301,6 +301,7 @@ void JointStatePlayer::resume(const Moment& moment) {
 }
 
 void JointStatePlayer::forgetJoints() {
+  begun_ns_.reset();
   targets_.clear();
   heard_.clear();
   said_.clear();

@@ -13,6 +13,9 @@ namespace {
 /// Of drivers slower than 5 Hz, and of those that speak only when something moves, nobody knows how they came there.
 constexpr std::int64_t kLongestWay_ns = 200'000'000;
 
+/// After the first moment: drivers of one robot that start later than that are told of.
+constexpr std::int64_t kLongestStart_ns = 200'000'000;
+
 double secondsBetween(std::int64_t from_ns, std::int64_t to_ns) { return 1e-9 * static_cast<double>(to_ns - from_ns); }
 
 }  // namespace
@@ -160,26 +163,28 @@ std::optional<double> JointStatePlayer::idle_s(int topic) const {
   return secondsBetween(*own.taken_at_ns, *time_ns_);
 }
 
-void JointStatePlayer::placeNewJoints(PlayedSample& played) {
-  std::ostringstream late;
+void JointStatePlayer::placeNewJoints(std::int64_t stamp_ns, PlayedSample& played) {
+  if (!begun_ns_) begun_ns_ = stamp_ns;
+  const bool is_late = stamp_ns - *begun_ns_ > kLongestStart_ns;
   for (std::size_t i = 0; i < heard_.size(); ++i) {
     if (std::find(heard_[i].begin(), heard_[i].end(), Heard::kNow) == heard_[i].end()) continue;
-    const Instrument& instrument = simulator_.instruments()[i];
     VectorX placed = simulator_.jointPositions(static_cast<int>(i));
     for (std::size_t k = 0; k < heard_[i].size(); ++k) {
       if (heard_[i][k] != Heard::kNow) continue;
       const double target = targets_[i][static_cast<Eigen::Index>(k)];
       const double stood = std::exchange(placed[static_cast<Eigen::Index>(k)], target);
-      if (time_ns_ && stood != target) {
-        late << "joint '" << instrument.model().joints()[k].name << "' of '" << instrument.name()
+      if (is_late && stood != target) {
+        const Instrument& instrument = simulator_.instruments()[i];
+        std::ostringstream text;
+        text << "joint '" << instrument.model().joints()[k].name << "' of '" << instrument.name()
              << "' is heard for the first time and goes from " << stood << " to " << target
-             << " at once, through what is between; ";
+             << " at once, through what is between; initial_joint_positions of the scene say where it begins";
+        played.placed += (played.placed.empty() ? "" : "; ") + text.str();
       }
       heard_[i][k] = Heard::kBefore;
     }
     simulator_.placeInstrument(static_cast<int>(i), placed);
   }
-  if (late.tellp() > 0) played.placed = late.str() + "initial_joint_positions in the scene say where joints begin";
 }
 
 }  // namespace tissue_contact

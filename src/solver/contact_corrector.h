@@ -24,6 +24,8 @@ class ContactCorrector {
   /// @param rival takes the place of solveCoulombContact(); empty: nothing does.
   explicit ContactCorrector(ContactRival rival = nullptr) : rival_(std::move(rival)) {}
 
+  bool hasRival() const { return static_cast<bool>(rival_); }
+
   /// Begins a step.
   /// @param sliding tangential velocity of a contact in the warm start, m/s; asked for rivals only.
   void prepare(std::size_t contacts, const std::function<Vector2(std::size_t)>& sliding);

@@ -192,7 +192,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
   const double hard_s =
       options_.time_budget_s > 0.0 ? std::min(deadline_s_, clock_() + options_.time_budget_s) : deadline_s_;
   load_scale_ = changeScale(problem);
-  predictRigidMotions(problem, solution);
+  if (!corrector_.hasRival()) predictRigidMotions(problem, solution);
   relaxation_->prepare(problem, solution);
   momentum_.prepare(problem);
   forecast_.begin();
@@ -202,6 +202,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
   corrector_.hold(problem);
   SolverReport report;
   first_change_ = std::numeric_limits<double>::infinity();
+  const double begun_s = std::isfinite(std::min(hard_s, prompt_s_)) ? clock_() : 0.0;
   bool released = false;
   for (bool stop = false; !stop;) {
     const MomentumDefect& met = relaxation_->relax(problem, report.iterations, corrector_, solution);
@@ -210,11 +211,9 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
     const double until = report.iterations >= kLeastBeforePrompt ? std::min(hard_s, prompt_s_) : hard_s;
     stop = true;
     const bool solved = had_settled && balanced(problem, met, solution);
-    if (2 * report.iterations >= options_.iterations) {
-      released = corrector_.releaseAll();
-    } else {
-      released = solved && corrector_.releaseOverloaded();
-    }
+    const bool half_is_over =
+        2 * report.iterations >= options_.iterations || (std::isfinite(until) && clock_() >= 0.5 * (begun_s + until));
+    released = half_is_over ? corrector_.releaseAll() : solved && corrector_.releaseOverloaded();
     if (solved && !released) {
       report.stop = StopReason::kTolerance;
     } else if (report.iterations >= options_.iterations) {
@@ -223,6 +222,7 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
       report.stop = StopReason::kTimeBudget;
     } else {
       stop = false;
+      if (released) forecast_.begin();  // what is met from now on is of another problem
       forecast_.add(excess(met, solution));
       relaxation_->foresee(forecast_.iterationsLeft());
     }

@@ -21,10 +21,15 @@ namespace tissue_contact {
 /// Nodes that contacts may move have no part in it (Deflation): the rest of the part moves beside them.
 class RigidMotions {
  public:
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
   using Rows = Eigen::Matrix<double, 3, 6>;
 
   /// Velocity at `arm` from the middle of what moves, of three shifts and three turns.
   static Rows motionsOf(const Vector3& arm);
+  static Vector3 velocityOf(const Vector6& motion, const Vector3& arm) {
+    return motion.head<3>() + motion.tail<3>().cross(arm);
+  }
 
   /// Of a step. Allocates only for more parts, or larger ones in their places, than before.
   /// @param body with stiff parts; stays until the next begin() or none().
@@ -63,9 +68,6 @@ class RigidMotions {
   }
 
  private:
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
   struct Member {
     int node;
     Vector3 arm;  ///< from the middle of the part, over its radius
@@ -87,9 +89,6 @@ class RigidMotions {
   /// Reciprocal condition of Z'A Z; that of nodes in a line, which turn about it for nothing, is round-off.
   static constexpr double kLeastCondition = 1e-10;
 
-  static Vector3 velocityOf(const Vector6& motion, const Vector3& arm) {
-    return motion.head<3>() + motion.tail<3>().cross(arm);
-  }
   /// Z' of a vector (N s) at a member.
   static Vector6 along(const Vector3& arm, const Vector3& vector);
 

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "solver/contact_corrector.h"
 #include "solver/rigid_motions.h"
 
 namespace tissue_contact {
 namespace {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = RigidMotions::Vector6;
+using Matrix6 = RigidMotions::Matrix6;
 
 /// What turning costs, of what it brings at the contacts: far less than a contact that says how the body turns, more than round-off.
 constexpr double kTurningCost = 1e-6;
@@ -20,27 +21,43 @@ bool mayMoveAsOne(const BodySystem& body) {
          std::find(body.fixed->begin(), body.fixed->end(), true) == body.fixed->end();
 }
 
-bool carries(const ContactRow& row, int body) { return row.was_static && row.pair >= 0 && row.nodes[0].body == body; }
+/// Also not one that a solve of this step has found to slide.
+bool carries(const ContactProblem& problem, const ContactSolution& solution, std::size_t contact, int body) {
+  const ContactRow& row = problem.contacts[contact];
+  return row.was_static && solution.states[contact] == ContactState::kStatic && row.pair >= 0 &&
+         row.nodes[0].body == body && !isFrictionless(row.law);
+}
 
-/// (shift in m/s, turning in rad/s about `middle`) that ends the slip of the contacts that carry the body.
-Vector6 motionOf(const ContactProblem& problem, int body, const Vector3& middle, const std::vector<NodalVectors>& v) {
+/// How a body is carried.
+struct Carried {
+  Vector6 motion;           ///< about `middle`: m/s and rad/s
+  double normal_n_s = 0.0;  ///< impulses of the contacts that carry it, along their normals
+};
+
+Carried motionOf(const ContactProblem& problem, int body, const Vector3& middle, const ContactSolution& solution) {
   const NodalVectors& x = *problem.bodies[body].x;
+  Carried carried;
   Matrix6 normal = Matrix6::Zero();
   Vector6 wanted = Vector6::Zero();
-  for (const ContactRow& row : problem.contacts) {
-    if (!carries(row, body)) continue;
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+    if (!carries(problem, solution, c, body)) continue;
+    const ContactRow& row = problem.contacts[c];
+    carried.normal_n_s += solution.impulses[c][0];
     Vector3 arm = Vector3::Zero();
     for (int a = 0; a < row.node_count; ++a) arm += row.nodes[a].weight * (x.col(row.nodes[a].node) - middle);
-    Vector3 u = relativeVelocity(row, v);
+    Vector3 u = relativeVelocity(row, solution.v) + compliancesOf(row).cwiseProduct(solution.impulses[c]);
     u[0] -= row.required_u_n;
-    const RigidMotions::Rows J = RigidMotions::motionsOf(arm);
+    RigidMotions::Rows J = row.R_WC.transpose() * RigidMotions::motionsOf(arm);
+    if (u[0] > 0.0) J.row(0).setZero();  // what withdraws does not pull
     normal += J.transpose() * J;
-    wanted -= J.transpose() * (row.R_WC * u);
+    wanted -= J.transpose() * u;
   }
-  // Contacts that all are in one place say nothing of the turning.
+  // Contacts that all are in one place say nothing of the turning, nor those that withdraw of the way along their normal.
   const double inertia = normal.diagonal().tail<3>().sum();
+  normal.diagonal().head<3>().array() += kTurningCost;
   normal.diagonal().tail<3>().array() += inertia > 0.0 ? kTurningCost * inertia : 1.0;
-  return normal.ldlt().solve(wanted);
+  carried.motion = normal.ldlt().solve(wanted);
+  return carried;
 }
 
 }  // namespace
@@ -48,14 +65,16 @@ Vector6 motionOf(const ContactProblem& problem, int body, const Vector3& middle,
 void predictRigidMotions(const ContactProblem& problem, ContactSolution& solution) {
   for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
     const int body = static_cast<int>(k);
-    const auto carried = [&](const ContactRow& row) { return carries(row, body); };
-    if (std::none_of(problem.contacts.begin(), problem.contacts.end(), carried)) continue;
-    if (!mayMoveAsOne(problem.bodies[k])) continue;
+    bool any = false;
+    for (std::size_t c = 0; c < problem.contacts.size() && !any; ++c) any = carries(problem, solution, c, body);
+    if (!any || !mayMoveAsOne(problem.bodies[k])) continue;
     const NodalVectors& x = *problem.bodies[k].x;
     const Vector3 middle = x.rowwise().mean();
-    const Vector6 motion = motionOf(problem, body, middle, solution.v);
+    const Carried carried = motionOf(problem, body, middle, solution);
+    // An organ that a tool touches in one place is not carried by it.
+    if (problem.bodies[k].mass.sum() * carried.motion.head<3>().norm() > carried.normal_n_s) continue;
     for (Eigen::Index i = 0; i < x.cols(); ++i) {
-      solution.v[k].col(i) += motion.head<3>() + motion.tail<3>().cross(x.col(i) - middle);
+      solution.v[k].col(i) += RigidMotions::velocityOf(carried.motion, x.col(i) - middle);
     }
   }
 }

@@ -11,7 +11,8 @@ namespace tissue_contact {
 /// mostly moves as one, and sweeps pass a change of that on from node to node: in a stiff body by so little that contacts which bear next to
 /// nothing were beyond their limit until hundreds of sweeps had been made (doc/notes/method.md).
 ///
-/// Bodies without x are left alone, and so are contacts between tissues. Answers depend on it within the tolerance only.
+/// Not where that would take more than the impulses with which those contacts press: an organ that is touched in one place. Bodies without x are
+/// left alone, and so are contacts between tissues. Answers of steps that are solved depend on it within the tolerance only.
 void predictRigidMotions(const ContactProblem& problem, ContactSolution& solution);
 
 }  // namespace tissue_contact

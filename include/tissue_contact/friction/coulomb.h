@@ -44,8 +44,8 @@ ContactAnswer solveCoulombContact(const Matrix3& W, const Vector3& q, const Coul
 bool holdsMoreAtRest(const CoulombLaw& law);
 
 /// A contact that static friction holds as far as it can, for the time in which an iteration does not know yet whether that is enough: the
-/// sticking impulse, or of its direction as much as the static limit allows (state kKinetic), with u_n = 0. No answer of a step: what slides
-/// has kinetic friction. W, q and law as for solveCoulombContact().
+/// sticking impulse, or of its direction as much as the static limit allows (state kKinetic), with u_n = 0; what
+/// would be torn off, or is shut by friction alone, as solveCoulombContact(). No answer of a step: what slides has kinetic friction. W, q and law as for solveCoulombContact().
 ContactAnswer holdContact(const Matrix3& W, const Vector3& q, const CoulombLaw& law);
 
 }  // namespace tissue_contact

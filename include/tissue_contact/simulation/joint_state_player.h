@@ -43,17 +43,16 @@ const char* verdictText(Verdict verdict);
 /// A moment that was played, or one sample that was refused.
 struct PlayedSample {
   Verdict verdict = Verdict::kAccepted;
-  int topic = -1;             ///< of the refused sample; of a moment: the first topic that triggered it
-  std::int64_t stamp_ns = 0;  ///< of the refused sample; of a moment: where the simulator is now
-  std::string detail;         ///< names the joint and value for a refused sample; empty if accepted
-  bool was_reset = false;     ///< time went backwards (bag loop): the scene was reset before this moment
-  bool was_resumed = false;   ///< time went on where it was before a stamp far off, without a reset
-  std::string
-      placed;  ///< which joints were heard for the first time after the run had begun, and so placed; empty: none
+  int topic = -1;                ///< of the refused sample; of a moment: the first topic that triggered it
+  std::int64_t stamp_ns = 0;     ///< of the refused sample; of a moment: where the simulator is now
+  std::string detail;            ///< names the joint and value for a refused sample; empty if accepted
+  bool was_reset = false;        ///< time went backwards (bag loop): the scene was reset before this moment
+  bool was_resumed = false;      ///< time went on where it was before a stamp far off, without a reset
   bool was_gap = false;          ///< the interval was longer than max_gap_s and was simulated as that long
   bool interrupted = false;      ///< AdvanceLimits ended it before the samples' stamp: it owes no wrench
   int accepted = 0;              ///< samples of this moment, those of topics that only update included
   int merged = 0;                ///< samples passed over on the way to this moment
+  std::string placed;            ///< joints heard for the first time long after the run began, and where from
   std::vector<int> instruments;  ///< each owes one wrench at this stamp; ascending
 };
 
@@ -264,7 +263,7 @@ class JointStatePlayer {
   void goToSamples(const Moment& moment);
   static bool isSqueezed(std::int64_t own_ns, std::int64_t left_ns);
   void headForNext(const Moment& moment, const Topic& topic);
-  void placeNewJoints(PlayedSample& played);
+  void placeNewJoints(std::int64_t stamp_ns, PlayedSample& played);
   void carry(StateArchive& archive);
   void forgetSamples();
   void startLoop();
@@ -301,6 +300,8 @@ class JointStatePlayer {
   std::int64_t arrivalOf(const Said& said, bool is_news, const Moment& moment) const;
   std::vector<std::vector<Said>> said_;  ///< per instrument and joint, of those that are heard
   enum class Heard { kNever, kNow, kBefore };
+  std::optional<std::int64_t>
+      begun_ns_;  ///< stamp of the first moment since the last reset; not known of a restored state
   std::vector<std::vector<Heard>> heard_;  ///< per instrument and joint: since the last reset; kNow: to be placed
   std::vector<bool> owes_;                 ///< per instrument: has a triggering sample without a wrench
   std::optional<std::int64_t> time_ns_;    ///< stamp of the moment played last

@@ -48,9 +48,9 @@ std::string nothingPlayed(const std::string& file, const std::string& first_refu
     return "no joint state of bag '" + file + "' was accepted; the first was refused: " + first_refusal;
   }
   return "no joint state of bag '" + file +
-         "' was played: its topics only update joints at the moments of others, of which it has none; in the scene, "
-         "give one of them "
-         "'triggers: true' (joint_state_topics), or record the others too";
+         "' was played: those that are played only update joints at the moments of other topics, of which there are "
+         "none; give a topic "
+         "'triggers: true' in the scene's joint_state_topics, or record the others too";
 }
 
 std::string joinedNames(const std::set<std::string>& names) {

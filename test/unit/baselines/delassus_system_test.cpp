@@ -51,7 +51,7 @@ struct TwoMasses {
 
 TEST(DelassusSystem, EliminatesTheBodies) {
   const TwoMasses scene;
-  DelassusSystem system(scene.contacts);
+  const DelassusSystem system(scene.contacts);
   const DelassusProblem& problem = system.problem();
   // By hand: A over the two free nodes, J of the first two contacts.
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(6, 6);

@@ -396,7 +396,8 @@ TEST_P(CompressedBag, EveryByteSpoilt) {
 TEST(JointStateBag, TellsWhyNothingWasPlayed) {
   EXPECT_NE(nothingPlayed("a.bag", "too old: x").find("'a.bag' was accepted; the first was refused: too old: x"),
             std::string::npos);
-  EXPECT_NE(nothingPlayed("a.bag", "").find("'a.bag' was played: its topics only update joints"), std::string::npos);
+  EXPECT_NE(nothingPlayed("a.bag", "").find("'a.bag' was played: those that are played only update joints"),
+            std::string::npos);
 }
 
 }  // namespace joint_state_bag_test

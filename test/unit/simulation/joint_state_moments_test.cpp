@@ -275,10 +275,10 @@ TEST(JointStateMoments, AJointHeardOnceTheRunHasBegunIsToldOf) {
   const auto simulator = armAndJaw();
   JointStatePlayer player(*simulator);
   std::vector<std::string> told;
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 40; ++i) {
     const std::int64_t stamp = kSecond + i * 10 * kMillisecond;
     player.push(0, arm(stamp, 0.0));
-    if (i >= 3) player.push(1, jaw(stamp, -0.001));
+    if (i >= 30) player.push(1, jaw(stamp, -0.001));
     player.stopWaiting();
     while (const auto played = player.playNext()) {
       if (!played->placed.empty()) told.push_back(played->placed);

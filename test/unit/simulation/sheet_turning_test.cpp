@@ -83,7 +83,6 @@ TEST(SheetTurning, AGripThatTurnsHoldsItsSheet) {
 
 /// A sheet lies on a plate that tilts to .5 rad and back, on a block that lies there or on the plate itself.
 double walkOnPlate(bool on_block, double thickness_m) {
-  const std::string height = on_block ? "0.01" : "0";
   std::string tissues =
       "  - name: sheet\n    sheet: {size_m: [0.02, 0.02], cells: [4, 4], thickness_m: " + std::to_string(thickness_m) +
       "}\n    pose: {position_m: [0, 0, " + std::to_string((on_block ? 0.01 : 0.0) + 0.5 * thickness_m) + "]}\n";
