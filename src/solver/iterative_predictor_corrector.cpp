@@ -202,7 +202,6 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
   corrector_.hold(problem);
   SolverReport report;
   first_change_ = std::numeric_limits<double>::infinity();
-  const double begun_s = std::isfinite(std::min(hard_s, prompt_s_)) ? clock_() : 0.0;
   bool released = false;
   for (bool stop = false; !stop;) {
     const MomentumDefect& met = relaxation_->relax(problem, report.iterations, corrector_, solution);
@@ -211,9 +210,8 @@ SolverReport IterativePredictorCorrector::solve(const ContactProblem& problem, C
     const double until = report.iterations >= kLeastBeforePrompt ? std::min(hard_s, prompt_s_) : hard_s;
     stop = true;
     const bool solved = had_settled && balanced(problem, met, solution);
-    const bool half_is_over =
-        2 * report.iterations >= options_.iterations || (std::isfinite(until) && clock_() >= 0.5 * (begun_s + until));
-    released = half_is_over ? corrector_.releaseAll() : solved && corrector_.releaseOverloaded();
+    released = 2 * report.iterations >= options_.iterations ? corrector_.releaseAll()
+                                                            : solved && corrector_.releaseOverloaded();
     if (solved && !released) {
       report.stop = StopReason::kTolerance;
     } else if (report.iterations >= options_.iterations) {

@@ -15,6 +15,8 @@ using Matrix6 = RigidMotions::Matrix6;
 
 /// What turning costs, of what it brings at the contacts: far less than a contact that says how the body turns, more than round-off.
 constexpr double kTurningCost = 1e-6;
+/// Likewise of shifting, where contacts that withdraw leave it open: less than turning.
+constexpr double kShiftingCost = 1e-10;
 
 bool mayMoveAsOne(const BodySystem& body) {
   return !body.asleep && body.x != nullptr &&
@@ -52,9 +54,9 @@ Carried motionOf(const ContactProblem& problem, int body, const Vector3& middle,
     normal += J.transpose() * J;
     wanted -= J.transpose() * u;
   }
-  // Contacts that all are in one place say nothing of the turning, nor those that withdraw of the way along their normal.
+  // Contacts that all are in one place say nothing of the turning.
   const double inertia = normal.diagonal().tail<3>().sum();
-  normal.diagonal().head<3>().array() += kTurningCost;
+  normal.diagonal().head<3>().array() += kShiftingCost;
   normal.diagonal().tail<3>().array() += inertia > 0.0 ? kTurningCost * inertia : 1.0;
   carried.motion = normal.ldlt().solve(wanted);
   return carried;
