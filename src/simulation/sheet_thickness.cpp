@@ -1,7 +1,6 @@
 #include "simulation/sheet_thickness.h"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include "tissue_contact/mesh/triangle_mesh.h"
@@ -23,17 +22,6 @@ VectorX shearStiffnessOf(const Tissue& tissue, const TissueDescription& descript
 }
 
 }  // namespace
-
-Vector3 rateOfNormal(const std::array<int, 3>& nodes, const Vector3& normal, const NodalVectors& x,
-                     const NodalVectors& v) {
-  const auto edge = [&](const NodalVectors& of, int to) -> Vector3 { return of.col(nodes[to]) - of.col(nodes[0]); };
-  const Vector3 cross = edge(x, 1).cross(edge(x, 2));
-  const double area = cross.norm();  // twice
-  if (!(area > 0.0)) return Vector3::Zero();
-  const Vector3 n = std::copysign(1.0 / area, cross.dot(normal)) * cross;
-  const Vector3 rate = (edge(v, 1).cross(edge(x, 2)) + edge(x, 1).cross(edge(v, 2))) / area;
-  return std::copysign(1.0, cross.dot(normal)) * (rate - n * n.dot(rate));
-}
 
 SheetThickness::SheetThickness(const std::vector<Tissue>& tissues)
     : tissues_(tissues), any_sheet_(std::any_of(tissues.begin(), tissues.end(), [](const Tissue& tissue) {

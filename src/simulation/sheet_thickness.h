@@ -11,11 +11,6 @@
 
 namespace tissue_contact {
 
-/// Rate of the unit normal of a triangle, 1/s, of the one of its two that is nearer to `normal`. Area 0: 0.
-/// @param x, v of the nodes, m and m/s.
-Vector3 rateOfNormal(const std::array<int, 3>& nodes, const Vector3& normal, const NodalVectors& x,
-                     const NodalVectors& v);
-
 /// Of one contact, m/N: what the sheets on both its sides give way; 0: volumes touch.
 struct SheetCompliance {
   double normal = 0.0;

@@ -93,6 +93,7 @@ StepContacts::StepContacts(const std::vector<Tissue>& tissues, const InstrumentM
       friction_(friction),
       edges_(edges),
       thickness_(tissues),
+      turning_(tissues),
       settling_(tissues.size(), edges) {
   if (friction.dependsOnPressure()) pressure_.emplace(tissues);
 }
@@ -150,13 +151,14 @@ void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, doubl
   solution.states.resize(contacts_.size());
   u_besides_.resize(contacts_.size());
   thickness_.prepare(contacts_);
+  turning_.prepare(contacts_, x, solution.v);
   back_time_s_ = std::max(dt, last_dt);  // not faster than it came: a short step after a long one could not hold it
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const SolvedContact& before = contacts_[c];
     const Matrix3& R_WC = before.contact.R_WC;
     ContactRow& row = rows[c];
     placeRow(c, dt, row);
-    row.u_tool.tail<2>() += R_WC.rightCols<2>().transpose() * turningOf(before.contact, x, solution.v);
+    row.u_tool.tail<2>() += R_WC.rightCols<2>().transpose() * turning_.at(before.contact);
     row.was_sliding = before.state == ContactState::kKinetic;
     row.was_static = before.state == ContactState::kStatic;
     const double speed_over_tissue = relativeVelocity(row, solution.v).tail<2>().norm();
@@ -173,23 +175,6 @@ void StepContacts::assemble(const std::vector<NodalVectors>& x, double dt, doubl
   }
   land(solution.v, dt, rows);
   settling_.advance(dt);
-}
-
-/// How fast what touches a sheet moves beside its middle surface, since the sheet turns as it did in the step before, m/s. A grip that turned by
-/// an angle shifted the sheet that it held by that times half the thickness, until it let go.
-Vector3 StepContacts::turningOf(const Contact& contact, const std::vector<NodalVectors>& x,
-                                const std::vector<NodalVectors>& v) const {
-  const ContactKey& key = contact.key;
-  const bool is_pair = key.instrument < 0;
-  const double thickness = tissues_[key.tissue].thickness();
-  const double other = is_pair ? tissues_[key.other_tissue].thickness() : 0.0;
-  Vector3 turning = Vector3::Zero();
-  if (thickness + other == 0.0) return turning;
-  const Vector3 n = contact.R_WC.col(0);
-  if (thickness > 0.0) turning += thickness * rateOfNormal(contact.nodes, n, x[key.tissue], v[key.tissue]);
-  if (other > 0.0) turning += other * rateOfNormal(contact.other_nodes, n, x[key.other_tissue], v[key.other_tissue]);
-  // Squeezed: what touches is nearer to the middle.
-  return std::max(0.5 + std::min(contact.gap_m, 0.0) / (thickness + other), 0.0) * turning;
 }
 
 /// @param speed_over_tissue tangential speed of what touches over the tissue here as the last step ended, m/s. A contact that was open has

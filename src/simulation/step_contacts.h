@@ -13,6 +13,7 @@
 #include "simulation/friction_table.h"
 #include "simulation/instrument_motion.h"
 #include "simulation/sheet_thickness.h"
+#include "simulation/sheet_turning.h"
 #include "simulation/surface_settling.h"
 #include "tissue_contact/contact/contact_detector.h"
 #include "tissue_contact/core/types.h"
@@ -97,8 +98,6 @@ class StepContacts {
     double first_touch = 1.0;  ///< share of the step that is over then
   };
   void placeRow(std::size_t contact, double dt, ContactRow& row) const;
-  Vector3 turningOf(const Contact& contact, const std::vector<NodalVectors>& x,
-                    const std::vector<NodalVectors>& v) const;
   ContactBefore beforeOf(const SolvedContact& inherited, const std::vector<NodalVectors>& x, double last_dt,
                          double speed_over_tissue) const;
   void land(const std::vector<NodalVectors>& v, double dt, std::vector<ContactRow>& rows);
@@ -113,6 +112,7 @@ class StepContacts {
   const SurfaceEdges& edges_;
   ContactMemory memory_;
   SheetThickness thickness_;
+  SheetTurning turning_;
   std::optional<ContactPressure> pressure_;  ///< only where friction depends on it
   std::vector<SolvedContact> contacts_;      ///< before the solve with what they inherit, after it with what was found
   /// Per contact, what is in its row's u_tool besides the instrument's motion, contact plane, m/s: the way back of a

@@ -18,6 +18,10 @@ constexpr double kTurningCost = 1e-6;
 /// Likewise of shifting, where contacts that withdraw leave it open: less than turning.
 constexpr double kShiftingCost = 1e-10;
 
+/// Of the squares of what contacts slip: what a rigid motion may leave of it. Jaws that squeeze a sheet, and the noise of one that is held, are no
+/// motion that it is carried with: sheets between balls were thrown away.
+constexpr double kDisagreement = 0.25;
+
 bool mayMoveAsOne(const BodySystem& body) {
   return !body.asleep && body.x != nullptr &&
          std::find(body.fixed->begin(), body.fixed->end(), true) == body.fixed->end();
@@ -33,6 +37,7 @@ bool carries(const ContactProblem& problem, const ContactSolution& solution, std
 /// How a body is carried.
 struct Carried {
   Vector6 motion;           ///< about `middle`: m/s and rad/s
+  bool agree = false;       ///< the contacts, on that motion
   double normal_n_s = 0.0;  ///< impulses of the contacts that carry it, along their normals
 };
 
@@ -41,6 +46,7 @@ Carried motionOf(const ContactProblem& problem, int body, const Vector3& middle,
   Carried carried;
   Matrix6 normal = Matrix6::Zero();
   Vector6 wanted = Vector6::Zero();
+  double slips = 0.0;  // squared
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     if (!carries(problem, solution, c, body)) continue;
     const ContactRow& row = problem.contacts[c];
@@ -50,7 +56,11 @@ Carried motionOf(const ContactProblem& problem, int body, const Vector3& middle,
     Vector3 u = relativeVelocity(row, solution.v) + compliancesOf(row).cwiseProduct(solution.impulses[c]);
     u[0] -= row.required_u_n;
     RigidMotions::Rows J = row.R_WC.transpose() * RigidMotions::motionsOf(arm);
-    if (u[0] > 0.0) J.row(0).setZero();  // what withdraws does not pull
+    if (u[0] > 0.0) {  // what withdraws does not pull
+      J.row(0).setZero();
+      u[0] = 0.0;
+    }
+    slips += u.squaredNorm();
     normal += J.transpose() * J;
     wanted -= J.transpose() * u;
   }
@@ -59,6 +69,7 @@ Carried motionOf(const ContactProblem& problem, int body, const Vector3& middle,
   normal.diagonal().head<3>().array() += kShiftingCost;
   normal.diagonal().tail<3>().array() += inertia > 0.0 ? kTurningCost * inertia : 1.0;
   carried.motion = normal.ldlt().solve(wanted);
+  carried.agree = slips - wanted.dot(carried.motion) <= kDisagreement * slips;
   return carried;
 }
 
@@ -74,6 +85,7 @@ void predictRigidMotions(const ContactProblem& problem, ContactSolution& solutio
     const Vector3 middle = x.rowwise().mean();
     const Carried carried = motionOf(problem, body, middle, solution);
     // An organ that a tool touches in one place is not carried by it.
+    if (!carried.agree) continue;
     if (problem.bodies[k].mass.sum() * carried.motion.head<3>().norm() > carried.normal_n_s) continue;
     for (Eigen::Index i = 0; i < x.cols(); ++i) {
       solution.v[k].col(i) += RigidMotions::velocityOf(carried.motion, x.col(i) - middle);

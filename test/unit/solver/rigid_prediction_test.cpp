@@ -103,6 +103,20 @@ TEST(RigidPrediction, ABodyThatRestsStaysAtRest) {
   EXPECT_LT(scene.solution.v[0].norm(), 1e-12);
 }
 
+// Jaws that close on a body from both sides: what it does on the whole is not what they do.
+TEST(RigidPrediction, ContactsThatDisagreeMoveNothing) {
+  CarriedCube scene;
+  scene.problem.contacts.resize(2);
+  for (std::size_t c = 0; c < 2; ++c) {
+    ContactRow& row = scene.problem.contacts[c];
+    row.nodes[0].node = c == 0 ? 0 : 7;
+    row.R_WC = contactFrame((scene.x.col(c == 0 ? 7 : 0) - scene.x.col(c == 0 ? 0 : 7)).normalized());
+    row.u_tool = Vector3(0.3, 0.0, 0.0);
+  }
+  predictRigidMotions(scene.problem, scene.solution);
+  EXPECT_TRUE(scene.solution.v[0].isZero(0.0));
+}
+
 TEST(RigidPrediction, WhatWithdrawsDoesNotPull) {
   CarriedCube scene;
   scene.problem.contacts.resize(1);
