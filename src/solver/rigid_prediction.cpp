@@ -84,8 +84,8 @@ void predictRigidMotions(const ContactProblem& problem, ContactSolution& solutio
     const NodalVectors& x = *problem.bodies[k].x;
     const Vector3 middle = x.rowwise().mean();
     const Carried carried = motionOf(problem, body, middle, solution);
-    // An organ that a tool touches in one place is not carried by it.
     if (!carried.agree) continue;
+    // An organ that a tool touches in one place is not carried by it.
     if (problem.bodies[k].mass.sum() * carried.motion.head<3>().norm() > carried.normal_n_s) continue;
     for (Eigen::Index i = 0; i < x.cols(); ++i) {
       solution.v[k].col(i) += RigidMotions::velocityOf(carried.motion, x.col(i) - middle);

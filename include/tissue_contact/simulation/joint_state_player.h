@@ -300,8 +300,7 @@ class JointStatePlayer {
   std::int64_t arrivalOf(const Said& said, bool is_news, const Moment& moment) const;
   std::vector<std::vector<Said>> said_;  ///< per instrument and joint, of those that are heard
   enum class Heard { kNever, kNow, kBefore };
-  std::optional<std::int64_t>
-      begun_ns_;  ///< stamp of the first moment since the last reset; not known of a restored state
+  std::optional<std::int64_t> begun_ns_;  ///< stamp of the first moment since the last reset, or since a state was read
   std::vector<std::vector<Heard>> heard_;  ///< per instrument and joint: since the last reset; kNow: to be placed
   std::vector<bool> owes_;                 ///< per instrument: has a triggering sample without a wrench
   std::optional<std::int64_t> time_ns_;    ///< stamp of the moment played last

@@ -392,13 +392,5 @@ TEST_P(CompressedBag, EveryByteSpoilt) {
   EXPECT_GT(refused, 1000 / kBytesApart);  // lengths, kinds, names; what is left are values
 }
 
-// Of a bag that has the jaw alone nothing was refused: the message ended in "the first was refused: ".
-TEST(JointStateBag, TellsWhyNothingWasPlayed) {
-  EXPECT_NE(nothingPlayed("a.bag", "too old: x").find("'a.bag' was accepted; the first was refused: too old: x"),
-            std::string::npos);
-  EXPECT_NE(nothingPlayed("a.bag", "").find("'a.bag' was played: those that are played only update joints"),
-            std::string::npos);
-}
-
 }  // namespace joint_state_bag_test
 }  // namespace tissue_contact

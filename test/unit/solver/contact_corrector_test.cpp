@@ -37,7 +37,7 @@ TEST(ContactCorrector, AContactThatWasSlidingHasTheKineticLimit) {
   EXPECT_EQ(corrector.solve(0, kW, q, {0.5, 0.3}, true, ContactState::kOpen).state, ContactState::kKinetic);
 }
 
-/// One contact that was static, with the friction of kLaw.
+/// One contact that was static.
 ContactProblem staticContact() {
   ContactProblem problem;
   problem.contacts.emplace_back();

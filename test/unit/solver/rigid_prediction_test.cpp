@@ -12,7 +12,7 @@
 namespace tissue_contact {
 namespace rigid_prediction_test {
 
-/// Eight corners of a cube of 20 mm about (1, 0, 0), three of them held by a tool that moves by kShift and turns by kTurn about the origin.
+/// Eight corners of a cube of 20 mm about (1, 0, 0), three of them held by a tool that moves and turns about the origin (toolAt).
 struct CarriedCube {
   NodalVectors x = NodalVectors(3, 8);
   std::vector<bool> fixed = std::vector<bool>(8, false);
