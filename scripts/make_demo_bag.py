@@ -47,7 +47,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("output", nargs="?", default=os.path.normpath(default), help="default: %(default)s")
     arguments = parser.parse_args()
-    write(arguments.output, {TOPIC: list(enumerate("xyz"))}, positions, sum(duration for duration, _, _ in PATH))
+    write(arguments.output, {TOPIC: list(enumerate("xyz"))}, lambda time: (positions(time), []), sum(duration for duration, _, _ in PATH))
 
 
 if __name__ == "__main__":

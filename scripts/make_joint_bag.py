@@ -6,7 +6,7 @@ there are several topics. Each further line says where the joints are at a time;
 config/two_psm_path.csv.
 
 --smooth is for corners of a motion that somebody thought out: between two lines a joint follows the cubic that starts and ends at rest, so
-nothing jerks. --linear is for positions that were recorded or sampled: straight between them, at the speed that they have; to rest at
+nothing jerks, and the joint states have its velocities, too. --linear is for positions that were recorded or sampled: straight between them, at the speed that they have; to rest at
 each of them would go and stop tens of times a second (drags 20 times a second: forces off by up to 42 %). Without either, lines that
 are less than 0.1 s apart (the median) count as sampled, since nobody stops ten times a second and such a mistake is seen nowhere.
 The same bytes every time: stamps, positions and record times follow from the table alone.
@@ -77,18 +77,21 @@ def unwrapped(rows):
 
 
 def path(rows, linear):
-    """Joint positions by time (s), held before the first row and after the last; in between straight, or at rest at each row."""
+    """(joint positions, their velocities) by time (s), held before the first row and after the last; in between at rest at each row, or straight: without
+    velocities, which jump at rows."""
     times = [row[0] for row in rows]
 
-    def positions(time):
+    def states(time):
         after = bisect.bisect_left(times, time)
         if after == 0 or after == len(rows):
-            return rows[min(after, len(rows) - 1)][1:]
-        part = (time - times[after - 1]) / (times[after] - times[after - 1])
+            return rows[min(after, len(rows) - 1)][1:], [] if linear else [0.0] * (len(rows[0]) - 1)
+        duration = times[after] - times[after - 1]
+        part, speed = (time - times[after - 1]) / duration, 0.0
         if not linear:
-            part = part * part * (3.0 - 2.0 * part)
-        return [a + part * (b - a) for a, b in zip(rows[after - 1][1:], rows[after][1:])]
-    return positions
+            part, speed = part * part * (3.0 - 2.0 * part), 6.0 * part * (1.0 - part) / duration
+        ways = [(a, b - a) for a, b in zip(rows[after - 1][1:], rows[after][1:])]
+        return [a + part * way for a, way in ways], [] if linear else [speed * way for _, way in ways]
+    return states
 
 
 def topics_of(columns, topic):
@@ -104,16 +107,17 @@ def topics_of(columns, topic):
     return topics
 
 
-def write(output, topics, positions_at, length, inputs=()):
-    """Joint states on {topic: [(place, joint name)]} from 0 to `length` (s), with positions from the places of what `positions_at` gives
-    for a time. Says how many."""
+def write(output, topics, states_at, length, inputs=()):
+    """Joint states on {topic: [(place, joint name)]} from 0 to `length` (s), with those of the places in what `states_at` gives for a time:
+    (positions, velocities or nothing). Says how many."""
     count = int(round(length * RATE_HZ)) + 1
     try:
         with whole_file(output, inputs) as part, rosbag.Bag(part, "w", compression=rosbag.Compression.BZ2) as bag:
             for i in range(count):
-                at = positions_at(i / RATE_HZ)
+                at, velocities = states_at(i / RATE_HZ)
                 for topic, joints in topics.items():
-                    message = JointState(name=[joint for _, joint in joints], position=[at[place] for place, _ in joints])
+                    message = JointState(name=[joint for _, joint in joints], position=[at[place] for place, _ in joints],
+                                         velocity=[velocities[place] for place, _ in joints] if velocities else [])
                     message.header.seq = i
                     message.header.stamp = genpy.Time(START_S + i // RATE_HZ, i % RATE_HZ * (1000000000 // RATE_HZ))
                     bag.write(topic, message, message.header.stamp)
@@ -136,8 +140,8 @@ def main():
     linear = arguments.linear or (not arguments.smooth and is_sampled(rows))
     if is_sampled(rows):
         rows = unwrapped(rows)
-    positions = path(rows, linear)
-    write(arguments.output, topics_of(names, arguments.topic), lambda time: positions(rows[0][0] + time),
+    states = path(rows, linear)
+    write(arguments.output, topics_of(names, arguments.topic), lambda time: states(rows[0][0] + time),
           rows[-1][0] - rows[0][0], [arguments.table])
     if linear and not arguments.linear:
         print("straight from row to row, since they are less than %g s apart (the median); --smooth rests at each" % SAMPLED_S)

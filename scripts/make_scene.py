@@ -346,7 +346,7 @@ def main():
     except OSError as error:
         fail("cannot write %s: %s" % (scene, error.strerror))
     print("%s: the %s, pressed %.1f mm" % (scene, name, 1e3 * depth))
-    write(bag, {TOPIC: list(enumerate("xyz"))}, lambda time: position_at(rows, time), rows[-1][0], [arguments.organ])
+    write(bag, {TOPIC: list(enumerate("xyz"))}, lambda time: (position_at(rows, time), []), rows[-1][0], [arguments.organ])
     print("forces, with plots:\n  rosrun tissue_contact run_launch.py scene.launch scene:=%s bag:=%s output:=%s rate:=0.25" %
           tuple(map(shlex.quote, (scene, bag, os.path.join(folder, "plots")))))
 

@@ -87,7 +87,7 @@ Pose toPose(const geometry_msgs::Transform& transform) {
 }
 
 JointStateSample toSample(const sensor_msgs::JointState& message) {
-  return {static_cast<std::int64_t>(message.header.stamp.toNSec()), message.name, message.position};
+  return {static_cast<std::int64_t>(message.header.stamp.toNSec()), message.name, message.position, message.velocity};
 }
 
 std::uint8_t toStop(StopReason stop) {

@@ -34,7 +34,7 @@ geometry_msgs::Transform toTransform(const Pose& X);
 /// @throws std::invalid_argument when the quaternion is not finite or zero.
 Pose toPose(const geometry_msgs::Transform& transform);
 
-/// Names, positions and stamp; velocity and effort are not used and may be empty.
+/// Names, positions, velocities and stamp; velocity may be empty, effort is not used.
 JointStateSample toSample(const sensor_msgs::JointState& message);
 
 /// Wrench of the tissues on the instrument at its tip link's origin and in its axes; header.frame_id is the caller's.

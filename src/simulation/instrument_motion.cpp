@@ -30,21 +30,23 @@ double travel(const Vector3& center, double bounding_radius, const Pose& X_start
   return (X_end * center - X_start * center).norm() + angle * bounding_radius;
 }
 
-/// Largest angle, rad, by which a joint of the model turns, mimic joints included. What slides ends farther off the
+/// Largest angle, rad, by which a joint of the model would turn at its fastest, mimic joints included. What slides ends farther off the
 /// farther it went; what turns need not.
-double farthestTurn(const RobotModel& model, const VectorX& start, const VectorX& target) {
+double farthestTurn(const RobotModel& model, const VectorX& start, const VectorX& target,
+                    const std::vector<JointWay>& ways) {
   double farthest = 0.0;
   for (const RobotModel::Link& link : model.links()) {
     if (link.motion != RobotModel::Link::Motion::kRevolute) continue;
-    farthest = std::max(farthest, std::abs(link.multiplier * (target[link.joint] - start[link.joint])));
+    const double turn = std::abs(target[link.joint] - start[link.joint]) + ways[link.joint].excess();
+    farthest = std::max(farthest, std::abs(link.multiplier) * turn);
   }
   return farthest;
 }
 
-/// Bound on travel() summed over the steps of a motion, however many they are, m: each joint moves what lies beyond it,
+/// Bound on travel() in a step of a motion times the number of steps, however many they are, m: each joint moves what lies beyond it,
 /// which is never farther off than the offsets in between are long.
-double travelBound(const RobotModel& model, const VectorX& start, const VectorX& target, int link,
-                   const Vector3& center, double bounding_radius) {
+double travelBound(const RobotModel& model, const VectorX& start, const VectorX& target,
+                   const std::vector<JointWay>& ways, int link, const Vector3& center, double bounding_radius) {
   double reach = center.norm(), way = 0.0, turn = 0.0;  // reach: from the frame of the link to the center
   for (; link >= 0; link = model.links()[link].parent) {
     const RobotModel::Link& one = model.links()[link];
@@ -52,8 +54,10 @@ double travelBound(const RobotModel& model, const VectorX& start, const VectorX&
       const double from = one.multiplier * start[one.joint] + one.offset;
       const double to = one.multiplier * target[one.joint] + one.offset;
       const bool turns = one.motion == RobotModel::Link::Motion::kRevolute;
-      way += std::abs(to - from) * (turns ? reach : 1.0);
-      (turns ? turn : reach) += turns ? std::abs(to - from) : std::max(std::abs(from), std::abs(to));
+      const double excess = std::abs(one.multiplier) * ways[one.joint].excess();
+      const double moved = std::abs(to - from) + excess;
+      way += moved * (turns ? reach : 1.0);
+      (turns ? turn : reach) += turns ? moved : std::max(std::abs(from), std::abs(to)) + excess;
     }
     reach += one.X_PJ.translation().norm();
   }
@@ -74,6 +78,7 @@ InstrumentMotion::InstrumentMotion(const std::vector<Instrument>& instruments)
       }
       states_[i].links.push_back(link);
     }
+    states_[i].ways.resize(instruments[i].model().joints().size());
     if (instruments[i].compliantJoints().empty()) continue;
     states_[i].deflections.setZero(instruments[i].initialPositions().size());
     states_[i].loads.resize(instruments[i].model().joints().size());
@@ -132,9 +137,11 @@ void InstrumentMotion::carry(int instrument, StateArchive& archive) {
   X_WL_[instrument] = X_WL_end_[instrument];
 }
 
-int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets, int most_steps) {
+int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets, int most_steps,
+                            const JointVelocities* velocities) {
   // A duration that is a whole number of steps up to round-off of the stamps must not get one step more.
   constexpr double kRoundOff = 1e-9;
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   constexpr double kLargestTurn = 1.0;    // rad
   constexpr double kSurely = 1.0 - 1e-6;  // that round-off, of positions over a billion steps, makes no step too long
   double joint_steps = 1.0;
@@ -143,7 +150,13 @@ int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vec
     state.start = state.positions;
     state.target = targets[i];
     if (instruments_[i].isObstacle()) continue;
-    const double turn = farthestTurn(instruments_[i].model(), state.start, state.target);
+    for (std::size_t k = 0; k < state.ways.size(); ++k) {
+      const auto joint = static_cast<Eigen::Index>(k);
+      const double start_velocity = velocities == nullptr ? kUnknown : velocities->start[i][joint];
+      const double end_velocity = velocities == nullptr ? kUnknown : velocities->end[i][joint];
+      state.ways[k] = JointWay(state.target[joint] - state.start[joint], duration_s, start_velocity, end_velocity);
+    }
+    const double turn = farthestTurn(instruments_[i].model(), state.start, state.target, state.ways);
     joint_steps = std::max(joint_steps, std::ceil(turn / kLargestTurn));
   }
   const double by_time = std::max(1.0, std::ceil(duration_s / max_step_s - kRoundOff));
@@ -167,8 +180,8 @@ double InstrumentMotion::travelBound() const {
     const State& state = states_[i];
     for (const MovingLink& link : state.links) {
       for (const MovingShape& shape : link.shapes) {
-        const double travel = tissue_contact::travelBound(instruments_[i].model(), state.start, state.target, link.link,
-                                                          shape.center, shape.bounding_radius);
+        const double travel = tissue_contact::travelBound(instruments_[i].model(), state.start, state.target,
+                                                          state.ways, link.link, shape.center, shape.bounding_radius);
         longest = std::max(longest, travel / shape.smallest_half_extent);
       }
     }
@@ -197,7 +210,10 @@ void InstrumentMotion::moveTo(double fraction) {
     if (instruments_[i].isObstacle()) continue;
     // The last step must end exactly at the target, whatever round-off the interpolation has.
     state.positions = state.target;
-    if (fraction < 1.0) state.positions = state.start + fraction * (state.target - state.start);
+    for (std::size_t k = 0; fraction < 1.0 && k < state.ways.size(); ++k) {
+      const auto joint = static_cast<Eigen::Index>(k);
+      state.positions[joint] = state.start[joint] + state.ways[k].at(fraction);
+    }
     poseEnd(static_cast<int>(i));
   }
 }

@@ -5,9 +5,11 @@
 
 #include <vector>
 
+#include "simulation/joint_way.h"
 #include "tissue_contact/core/state_archive.h"
 #include "tissue_contact/core/types.h"
 #include "tissue_contact/instrument/instrument.h"
+#include "tissue_contact/simulation/simulator.h"
 
 namespace tissue_contact {
 
@@ -22,13 +24,14 @@ class InstrumentMotion {
   void reset();                                          ///< all instruments at their initial joint positions
   void place(int instrument, const VectorX& positions);  ///< there at once, at rest, not deflected
 
-  /// Prepares the interval to `targets` and returns the number of equal steps to cut it into: none longer than
+  /// Prepares the interval to `targets`, through `velocities` (null: none known), and returns the number of equal steps to cut it into: none longer than
   /// max_step_s, none in which a shape moves more than half its smallest half extent, so that it cannot pass through a
   /// feature thinner than itself, and none in which a joint turns by more than 1 rad (a full turn ends where it began).
   /// A motion that would need more than kMaxTravelSteps steps, or kMaxTravelStepsPerSecond for its duration, is a jump:
   /// the instruments are placed at the targets. With most_steps > 0 there are no more than that, however long they get.
   /// Precondition: sizes of `targets`; duration_s <= kMostSteps * max_step_s.
-  int begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets, int most_steps = 0);
+  int begin(double duration_s, double max_step_s, const std::vector<VectorX>& targets, int most_steps = 0,
+            const JointVelocities* velocities = nullptr);
   bool jumped() const { return jumped_; }  ///< by the last begin()
 
   /// Sets the poses at the end of a step to those at this fraction (0..1] of the interval.
@@ -92,6 +95,7 @@ class InstrumentMotion {
   struct State {
     std::vector<MovingLink> links;
     VectorX start, target, positions;
+    std::vector<JointWay> ways;  ///< of each joint from start to target
     // Empty without compliant joints:
     VectorX positions_before;  ///< at the start of the step
     VectorX deflections;

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "instrument/joint_bounds.h"
+
 namespace tissue_contact {
 namespace {
 
@@ -70,6 +72,8 @@ void JointStatePlayer::push(int topic, JointStateSample sample) {
     refuse(verdict, topic, sample.stamp_ns, detail);
     return;
   }
+  if (sample.velocities.size() != sample.names.size()) sample.velocities.assign(sample.names.size(), kUnknown);
+  for (double& velocity : sample.velocities) velocity = isJointPosition(velocity) ? velocity : kUnknown;
   keepKnown(topic_states_[static_cast<std::size_t>(topic)], sample);
   place(topic, std::move(sample));
 }
@@ -270,6 +274,7 @@ void JointStatePlayer::play(const Moment& moment, PlayedSample& played) {
   for (std::size_t t = 0; t < topic_states_.size(); ++t) take(moment, static_cast<int>(t), played);
   goToSamples(moment);
   for (const Topic& topic : topic_states_) headForNext(moment, topic);
+  noteVelocities(moment);
   placeNewJoints(moment.stamp_ns, played);
   advanceTo(moment.stamp_ns, played);
   settle(played);
@@ -294,6 +299,7 @@ bool JointStatePlayer::resumes(const Moment& moment) const {
 void JointStatePlayer::resume(const Moment& moment) {
   time_ns_ = std::min(resumptions_.at(moment.epoch), moment.stamp_ns);
   behind_ns_ = 0;
+  forgetVelocities();
   for (Topic& topic : topic_states_) {
     topic.taken.reset();
     topic.taken_at_ns.reset();
@@ -310,6 +316,8 @@ void JointStatePlayer::forgetJoints() {
     heard_.emplace_back(instrument.model().joints().size(), Heard::kNever);
     said_.emplace_back(instrument.model().joints().size());
   }
+  velocities_ = {targets_, targets_};
+  forgetVelocities();
   for (Topic& topic : topic_states_) {
     topic.taken.reset();
     topic.taken_at_ns.reset();
@@ -325,18 +333,26 @@ void JointStatePlayer::advanceTo(std::int64_t stamp_ns, PlayedSample& played) {
   std::int64_t interval_ns = time_ns_ ? stamp_ns - *time_ns_ + behind_ns_ : 0;
   time_ns_ = stamp_ns;
   behind_ns_ = interval_ns < shortest_ns_ ? interval_ns : 0;
-  if (interval_ns == 0 || behind_ns_ > 0) return;
+  if (behind_ns_ > 0) return;
+  if (interval_ns == 0) {
+    velocities_.start = velocities_.end;
+    return;
+  }
   if (interval_ns > max_gap_ns_) {
     interval_ns = max_gap_ns_;
+    forgetVelocities();
     played.was_gap = true;
     for (Topic& topic : topic_states_) {  // nothing was said by anybody
       if (topic.taken_at_ns) topic.taken_at_ns = stamp_ns;
     }
     ++gaps_;
   }
-  simulator_.advance(static_cast<double>(interval_ns) / kNanosecondsPerSecond, targets_, limits_);
+  simulator_.advance(static_cast<double>(interval_ns) / kNanosecondsPerSecond, targets_, limits_, &velocities_);
+  velocities_.start = velocities_.end;
   played.interrupted = simulator_.report().interrupted;
-  if (played.interrupted) time_ns_ = stamp_ns - interval_ns + toNanoseconds(simulator_.report().advanced_s);
+  if (!played.interrupted) return;
+  time_ns_ = stamp_ns - interval_ns + toNanoseconds(simulator_.report().advanced_s);
+  forgetVelocities();
 }
 
 /// What the moment owes and how its samples count.

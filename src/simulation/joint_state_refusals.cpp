@@ -122,15 +122,17 @@ void JointStatePlayer::keepKnown(const Topic& topic, JointStateSample& sample) c
     });
   };
   if (sample.names.size() <= kUsual && std::all_of(sample.names.begin(), sample.names.end(), is_known)) return;
-  JointStateSample known{sample.stamp_ns, {}, {}};
+  JointStateSample known{sample.stamp_ns, {}, {}, {}};
   std::set<std::string> seen;
   for (std::size_t k = sample.names.size(); k-- > 0;) {  // of one name the last position counts
     if (!is_known(sample.names[k]) || !seen.insert(sample.names[k]).second) continue;
     known.names.push_back(std::move(sample.names[k]));
     known.positions.push_back(sample.positions[k]);
+    known.velocities.push_back(sample.velocities[k]);
   }
   std::reverse(known.names.begin(), known.names.end());
   std::reverse(known.positions.begin(), known.positions.end());
+  std::reverse(known.velocities.begin(), known.velocities.end());
   sample = std::move(known);
 }
 
@@ -154,6 +156,7 @@ void JointStatePlayer::addUnnamed(const JointStateSample& kept, JointStateSample
     if (std::find(sample.names.begin(), end, kept.names[k]) != end) continue;
     sample.names.push_back(kept.names[k]);
     sample.positions.push_back(kept.positions[k]);
+    sample.velocities.push_back(kUnknown);  // it is of another stamp
   }
 }
 

@@ -36,7 +36,7 @@ void JointStatePlayer::forgetSamples() {
   epoch_ = 0;
 }
 
-const char* JointStatePlayer::stateTitle() { return "tissue_contact state 9"; }
+const char* JointStatePlayer::stateTitle() { return "tissue_contact state 10"; }
 
 std::string JointStatePlayer::saveState() {
   StateArchive archive(stateTitle());
@@ -76,6 +76,7 @@ void JointStatePlayer::carry(StateArchive& archive) {
   }
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     archive.carry(targets_[i]);
+    archive.carry(velocities_.start[i]);
     archive.carry(heard_[i]);
     archive.check(std::all_of(targets_[i].begin(), targets_[i].end(), isJointPosition),
                   "a joint position that is none");
@@ -87,6 +88,7 @@ void JointStatePlayer::carry(StateArchive& archive) {
       archive.carry(said.seen_ns);
       archive.carry(said.right_ns);
       archive.carry(said.arrives_ns);
+      archive.carry(said.target_velocity);
       archive.check(said.seen_ns >= 0 && said.seen_ns <= kCentury_ns && said.right_ns >= 0 &&
                         said.right_ns <= kCentury_ns && said.arrives_ns >= 0 && said.arrives_ns <= 2 * kCentury_ns,
                     "a joint state that is none");

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <utility>
 
+#include "simulation/joint_way.h"
 #include "tissue_contact/simulation/joint_state_player.h"
 
 namespace tissue_contact {
@@ -66,6 +67,7 @@ void JointStatePlayer::takeJoints(const Queued& queued, const Topic& topic) {
       said.position = sample.positions[k];
       said.stamp_ns = queued.moment.stamp_ns;
       said.is_news = true;
+      said.velocity = sample.velocities[k];
       Heard& heard = heard_[index][static_cast<std::size_t>(joint)];
       if (heard == Heard::kNever) heard = Heard::kNow;
     }
@@ -89,6 +91,7 @@ void JointStatePlayer::goToSamples(const Moment& moment) {
         target = goal;
         said.right_ns = said.stamp_ns;
         said.arrives_ns = 0;
+        said.target_velocity = said.velocity;
         continue;
       }
       target += static_cast<double>(moment.stamp_ns - *time_ns_) / static_cast<double>(arrives_ns - *time_ns_) *
@@ -130,6 +133,7 @@ void JointStatePlayer::headForNext(const Moment& moment, const Topic& topic) {
   const std::int64_t from_ns = std::max(topic.taken->stamp_ns, time_ns_.value_or(topic.taken->stamp_ns));
   const double fraction =
       static_cast<double>(moment.stamp_ns - from_ns) / static_cast<double>(next.moment.stamp_ns - from_ns);
+  const double duration_s = secondsBetween(from_ns, next.moment.stamp_ns);
   for (const Listener& listener : topic.listeners) {
     const auto index = static_cast<std::size_t>(listener.instrument);
     for (std::size_t k = 0; k < next.sample.names.size(); ++k) {
@@ -141,9 +145,28 @@ void JointStatePlayer::headForNext(const Moment& moment, const Topic& topic) {
         continue;
       said.right_ns = moment.stamp_ns;
       double& target = targets_[index][joint];
-      target += fraction * (goneOnTo(next.sample.positions[k], next.moment.stamp_ns, index, joint) - target);
+      const double distance = goneOnTo(next.sample.positions[k], next.moment.stamp_ns, index, joint) - target;
+      const JointWay way(distance, duration_s, said.target_velocity, next.sample.velocities[k]);
+      target += way.at(fraction);
+      said.target_velocity = way.isStraight() ? kUnknown : way.slope(fraction) / duration_s;
     }
   }
+}
+
+/// Of joints that are at the moment where their topic says, and not held since nothing is known of them.
+void JointStatePlayer::noteVelocities(const Moment& moment) {
+  for (std::size_t i = 0; i < said_.size(); ++i) {
+    for (std::size_t k = 0; k < said_[i].size(); ++k) {
+      Said& said = said_[i][k];
+      if (said.right_ns != moment.stamp_ns) said.target_velocity = kUnknown;
+      velocities_.end[i][static_cast<Eigen::Index>(k)] = said.target_velocity;
+    }
+  }
+}
+
+/// The next way of every joint is a straight one: it does not begin where a velocity was said.
+void JointStatePlayer::forgetVelocities() {
+  for (VectorX& velocities : velocities_.start) velocities.setConstant(kUnknown);
 }
 
 double JointStatePlayer::lead_s(int topic) const {

@@ -19,6 +19,14 @@ namespace {
 /// With the version of what follows it.
 constexpr const char* kStateTitle = "tissue_contact simulation 9";
 
+void requireSizes(const std::vector<VectorX>& joint_positions, const std::vector<VectorX>& joint_velocities) {
+  const auto same_size = [](const VectorX& a, const VectorX& b) { return a.size() == b.size(); };
+  if (!std::equal(joint_positions.begin(), joint_positions.end(), joint_velocities.begin(), joint_velocities.end(),
+                  same_size)) {
+    throw std::invalid_argument("joint velocities must be as many as joint positions, for each instrument");
+  }
+}
+
 NodalVectors handOver(NodalVectors& values) {
   NodalVectors copy = values;
   copy.swap(values);
@@ -109,7 +117,8 @@ void Simulator::requireJointPositions(int instrument, const VectorX& joint_posit
   }
 }
 
-void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_positions, const AdvanceLimits& limits) {
+void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_positions, const AdvanceLimits& limits,
+                        const JointVelocities* joint_velocities) {
   Implementation& all = *implementation_;
   requirePositive("duration", duration_s, "s");
   if (joint_positions.size() != all.instruments.size()) {
@@ -119,6 +128,10 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
   for (std::size_t i = 0; i < joint_positions.size(); ++i) {
     requireJointPositions(static_cast<int>(i), joint_positions[i]);
   }
+  if (joint_velocities != nullptr) {
+    requireSizes(joint_positions, joint_velocities->start);
+    requireSizes(joint_positions, joint_velocities->end);
+  }
   const double longest_s = limits.longest_step_s > 0.0 ? limits.longest_step_s : all.scene.step.max_step_s;
   if (!(duration_s <= InstrumentMotion::kMostSteps * longest_s)) {
     throwBadValue("duration", duration_s, "s", "at most a billion steps of " + std::to_string(longest_s) + " s");
@@ -126,7 +139,7 @@ void Simulator::advance(double duration_s, const std::vector<VectorX>& joint_pos
   StepReport& report = all.report;
   report.discarded = false;
   report.interrupted = false;
-  const int steps = all.motion.begin(duration_s, longest_s, joint_positions, limits.most_steps);
+  const int steps = all.motion.begin(duration_s, longest_s, joint_positions, limits.most_steps, joint_velocities);
   report.jumped = all.motion.jumped();
   const double dt = duration_s / steps;
   for (report.substeps = 0; report.substeps < steps && !report.interrupted;) {

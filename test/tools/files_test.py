@@ -297,7 +297,12 @@ class FilesTest(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, done)
                 self.assertEqual("straight from row to row" in done.stdout, straight and not options)
                 with rosbag.Bag(self.path("speed.bag")) as bag:
-                    x = [message.position[0] for _, message, _ in bag.read_messages()]
+                    states = [message for _, message, _ in bag.read_messages()]
+                x, velocities = [state.position[0] for state in states], [state.velocity for state in states]
+                self.assertEqual({len(velocity) for velocity in velocities}, {0 if straight else 1})
+                if not straight:  # against central differences, off by h^2 / 6 of the cubic's third derivative, but at its ends
+                    off = [abs(250 * (c - a) - v[0]) for a, v, c in zip(x, velocities[1:], x[2:])]
+                    self.assertLess(sorted(off)[-8], 1.001 * 2e-6 / 3.0 * 12 * 0.01 / (0.05 if name == "sampled.csv" else 0.5) ** 2)
                 speeds = [500 * (b - a) for a, b in zip(x, x[1:])]
                 self.assertAlmostEqual(sum(speeds) / len(speeds), 0.01, delta=1e-9)
                 self.assertAlmostEqual(max(speeds), 0.01 if straight else 0.015, delta=1e-4)

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -18,11 +19,13 @@
 
 namespace tissue_contact {
 
-/// One joint-state message. `positions` in rad or m, one per name.
+/// One joint-state message. `positions` in rad or m, one per name; `velocities` per second of that: another number than names, or one that is
+/// not finite, is not known.
 struct JointStateSample {
   std::int64_t stamp_ns = 0;
   std::vector<std::string> names;
   std::vector<double> positions;
+  std::vector<double> velocities = {};
 };
 
 enum class Verdict {
@@ -62,10 +65,11 @@ struct PlayedSample {
 /// tissues advance to it, once, and every instrument with a triggering sample among them owes one wrench. A topic of
 /// which no instrument is triggered makes no moment: its joints are taken at the next one.
 ///
-/// Joints. At a moment every joint is where its topic says: in its sample of that stamp; else on the straight line to
+/// Joints. At a moment every joint is where its topic says: in its sample of that stamp; else on the way to
 /// its next sample, if that is here and follows in less than max_gap_s; else where its newest sample before put it. A joint that was so
 /// held at moments of others, and for whose way less than half of the time between its samples is left, takes all of that time
-/// (at most .2 s and max_gap_s), and so is late by as much: made in what is left it would be as fast as it never was. In between instruments move linearly. A joint heard for the first time since the start or a reset is placed. Joints not
+/// (at most .2 s and max_gap_s), and so is late by as much: made in what is left it would be as fast as it never was. In between joints
+/// move as a cubic through the velocities of samples at both ends of their way, linearly without such or where they do not fit it (JointWay). A joint heard for the first time since the start or a reset is placed. Joints not
 /// heard stay at the scene's initial position. The first moment of a run places instruments without any step.
 ///
 /// Publishers. Several may share a topic, each with joints of its own (drivers of an arm and of its gripper). A sample that is no later
@@ -193,6 +197,8 @@ class JointStatePlayer {
   std::int64_t gaps() const { return gaps_; }
 
  private:
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
   /// When a sample is: loop first, then stamp.
   struct Moment {
     int epoch = 0;  ///< how often time has gone backwards
@@ -263,6 +269,8 @@ class JointStatePlayer {
   void goToSamples(const Moment& moment);
   static bool isSqueezed(std::int64_t own_ns, std::int64_t left_ns);
   void headForNext(const Moment& moment, const Topic& topic);
+  void noteVelocities(const Moment& moment);
+  void forgetVelocities();
   void placeNewJoints(std::int64_t stamp_ns, PlayedSample& played);
   void carry(StateArchive& archive);
   void forgetSamples();
@@ -292,11 +300,14 @@ class JointStatePlayer {
     double position = 0.0;  ///< rad or m
     double turns = 0.0;     ///< that drivers have left out up to then, rad
     std::int64_t stamp_ns = 0;
-    std::int64_t seen_ns = 0;     ///< stamp of the newest sample at the moment played last
-    std::int64_t right_ns = 0;    ///< the joint's target is where it was then
-    std::int64_t arrives_ns = 0;  ///< when it is to be where the sample says; 0: it was
-    bool is_news = false;         ///< since the moment played last
+    std::int64_t seen_ns = 0;           ///< stamp of the newest sample at the moment played last
+    std::int64_t right_ns = 0;          ///< the joint's target is where it was then
+    std::int64_t arrives_ns = 0;        ///< when it is to be where the sample says; 0: it was
+    bool is_news = false;               ///< since the moment played last
+    double velocity = kUnknown;         ///< rad/s or m/s; of the sample
+    double target_velocity = kUnknown;  ///< where the joint's target is
   };
+  JointVelocities velocities_;  ///< start: where the simulator is; end: at the targets
   std::int64_t arrivalOf(const Said& said, bool is_news, const Moment& moment) const;
   std::vector<std::vector<Said>> said_;  ///< per instrument and joint, of those that are heard
   enum class Heard { kNever, kNow, kBefore };

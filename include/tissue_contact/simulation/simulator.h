@@ -92,6 +92,11 @@ struct AdvanceLimits {
   double longest_step_s = 0.0;
 };
 
+/// Of all joints at both ends of an interval, rad/s or m/s, a vector per instrument; NaN: not known.
+struct JointVelocities {
+  std::vector<VectorX> start, end;
+};
+
 /// What was chosen for a scene, or is to be expected of it, and why: a line for a log.
 struct Advice {
   std::string text;
@@ -149,12 +154,15 @@ class Simulator {
   /// Puts an instrument somewhere without motion in between (no speed, no contact until the next advance).
   void placeInstrument(int instrument, const VectorX& joint_positions);
 
-  /// Advances by `duration_s` (> 0) while the joints move linearly to `joint_positions` (one vector per instrument).
+  /// Advances by `duration_s` (> 0) while the joints move to `joint_positions` (one vector per instrument): linearly, or as a cubic those that
+  /// have velocities which fit this way.
   /// Cuts the interval into equal implicit steps no longer than scene.step.max_step_s, and shorter where an instrument
   /// moves so far that it could pass through tissue. Without limits the result depends on the arguments alone.
-  /// @throws std::invalid_argument when duration or positions are not finite or of the wrong size, a position is beyond 1e9 rad or m, or
+  /// @param joint_velocities null: none are known.
+  /// @throws std::invalid_argument when duration or positions are not finite, anything is of the wrong size, a position is beyond 1e9 rad or m, or
   ///   the duration is more than a billion of the longest steps; nothing has moved then.
-  void advance(double duration_s, const std::vector<VectorX>& joint_positions, const AdvanceLimits& limits = {});
+  void advance(double duration_s, const std::vector<VectorX>& joint_positions, const AdvanceLimits& limits = {},
+               const JointVelocities* joint_velocities = nullptr);
 
   /// From now on solvers stop iterating once the environment's clock shows `clock_s` and report
   /// StopReason::kTimeBudget, after one iteration at least; infinity, as at the start: never. The answer depends on the

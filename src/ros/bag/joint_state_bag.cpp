@@ -4,6 +4,7 @@
 #include <sensor_msgs/JointState.h>
 
 #include <stdexcept>
+#include <vector>
 
 #include "ros/bag/bag_reader.h"
 #include "ros/bag/message_reader.h"
@@ -15,16 +16,18 @@ namespace {
 
 using sensor_msgs::JointState;
 
-/// Velocities and efforts, which no sample has, are only passed over.
+/// Efforts, which no sample has, are only passed over.
 JointState readJointState(std::string_view data) {
   MessageReader reader(data);
   JointState message;
   message.header = reader.header();
   message.name.resize(reader.count(sizeof(std::uint32_t)));
   for (std::string& name : message.name) name = reader.text();
-  message.position.resize(reader.count(sizeof(double)));
-  for (double& position : message.position) position = reader.number<double>();
-  for (int i = 0; i < 2; ++i) reader.take(reader.count(sizeof(double)) * sizeof(double));
+  for (std::vector<double>* values : {&message.position, &message.velocity}) {
+    values->resize(reader.count(sizeof(double)));
+    for (double& value : *values) value = reader.number<double>();
+  }
+  reader.take(reader.count(sizeof(double)) * sizeof(double));
   return message;
 }
 

@@ -39,7 +39,7 @@ void LockStep::step(const std::map<std::string, JointPositions>& joint_states) {
   const std::int64_t stamp_ns = kStart_ns + std::llround(static_cast<double>(steps_) * 1e9 / rate_hz_);
   std::vector<std::pair<int, JointStateSample>> samples;
   for (const auto& [topic, positions] : joint_states) {
-    JointStateSample& sample = samples.emplace_back(topicOf(topic), JointStateSample{stamp_ns, {}, {}}).second;
+    JointStateSample& sample = samples.emplace_back(topicOf(topic), JointStateSample{stamp_ns, {}, {}, {}}).second;
     for (const auto& [joint, position] : positions) {
       sample.names.push_back(joint);
       sample.positions.push_back(position);

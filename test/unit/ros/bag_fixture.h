@@ -112,6 +112,7 @@ inline sensor_msgs::JointState jointState(int i) {
   state.header.stamp = ros::Time(1000, 1000000U * static_cast<unsigned>(i));
   state.name = {"yaw", "pitch"};
   state.position = {0.01 * i, -0.02 * i};
+  state.velocity = {10.0, -20.0 + i};
   return state;
 }
 

@@ -25,10 +25,12 @@ TEST(Conversions, StampsKeepEveryNanosecond) {
   message.header.stamp = ros::Time(1644257420, 444057563);
   message.name = {"a"};
   message.position = {1.5};
+  message.velocity = {-0.25};
   const JointStateSample sample = toSample(message);
   EXPECT_EQ(sample.stamp_ns, 1644257420444057563);
   EXPECT_EQ(sample.names, message.name);
   EXPECT_EQ(sample.positions, message.position);
+  EXPECT_EQ(sample.velocities, message.velocity);
   EXPECT_EQ(toTime(sample.stamp_ns), message.header.stamp);
 }
 

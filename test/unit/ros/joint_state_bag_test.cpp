@@ -24,14 +24,14 @@ using rosbag::compression::BZ2;
 using rosbag::compression::LZ4;
 using rosbag::compression::Uncompressed;
 
-/// Topic, stamp, first name, positions, time of recording.
-using Row = std::tuple<int, std::int64_t, std::string, std::vector<double>, std::uint64_t>;
+/// Topic, stamp, first name, positions, velocities, time of recording.
+using Row = std::tuple<int, std::int64_t, std::string, std::vector<double>, std::vector<double>, std::uint64_t>;
 
 std::vector<Row> rowsOf(const std::string& file, const std::vector<std::string>& topics = {kTopic}) {
   std::vector<Row> rows;
   JointStateBag(file, topics).forEach([&](int topic, const JointStateSample& sample, ros::Time recorded) {
     const std::string name = sample.names.empty() ? "" : sample.names.front();
-    rows.emplace_back(topic, sample.stamp_ns, name, sample.positions, recorded.toNSec());
+    rows.emplace_back(topic, sample.stamp_ns, name, sample.positions, sample.velocities, recorded.toNSec());
   });
   return rows;
 }
@@ -93,7 +93,7 @@ std::vector<Row> rowsOfRosbag(const std::string& file, const std::vector<std::st
     const auto state = instance.instantiate<sensor_msgs::JointState>();
     const int topic = static_cast<int>(std::find(topics.begin(), topics.end(), instance.getTopic()) - topics.begin());
     rows.emplace_back(topic, static_cast<std::int64_t>(state->header.stamp.toNSec()), state->name.front(),
-                      state->position, instance.getTime().toNSec());
+                      state->position, state->velocity, instance.getTime().toNSec());
   }
   return rows;
 }
@@ -157,13 +157,14 @@ TEST_F(JointStateBagTest, FileThatIsNoBag) {
 TEST_F(JointStateBagTest, LengthsInAMessageAreCheckedBeforeMemoryIsTaken) {
   const std::string bytes = sound();
   const RecordPlace message = messageOf(bytes, 50);
-  // After sequence number, stamp and the empty frame's length: count of names, "yaw", "pitch", count of positions.
+  // After sequence number, stamp and the empty frame's length: count of names, "yaw", "pitch", counts of positions, velocities, efforts.
   const std::size_t names = message.data + 16;
   const std::size_t positions = names + 4 + 4 + 3 + 4 + 5;
+  const std::size_t velocities = positions + 4 + 16, efforts = velocities + 4 + 16;
   ASSERT_EQ(numberAt<std::uint32_t>(bytes, names), 2u);
   ASSERT_EQ(numberAt<std::uint32_t>(bytes, positions), 2u);
   const MemoryLimit limit(kSmall);
-  for (const std::size_t place : {names - 4, names, names + 4, positions, positions + 20, positions + 24}) {
+  for (const std::size_t place : {names - 4, names, names + 4, positions, velocities, efforts}) {
     for (const std::uint32_t length : {1U << 28U, 0xffffffffU}) {
       expectRefused(patched(bytes, place, bytesOf(length)),
                     {kTopic, "1000.05", std::to_string(length), "copy it again"});

@@ -99,5 +99,25 @@ TEST(InstrumentMotion, CutsIntoABillionStepsAtOnce) {
   EXPECT_TRUE(motion.jumped());
 }
 
+/// What a joint does on average is not what it does at its fastest.
+TEST(InstrumentMotion, CutsByTheFastestPartOfACubic) {
+  const std::vector<Instrument> instruments = arm();
+  InstrumentMotion motion(instruments);
+  const double duration_s = 10.0 * kMaxStep, slide_m = 0.99 * 10.0 * 0.5 * kRadius;
+  const Vector3 start(0.0, 0.2, 0.3), target = start + slide_m * Vector3::UnitX();
+  motion.place(0, start);
+  EXPECT_EQ(motion.begin(duration_s, kMaxStep, {target}), 10);
+  const double mean = slide_m / duration_s;
+  const JointVelocities velocities{{2.4 * mean * Vector3::UnitX()}, {-0.2 * mean * Vector3::UnitX()}};
+  const int steps = motion.begin(duration_s, kMaxStep, {target}, 0, &velocities);
+  ASSERT_GE(steps, 20);
+  for (int k = 1; k <= steps; ++k) {
+    motion.moveTo(static_cast<double>(k) / steps);
+    EXPECT_LE(motion.longestTravel(), 0.6 * kRadius) << k;  // its fastest place lies within one of the ten
+    motion.finishStep();
+  }
+  EXPECT_EQ(motion.positions(0), VectorX(target));
+}
+
 }  // namespace instrument_motion_test
 }  // namespace tissue_contact
