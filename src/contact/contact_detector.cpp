@@ -167,7 +167,8 @@ bool ContactDetector::Implementation::fitBetweenShapes(const TouchingShape& shap
     const double room = std::min(kRoom * radius, tissue_room);
     if (areOpposed(*before, there) && before->distance + there.distance < room) return false;
     SignedDistance filled;
-    if (other.instrument == shape.instrument && fillGroove(own, second, contact.p_WC, radius, *before, there, filled) &&
+    if (other.instrument == shape.instrument &&
+        fillGroove(own, second, contact.p_WC, radius, room, *before, there, filled) &&
         filled.distance < united.distance) {
       united = filled;
     }

@@ -22,6 +22,39 @@ bool isPlaced(const SignedDistance& a, const SignedDistance& b, double radius) {
   return std::max(std::abs(a.distance - radius), std::abs(b.distance - radius)) < 0.01 * radius;
 }
 
+/// Least sum of both distances found on the way into the groove, down the sum's gradient from a point that is so far away from them: what is left
+/// between the shapes where it closes. Where they cross the sum falls evenly, and a step of Newton's method ends there; where they only touch
+/// it is square to the way, and a step of twice that length does, or else the one to the lowest point of the parabola through all three.
+double leastRoom(const PlacedShape& first, const PlacedShape& second, const Vector3& p_W,
+                 const SignedDistance& at_first, const SignedDistance& at_second, double enough) {
+  constexpr int kSteps = 2;
+  Vector3 at = p_W;
+  Vector3 gradient = at_first.normal + at_second.normal;
+  double least = at_first.distance + at_second.distance;
+  for (int k = 0; k < kSteps && least > enough; ++k) {
+    const Vector3 from = at;
+    const double steepness = gradient.norm();
+    if (!(steepness > 0.0)) break;
+    const Vector3 step = -least / (steepness * steepness) * gradient;
+    const auto look = [&](double steps) {
+      const Vector3 there = from + steps * step;
+      const SignedDistance a = distanceAt(first, there);
+      const SignedDistance b = distanceAt(second, there);
+      if (a.distance + b.distance < least) {
+        least = a.distance + b.distance;
+        at = there;
+        gradient = a.normal + b.normal;
+      }
+      return a.distance + b.distance;
+    };
+    const double before = least, once = look(1.0), twice = look(2.0);
+    const double bend = before - 2.0 * once + twice;
+    if (bend > 0.0) look(std::min(0.5 * (3.0 * before - 4.0 * once + twice) / bend, 2.0));
+    if (at == from) break;
+  }
+  return least;
+}
+
 }  // namespace
 
 SignedDistance distanceAt(const PlacedShape& shape, const Vector3& p_W) {
@@ -36,15 +69,18 @@ bool areOpposed(const SignedDistance& first, const SignedDistance& second) {
   return first.normal.dot(second.normal) < kOpposed;
 }
 
-bool fillGroove(const PlacedShape& first, const PlacedShape& second, const Vector3& p_W, double radius_m,
+bool fillGroove(const PlacedShape& first, const PlacedShape& second, const Vector3& p_W, double radius_m, double room_m,
                 const SignedDistance& at_first, const SignedDistance& at_second, SignedDistance& filled) {
+  constexpr double kOpen = 4.0;        // times `room_m`: nothing is filled
   constexpr int kSteps = 8;            // of Newton's method, none longer than the radius
   constexpr double kFarthest = 4.0;    // radii: a ball that far away has slipped out of the groove
   constexpr double kNearCentre = 0.1;  // of the radius: no direction there, and nothing near to touch
   SignedDistance a = at_first;
   SignedDistance b = at_second;
   const double closes_after = std::max(0.0, a.distance + b.distance) / (a.normal + b.normal).norm();
-  const double radius = radius_m * std::clamp(2.0 - closes_after / radius_m, 0.0, 1.0);
+  double radius = radius_m * std::clamp(2.0 - closes_after / radius_m, 0.0, 1.0);
+  if (!(radius > 0.0) || !(a.distance < radius && b.distance < radius)) return false;
+  radius *= std::clamp((kOpen - leastRoom(first, second, p_W, a, b, room_m) / room_m) / (kOpen - 1.0), 0.0, 1.0);
   if (!(radius > 0.0) || !(a.distance < radius && b.distance < radius)) return false;
   Vector3 centre = p_W;
   for (int k = 0; k < kSteps; ++k) {
