@@ -178,7 +178,7 @@ class Run {
         break;
       case 9:
         sample.velocities.resize(which, 1e-4 * record.x);
-        was_fast_ = true;
+        was_fast_ |= which == sample.names.size();
         break;
       default:
         break;

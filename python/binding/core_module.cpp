@@ -202,11 +202,16 @@ void bindSimulator(py::module& module) {
       .def("place", bound(&Self::place), py::arg("instrument"), py::arg("positions"),
            "Puts an instrument somewhere without a path: no speed, no contact until the next advance. positions: (n,) "
            "rad or m.")
-      .def("advance", bound(&Self::advance), py::arg("duration_s"), py::arg("positions") = py::none(),
-           "Advances by duration_s > 0 while the joints move linearly to positions (rad, m): {instrument: (n,)} or a "
-           "list for\n"
-           "all instruments; those not named stay. Cut into implicit steps as the scene says. Other threads run "
-           "meanwhile.")
+      .def(
+          "advance", bound(&Self::advance), py::arg("duration_s"), py::arg("positions") = py::none(),
+          py::arg("velocities") = py::none(),
+          "Advances by duration_s > 0 while the joints move linearly to positions (rad, m): {instrument: (n,)} or a "
+          "list for\n"
+          "all instruments; those not named stay. With velocities (rad/s, m/s), {instrument: ((n,) at the start, (n,) "
+          "at the end)},\n"
+          "along the cubic through them, where they fit this way; nan: not known. Cut into implicit steps as the scene "
+          "says. Other\n"
+          "threads run meanwhile.")
       .def("reset", bound(&Self::reset), "Everything back to the start.")
       .def(
           "retune", [](Self& self, const LoadedScene& changed) { self.retune(changed.scene); }, py::arg("scene"),

@@ -1,6 +1,7 @@
 #include "python/binding/python_simulator.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "python/binding/arrays.h"
@@ -123,25 +124,52 @@ std::vector<VectorX> PythonSimulator::targets(const py::object& joint_positions)
   return targets;
 }
 
+JointVelocities PythonSimulator::velocitiesOf(const py::object& joint_velocities) const {
+  JointVelocities velocities;
+  for (std::size_t i = 0; i < simulator_.instruments().size(); ++i) {
+    const Eigen::Index joints = simulator_.jointPositions(static_cast<int>(i)).size();
+    velocities.start.push_back(VectorX::Constant(joints, std::numeric_limits<double>::quiet_NaN()));
+  }
+  velocities.end = velocities.start;
+  if (joint_velocities.is_none()) return velocities;
+  if (!py::isinstance<py::dict>(joint_velocities)) {
+    throw py::type_error("joint velocities must be a dict {instrument: (at the start, at the end)}");
+  }
+  for (const auto& [name, values] : py::reinterpret_borrow<py::dict>(joint_velocities)) {
+    if (!py::isinstance<py::str>(name)) throw py::type_error("the name of an instrument must be text");
+    const int instrument = instrumentOf(py::str(name));
+    const std::string what = "joint velocities of '" + simulator_.instruments()[instrument].name() + "'";
+    if (!py::isinstance<py::sequence>(values) || py::len(values) != 2) {
+      throw py::type_error(what + " must be two: at the start and at the end, one for each joint");
+    }
+    const auto both = py::reinterpret_borrow<py::sequence>(values);
+    velocities.start[instrument] = toVector(both[0], what);
+    velocities.end[instrument] = toVector(both[1], what);
+  }
+  return velocities;
+}
+
 void PythonSimulator::place(const std::string& instrument, const py::object& joint_positions) {
   const Use use(*this);
   const int index = instrumentOf(instrument);
   simulator_.placeInstrument(index, target(index, joint_positions));
 }
 
-void PythonSimulator::advance(double duration_s, const py::object& joint_positions) {
+void PythonSimulator::advance(double duration_s, const py::object& joint_positions,
+                              const py::object& joint_velocities) {
   const Use use(*this);
   // Stamps have no less. What a contact carried over a step is lost in round-off where the next is of so little.
   constexpr double kShortest_s = 1e-9;
   if (duration_s > 0.0 && duration_s < kShortest_s) throwBadValue("duration", duration_s, "s", ">= 1e-9");
   const std::vector<VectorX> to = targets(joint_positions);
+  const JointVelocities velocities = velocitiesOf(joint_velocities);
   leaveMemoryToViews();
   AdvanceLimits limits;
   bool interrupted = false;
   limits.interrupted = [&interrupted, check = SignalCheck()]() mutable { return interrupted = check(); };
   {
     const py::gil_scoped_release no_gil;
-    simulator_.advance(duration_s, to, limits);
+    simulator_.advance(duration_s, to, limits, &velocities);
   }
   if (interrupted) throw py::error_already_set();
 }

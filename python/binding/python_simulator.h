@@ -53,7 +53,7 @@ class PythonSimulator : public std::enable_shared_from_this<PythonSimulator> {
 
   void place(const std::string& instrument, const py::object& joint_positions);
   /// Without the GIL. Ctrl-C ends it between two steps, with KeyboardInterrupt.
-  void advance(double duration_s, const py::object& joint_positions);
+  void advance(double duration_s, const py::object& joint_positions, const py::object& joint_velocities);
   void reset();
   void retune(const Scene& changed);
   py::bytes saveState();
@@ -85,6 +85,7 @@ class PythonSimulator : public std::enable_shared_from_this<PythonSimulator> {
   int tissueOf(const std::string& name) const;
   const Pose& tip(int instrument) const;
   std::vector<VectorX> targets(const py::object& joint_positions) const;
+  JointVelocities velocitiesOf(const py::object& joint_velocities) const;
   VectorX target(int instrument, const py::handle& joint_positions) const;
   void leaveMemoryToViews();
   py::array view(const NodalVectors& values, std::weak_ptr<NodalView>& held);

@@ -102,6 +102,7 @@ void InstrumentMotion::place(int instrument, const VectorX& positions) {
 void InstrumentMotion::put(int instrument, const VectorX& positions) {
   State& state = states_[instrument];
   state.start = state.target = state.positions = positions;
+  std::fill(state.ways.begin(), state.ways.end(), JointWay());
   if (state.deflections.size() > 0) state.positions_before = positions;
   poseEnd(instrument);
   X_WL_[instrument] = X_WL_end_[instrument];
@@ -163,7 +164,11 @@ int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vec
   double steps = std::max(by_time, joint_steps);
   const double most = std::max(by_time, std::min(kMaxTravelSteps, kMaxTravelStepsPerSecond * duration_s));
   if (joint_steps <= kMaxTravelSteps && !(travelBound() <= kSurely * kTravelPerStep * steps)) {
-    steps *= std::max(1.0, std::ceil(longestTravelOver(steps, kTravelPerStep * most / steps) / kTravelPerStep));
+    double parts = 1.0;
+    do {  // the fastest part of a cubic may lie within one of them
+      parts = std::ceil(longestTravelOver(steps, kTravelPerStep * most / steps) / kTravelPerStep);
+      steps *= std::max(1.0, parts);
+    } while (parts > 1.0 && steps <= most && anyBent());
   }
   jumped_ = !(steps <= most);
   if (jumped_) {
@@ -171,6 +176,12 @@ int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vec
     steps = by_time;
   }
   return most_steps > 0 ? std::min(most_steps, static_cast<int>(steps)) : static_cast<int>(steps);
+}
+
+bool InstrumentMotion::anyBent() const {
+  return std::any_of(states_.begin(), states_.end(), [](const State& state) {
+    return std::any_of(state.ways.begin(), state.ways.end(), [](const JointWay& way) { return !way.isStraight(); });
+  });
 }
 
 double InstrumentMotion::travelBound() const {

@@ -108,6 +108,7 @@ class InstrumentMotion {
   /// The longest of one step per half extent, of the whole interval cut into so many; of those looked at so far once it
   /// is beyond `most`.
   double longestTravelOver(double steps, double most);
+  bool anyBent() const;        ///< any joint's way
   double travelBound() const;  ///< no less than that of all steps summed, however many; costs a step's kinematics
 
   const std::vector<Instrument>& instruments_;

@@ -330,14 +330,13 @@ void JointStatePlayer::advanceTo(std::int64_t stamp_ns, PlayedSample& played) {
     time_ns_ = stamp_ns - max_gap_ns_ - 1;  // so that it counts as a gap
     behind_ns_ = 0;
   }
+  const bool begins = !time_ns_;
   std::int64_t interval_ns = time_ns_ ? stamp_ns - *time_ns_ + behind_ns_ : 0;
   time_ns_ = stamp_ns;
   behind_ns_ = interval_ns < shortest_ns_ ? interval_ns : 0;
   if (behind_ns_ > 0) return;
-  if (interval_ns == 0) {
-    velocities_.start = velocities_.end;
-    return;
-  }
+  if (begins) velocities_.start = velocities_.end;
+  if (interval_ns == 0) return;
   if (interval_ns > max_gap_ns_) {
     interval_ns = max_gap_ns_;
     forgetVelocities();

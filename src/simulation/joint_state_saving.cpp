@@ -88,6 +88,7 @@ void JointStatePlayer::carry(StateArchive& archive) {
       archive.carry(said.seen_ns);
       archive.carry(said.right_ns);
       archive.carry(said.arrives_ns);
+      archive.carry(said.velocity);
       archive.carry(said.target_velocity);
       archive.check(said.seen_ns >= 0 && said.seen_ns <= kCentury_ns && said.right_ns >= 0 &&
                         said.right_ns <= kCentury_ns && said.arrives_ns >= 0 && said.arrives_ns <= 2 * kCentury_ns,

@@ -131,16 +131,18 @@ void JointStatePlayer::headForNext(const Moment& moment, const Topic& topic) {
   const Queued& next = topic.queue.front();
   if (next.moment.epoch != moment.epoch || next.moment.stamp_ns - topic.taken->stamp_ns >= max_gap_ns_) return;
   const std::int64_t from_ns = std::max(topic.taken->stamp_ns, time_ns_.value_or(topic.taken->stamp_ns));
+  if (from_ns >= moment.stamp_ns) return;  // a restored state is later
   const double fraction =
       static_cast<double>(moment.stamp_ns - from_ns) / static_cast<double>(next.moment.stamp_ns - from_ns);
   const double duration_s = secondsBetween(from_ns, next.moment.stamp_ns);
   for (const Listener& listener : topic.listeners) {
     const auto index = static_cast<std::size_t>(listener.instrument);
-    for (std::size_t k = 0; k < next.sample.names.size(); ++k) {
+    for (std::size_t k = next.sample.names.size();
+         k-- > 0;) {  // of a joint that is named twice the last position counts
       const int joint = simulator_.instruments()[index].jointOfRecordedName(next.sample.names[k]);
       if (joint < 0 || heard_[index][static_cast<std::size_t>(joint)] == Heard::kNever) continue;
       Said& said = said_[index][static_cast<std::size_t>(joint)];
-      if (said.arrives_ns != 0 ||
+      if (said.right_ns == moment.stamp_ns || said.arrives_ns != 0 ||
           isSqueezed(ownWay(said.right_ns, next.moment.stamp_ns), next.moment.stamp_ns - from_ns))
         continue;
       said.right_ns = moment.stamp_ns;
@@ -167,6 +169,9 @@ void JointStatePlayer::noteVelocities(const Moment& moment) {
 /// The next way of every joint is a straight one: it does not begin where a velocity was said.
 void JointStatePlayer::forgetVelocities() {
   for (VectorX& velocities : velocities_.start) velocities.setConstant(kUnknown);
+  for (std::vector<Said>& of_instrument : said_) {
+    for (Said& said : of_instrument) said.target_velocity = kUnknown;
+  }
 }
 
 double JointStatePlayer::lead_s(int topic) const {

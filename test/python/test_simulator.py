@@ -51,6 +51,23 @@ def test_mesh(simulator):
     assert simulator.topology("block") is mesh
 
 
+def test_joint_velocities(scene):
+    """A parabola is met in the middle of an interval, as in two intervals; a velocity that is not known leaves the way straight."""
+    def wrench(way):
+        simulator = tc.Simulator(scene)
+        press(simulator)
+        for duration_s, z, velocities in way:
+            known = {"probe": [[0.0, 0.0, v] for v in velocities]}
+            simulator.advance(duration_s, {"probe": [0.0, 0.0, z]}, velocities=known)
+        return simulator.wrench("probe")
+    z = -0.003
+    once = wrench([(0.008, z - 0.0002, (0.0, -0.05))])
+    twice = wrench([(0.004, z - 0.00005, (0.0, -0.025)), (0.004, z - 0.0002, (-0.025, -0.05))])
+    straight = wrench([(0.008, z - 0.0002, (0.0, np.nan))])
+    assert np.allclose(once, twice, rtol=1e-6, atol=1e-9)
+    assert abs(straight[2] - once[2]) > 1e-3 * once[2]
+
+
 def test_joint_positions(simulator):
     simulator.place("probe", [0.01, 0.0, 0.005])
     assert np.array_equal(simulator.joint_positions("probe"), [0.01, 0.0, 0.005])

@@ -19,8 +19,8 @@ namespace tissue_contact {
 /// Steps a scene from joint state to joint state, and keeps what a test wants to know at the end. Not thread-safe.
 class LockStep {
  public:
-  using JointPositions = std::map<std::string, double>;  ///< by joint name as the topic has it, rad or m
-  static constexpr std::size_t kMostComplaints = 5;      ///< kept; a run that goes wrong goes wrong at every step
+  using JointValues = std::map<std::string, double>;  ///< by joint name as the topic has it: rad or m, or per s of it
+  static constexpr std::size_t kMostComplaints = 5;   ///< kept; a run that goes wrong goes wrong at every step
 
   /// @param scene_file a path, or package://PACKAGE/PATH.
   /// @param rate_hz of the joint states, 0.1 to 10 000 Hz.
@@ -34,8 +34,10 @@ class LockStep {
   LockStep& operator=(const LockStep&) = delete;
 
   /// Takes a joint state of each topic named, all with the next stamp, and steps to it: the first is at 1 s, the next 1 / rate_hz later.
-  /// @throws std::invalid_argument for a topic that the scene has not. What the node would refuse is a complaint.
-  void step(const std::map<std::string, JointPositions>& joint_states);
+  /// @param joint_velocities rad/s or m/s by topic and joint, of joints that have a position; others' are not known.
+  /// @throws std::invalid_argument for a topic that the scene has not, or a velocity without position. What the node would refuse is a complaint.
+  void step(const std::map<std::string, JointValues>& joint_states,
+            const std::map<std::string, JointValues>& joint_velocities = {});
 
   /// What the tissues exert on the instrument at the last stamp: N and N m, at the origin of the tip link and in its axes.
   /// @throws std::invalid_argument for a name that no instrument has.

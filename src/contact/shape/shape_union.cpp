@@ -24,9 +24,10 @@ bool isPlaced(const SignedDistance& a, const SignedDistance& b, double radius) {
 
 /// Least sum of both distances found on the way into the groove, down the sum's gradient from a point that is so far away from them: what is left
 /// between the shapes where it closes. Where they cross the sum falls evenly, and a step of Newton's method ends there; where they only touch
-/// it is square to the way, and a step of twice that length does, or else the one to the lowest point of the parabola through all three.
+/// it is square to the way, and a step of twice that length does, or else the one to the lowest point of the parabola through all three. Not farther
+/// than twice the radius: jaws that stand apart do meet at their pivot. The sum is never less than the gap, so what is not found stays open.
 double leastRoom(const PlacedShape& first, const PlacedShape& second, const Vector3& p_W,
-                 const SignedDistance& at_first, const SignedDistance& at_second, double enough) {
+                 const SignedDistance& at_first, const SignedDistance& at_second, double radius_m, double enough) {
   constexpr int kSteps = 2;
   Vector3 at = p_W;
   Vector3 gradient = at_first.normal + at_second.normal;
@@ -35,12 +36,12 @@ double leastRoom(const PlacedShape& first, const PlacedShape& second, const Vect
     const Vector3 from = at;
     const double steepness = gradient.norm();
     if (!(steepness > 0.0)) break;
-    const Vector3 step = -least / (steepness * steepness) * gradient;
+    const Vector3 step = -std::min(least / steepness, radius_m) / steepness * gradient;
     const auto look = [&](double steps) {
       const Vector3 there = from + steps * step;
       const SignedDistance a = distanceAt(first, there);
       const SignedDistance b = distanceAt(second, there);
-      if (a.distance + b.distance < least) {
+      if (a.distance + b.distance < least && (there - p_W).norm() <= 2.0 * radius_m) {
         least = a.distance + b.distance;
         at = there;
         gradient = a.normal + b.normal;
@@ -49,7 +50,7 @@ double leastRoom(const PlacedShape& first, const PlacedShape& second, const Vect
     };
     const double before = least, once = look(1.0), twice = look(2.0);
     const double bend = before - 2.0 * once + twice;
-    if (bend > 0.0) look(std::min(0.5 * (3.0 * before - 4.0 * once + twice) / bend, 2.0));
+    if (bend > 0.0) look(std::clamp(0.5 * (3.0 * before - 4.0 * once + twice) / bend, 0.0, 2.0));
     if (at == from) break;
   }
   return least;
@@ -80,7 +81,8 @@ bool fillGroove(const PlacedShape& first, const PlacedShape& second, const Vecto
   const double closes_after = std::max(0.0, a.distance + b.distance) / (a.normal + b.normal).norm();
   double radius = radius_m * std::clamp(2.0 - closes_after / radius_m, 0.0, 1.0);
   if (!(radius > 0.0) || !(a.distance < radius && b.distance < radius)) return false;
-  radius *= std::clamp((kOpen - leastRoom(first, second, p_W, a, b, room_m) / room_m) / (kOpen - 1.0), 0.0, 1.0);
+  radius *=
+      std::clamp((kOpen - leastRoom(first, second, p_W, a, b, radius_m, room_m) / room_m) / (kOpen - 1.0), 0.0, 1.0);
   if (!(radius > 0.0) || !(a.distance < radius && b.distance < radius)) return false;
   Vector3 centre = p_W;
   for (int k = 0; k < kSteps; ++k) {

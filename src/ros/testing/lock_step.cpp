@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -16,6 +17,27 @@ namespace {
 
 constexpr Range kJointStateRate{0.1, 10000.0, "Hz"};
 constexpr std::int64_t kStart_ns = 1000000000;  // 0 is no stamp
+
+/// What nobody would look at is a mistake.
+void requirePositions(const std::map<std::string, LockStep::JointValues>& joint_states, const std::string& topic,
+                      const LockStep::JointValues& velocities) {
+  const auto positions = joint_states.find(topic);
+  for (const auto& [joint, velocity] : velocities) {
+    if (positions != joint_states.end() && positions->second.count(joint) > 0) continue;
+    throw std::invalid_argument("joint " + inQuotes(joint) + " of topic " + inQuotes(topic) +
+                                " has a velocity, but no position");
+  }
+}
+
+/// NaN: not known.
+double velocityOf(const std::map<std::string, LockStep::JointValues>& joint_velocities, const std::string& topic,
+                  const std::string& joint) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const auto velocities = joint_velocities.find(topic);
+  if (velocities == joint_velocities.end()) return kUnknown;
+  const auto velocity = velocities->second.find(joint);
+  return velocity == velocities->second.end() ? kUnknown : velocity->second;
+}
 
 SceneEnvironment plainEnvironment() {
   SceneEnvironment environment;
@@ -35,7 +57,9 @@ LockStep::LockStep(const Scene& scene, const SceneEnvironment& environment, doub
       rate_hz_(kJointStateRate.require("the rate of the joint states", rate_hz)),
       peaks_(scene.instruments.size(), 0.0) {}
 
-void LockStep::step(const std::map<std::string, JointPositions>& joint_states) {
+void LockStep::step(const std::map<std::string, JointValues>& joint_states,
+                    const std::map<std::string, JointValues>& joint_velocities) {
+  for (const auto& [topic, velocities] : joint_velocities) requirePositions(joint_states, topic, velocities);
   const std::int64_t stamp_ns = kStart_ns + std::llround(static_cast<double>(steps_) * 1e9 / rate_hz_);
   std::vector<std::pair<int, JointStateSample>> samples;
   for (const auto& [topic, positions] : joint_states) {
@@ -43,6 +67,7 @@ void LockStep::step(const std::map<std::string, JointPositions>& joint_states) {
     for (const auto& [joint, position] : positions) {
       sample.names.push_back(joint);
       sample.positions.push_back(position);
+      sample.velocities.push_back(velocityOf(joint_velocities, topic, joint));
     }
   }
   ++steps_;

@@ -102,6 +102,29 @@ TEST(ShapeUnion, RoundShapesThatStandApartAreNotFilled) {
   }
 }
 
+// Jaws that stand apart in a V meet where they turn; what is filled there is not filled where they are open.
+TEST(ShapeUnion, RoundJawsThatOpenInAVAreFilledWhereTheyMeet) {
+  for (const double degrees : {2.0, 5.0, 10.0}) {
+    Jaws jaws;
+    for (PlacedShape* jaw : {&jaws.left, &jaws.right}) {  // about the middle of their far ends, where they touch
+      const double angle = (jaw == &jaws.left ? 0.5 : -0.5) * degrees * M_PI / 180.0;
+      const Pose turn = at({0, -0.01, 0}) * Pose(Eigen::AngleAxisd(angle, Vector3::UnitZ())) * at({0, 0.01, 0});
+      jaw->X_WS = turn * jaw->X_WS;
+    }
+    for (double y = -0.0095; y < 0.009; y += 0.0005) {
+      const double apart = 2.0 * std::sin(0.5 * degrees * M_PI / 180.0) * (y + 0.01);
+      for (double z = 0.1e-3; z < 1.4e-3; z += 0.1e-3) {
+        SignedDistance filled;
+        if (apart > 0.5 * kRho) {
+          EXPECT_FALSE(jaws.fill({0, y, z}, filled)) << degrees << " " << y << " " << z;
+        } else if (apart < kRoom && z > 0.2e-3 && z < 0.9e-3) {
+          EXPECT_TRUE(jaws.fill({0, y, z}, filled)) << degrees << " " << y << " " << z;
+        }
+      }
+    }
+  }
+}
+
 // As they close the filling comes by and by: how far it stands from a point at a time.
 TEST(ShapeUnion, TheFillingGrowsAsShapesClose) {
   double before = 0.0;

@@ -46,6 +46,21 @@ TEST(LockStep, DigestTellsRunsApart) {
   EXPECT_NE(digests[0], digests[2]);
 }
 
+TEST(LockStep, JointsFollowVelocitiesThatStatesHave) {
+  // Of rest, a pull and rest again: without velocities each step of the scene in an interval moves as far.
+  const auto digest = [](double end_velocity) {
+    LockStep tissue(kScene, 50.0);
+    tissue.step({{kTopic, {{"x", 0.0}, {"y", 0.0}, {"z", -0.002}}}}, {{kTopic, {{"z", 0.0}}}});
+    tissue.step({{kTopic, {{"x", 0.0}, {"y", 0.0}, {"z", -0.0021}}}}, {{kTopic, {{"z", end_velocity}}}});
+    return tissue.digest();
+  };
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(digest(-0.01), digest(unknown));  // m/s: twice the way's mean
+  EXPECT_EQ(digest(-10.0), digest(unknown));  // does not tell of this way
+  LockStep tissue(kScene, 50.0);
+  EXPECT_THROW(tissue.step({{kTopic, {{"z", 0.0}}}}, {{kTopic, {{"x", 0.0}}}}), std::invalid_argument);
+}
+
 TEST(LockStep, ComplainsOfWhatTheNodeWouldRefuse) {
   LockStep tissue(kScene, 100.0);
   stepTo(0.0, tissue);

@@ -113,10 +113,46 @@ TEST(InstrumentMotion, CutsByTheFastestPartOfACubic) {
   ASSERT_GE(steps, 20);
   for (int k = 1; k <= steps; ++k) {
     motion.moveTo(static_cast<double>(k) / steps);
-    EXPECT_LE(motion.longestTravel(), 0.6 * kRadius) << k;  // its fastest place lies within one of the ten
+    EXPECT_LE(motion.longestTravel(), 0.5 * kRadius) << k;
     motion.finishStep();
   }
   EXPECT_EQ(motion.positions(0), VectorX(target));
+}
+
+/// Whoever jumps is there from the first step on, and so are those that have not far to go.
+TEST(InstrumentMotion, AJumpLeavesNothingOfTheWay) {
+  const std::vector<Instrument> instruments = arm();
+  InstrumentMotion motion(instruments);
+  const Vector3 start(0.0, 0.2, 0.3), target(1e3, 0.2, 0.3);
+  motion.place(0, start);
+  const JointVelocities velocities{{1e6 * Vector3::UnitX()}, {1e6 * Vector3::UnitX()}};
+  for (const JointVelocities* known : {static_cast<const JointVelocities*>(nullptr), &velocities}) {
+    motion.place(0, start);
+    ASSERT_EQ(motion.begin(3.0 * kMaxStep, kMaxStep, {target}, 0, known), 3);
+    EXPECT_TRUE(motion.jumped());
+    for (int k = 1; k <= 3; ++k) {
+      motion.moveTo(k / 3.0);
+      EXPECT_EQ(motion.positions(0), VectorX(target)) << k;
+      motion.finishStep();
+    }
+  }
+}
+
+// Velocities that carry it far beyond both ends.
+TEST(InstrumentMotion, CutsACubicThatLeavesItsWay) {
+  const std::vector<Instrument> instruments = arm();
+  InstrumentMotion motion(instruments);
+  const Vector3 start(0.0, 0.2, 0.3), target = start + 0.5 * kRadius * Vector3::UnitX();
+  const double fast = 100.0 * 0.5 * kRadius / kMaxStep;
+  const JointVelocities velocities{{fast * Vector3::UnitX()}, {-fast * Vector3::UnitX()}};
+  motion.place(0, start);
+  const int steps = motion.begin(kMaxStep, kMaxStep, {target}, 0, &velocities);
+  ASSERT_FALSE(motion.jumped());
+  for (int k = 1; k <= steps; ++k) {
+    motion.moveTo(static_cast<double>(k) / steps);
+    EXPECT_LE(motion.longestTravel(), 0.5 * kRadius) << k;
+    motion.finishStep();
+  }
 }
 
 }  // namespace instrument_motion_test

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -150,6 +151,40 @@ TEST(JointStateVelocities, ASavedStateGoesOnAlongTheCubic) {
   second_player.restoreState(first_player.saveState());
   const std::vector<double> rest = heightsOf(*second, second_player, Order(order.begin() + 8, order.end()));
   EXPECT_EQ(rest, std::vector<double>(unbroken.begin() + 70, unbroken.end()));
+}
+
+/// Another topic's moment may lie before where a restored state is, and its own next sample after that.
+TEST_F(TwoProbes, AMomentBeforeARestoredStateIsNotOnTheWayToTheNext) {
+  for (const int topic : {0, 1}) player.push(topic, shaken(kSecond));
+  player.push(0, shaken(kSecond + 10 * kMillisecond));
+  player.stopWaiting();
+  drain(player);
+  const VectorX at = simulator->jointPositions(1);
+  const std::string state = player.saveState();
+  for (const std::int64_t next_ms : {10, 11}) {
+    player.restoreState(state);
+    player.push(0, shaken(kSecond + 7 * kMillisecond));
+    player.push(1, shaken(kSecond + next_ms * kMillisecond));
+    player.finish();
+    ASSERT_NO_THROW(drain(player));
+    EXPECT_LT((simulator->jointPositions(1) - at).norm(), 1e-3) << next_ms;
+  }
+}
+
+TEST_F(OneProbe, VelocitiesAreOfAllJointsAndMayBeAnything) {
+  const double wild = std::numeric_limits<double>::max();
+  JointVelocities velocities{{Vector3::Zero()}, {Vector3::Zero()}};
+  for (const double value : {wild, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    velocities.start[0].setConstant(value);
+    velocities.end[0].setConstant(-value);
+    simulator->advance(0.01, {Vector3(0.0, 0.0, -0.002)}, {}, &velocities);
+    EXPECT_TRUE(simulator->positions(0).allFinite());
+    EXPECT_EQ(simulator->jointPositions(0), VectorX(Vector3(0.0, 0.0, -0.002)));
+  }
+  velocities.end[0] = Vector2::Zero();
+  EXPECT_THROW(simulator->advance(0.01, {Vector3(0.0, 0.0, -0.002)}, {}, &velocities), std::invalid_argument);
+  velocities.end.clear();
+  EXPECT_THROW(simulator->advance(0.01, {Vector3(0.0, 0.0, -0.002)}, {}, &velocities), std::invalid_argument);
 }
 
 TEST_F(OneProbe, AfterAGapTheWayIsStraight) {
