@@ -164,11 +164,12 @@ int InstrumentMotion::begin(double duration_s, double max_step_s, const std::vec
   double steps = std::max(by_time, joint_steps);
   const double most = std::max(by_time, std::min(kMaxTravelSteps, kMaxTravelStepsPerSecond * duration_s));
   if (joint_steps <= kMaxTravelSteps && !(travelBound() <= kSurely * kTravelPerStep * steps)) {
-    double parts = 1.0;
-    do {  // the fastest part of a cubic may lie within one of them
-      parts = std::ceil(longestTravelOver(steps, kTravelPerStep * most / steps) / kTravelPerStep);
-      steps *= std::max(1.0, parts);
-    } while (parts > 1.0 && steps <= most && anyBent());
+    double parts = longestTravelOver(steps, kTravelPerStep * most / steps) / kTravelPerStep;
+    steps *= std::max(1.0, std::ceil(parts));
+    while (parts > 1.0 && steps <= most && anyBent()) {  // the fastest part of a cubic may lie within one of them
+      parts = longestTravelOver(steps, kTravelPerStep * most / steps) / kTravelPerStep;
+      if (parts > 1.0) steps = std::ceil(steps * parts);
+    }
   }
   jumped_ = !(steps <= most);
   if (jumped_) {

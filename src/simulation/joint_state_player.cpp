@@ -339,7 +339,7 @@ void JointStatePlayer::advanceTo(std::int64_t stamp_ns, PlayedSample& played) {
   if (interval_ns == 0) return;
   if (interval_ns > max_gap_ns_) {
     interval_ns = max_gap_ns_;
-    forgetVelocities();
+    forgetStartVelocities();
     played.was_gap = true;
     for (Topic& topic : topic_states_) {  // nothing was said by anybody
       if (topic.taken_at_ns) topic.taken_at_ns = stamp_ns;

@@ -36,7 +36,7 @@ void JointStatePlayer::forgetSamples() {
   epoch_ = 0;
 }
 
-const char* JointStatePlayer::stateTitle() { return "tissue_contact state 10"; }
+const char* JointStatePlayer::stateTitle() { return "tissue_contact state 11"; }
 
 std::string JointStatePlayer::saveState() {
   StateArchive archive(stateTitle());

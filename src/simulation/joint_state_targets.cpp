@@ -166,9 +166,14 @@ void JointStatePlayer::noteVelocities(const Moment& moment) {
   }
 }
 
-/// The next way of every joint is a straight one: it does not begin where a velocity was said.
-void JointStatePlayer::forgetVelocities() {
+/// The simulator is not, or not so long before the moment, where velocities were said: the way to it is straight.
+void JointStatePlayer::forgetStartVelocities() {
   for (VectorX& velocities : velocities_.start) velocities.setConstant(kUnknown);
+}
+
+/// And so is the one to the next sample.
+void JointStatePlayer::forgetVelocities() {
+  forgetStartVelocities();
   for (std::vector<Said>& of_instrument : said_) {
     for (Said& said : of_instrument) said.target_velocity = kUnknown;
   }

@@ -270,6 +270,7 @@ class JointStatePlayer {
   static bool isSqueezed(std::int64_t own_ns, std::int64_t left_ns);
   void headForNext(const Moment& moment, const Topic& topic);
   void noteVelocities(const Moment& moment);
+  void forgetStartVelocities();
   void forgetVelocities();
   void placeNewJoints(std::int64_t stamp_ns, PlayedSample& played);
   void carry(StateArchive& archive);

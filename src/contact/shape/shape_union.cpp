@@ -29,6 +29,7 @@ bool isPlaced(const SignedDistance& a, const SignedDistance& b, double radius) {
 double leastRoom(const PlacedShape& first, const PlacedShape& second, const Vector3& p_W,
                  const SignedDistance& at_first, const SignedDistance& at_second, double radius_m, double enough) {
   constexpr int kSteps = 2;
+  constexpr double kFarthest = 2.0 * (1.0 + 1e-6);  // radii, and round-off of the two of a limited step
   Vector3 at = p_W;
   Vector3 gradient = at_first.normal + at_second.normal;
   double least = at_first.distance + at_second.distance;
@@ -41,7 +42,7 @@ double leastRoom(const PlacedShape& first, const PlacedShape& second, const Vect
       const Vector3 there = from + steps * step;
       const SignedDistance a = distanceAt(first, there);
       const SignedDistance b = distanceAt(second, there);
-      if (a.distance + b.distance < least && (there - p_W).norm() <= 2.0 * radius_m) {
+      if (a.distance + b.distance < least && (there - p_W).norm() <= kFarthest * radius_m) {
         least = a.distance + b.distance;
         at = there;
         gradient = a.normal + b.normal;

@@ -125,6 +125,30 @@ TEST(ShapeUnion, RoundJawsThatOpenInAVAreFilledWhereTheyMeet) {
   }
 }
 
+/// A cylinder lies on a plate: wherever both are turned to, the same.
+TEST(ShapeUnion, ACylinderOnAPlateIsFilledWhereverItIsTurned) {
+  const std::unique_ptr<ShapeDistance> plate = makeBoxDistance({5e-3, 0.02, 1e-3});
+  const Jaws jaws;
+  Random random(5);
+  int filled_points = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vector3 p(random.number(0.2e-3, 2.2e-3), 0.0, random.number(0.05e-3, 1.2e-3));
+    std::vector<double> stands;
+    for (int k = 0; k < 4; ++k) {
+      const Pose X = k == 0 ? Pose::Identity() : random.pose(0.05);
+      const PlacedShape cylinder{jaws.shape.get(), X * at({kR, 0, kR}) * jaws.left.X_WS};
+      const PlacedShape table{plate.get(), X * at({0, 0, -1e-3})};
+      SignedDistance filled;
+      const bool is = fillGroove(cylinder, table, X * p, kRho, kRoom, distanceAt(cylinder, X * p),
+                                 distanceAt(table, X * p), filled);
+      stands.push_back(is ? filled.distance : 1.0);
+    }
+    filled_points += stands[0] < 1.0;
+    for (const double one : stands) EXPECT_NEAR(one, stands[0], 1e-8) << p.transpose();
+  }
+  EXPECT_GT(filled_points, 30);
+}
+
 // As they close the filling comes by and by: how far it stands from a point at a time.
 TEST(ShapeUnion, TheFillingGrowsAsShapesClose) {
   double before = 0.0;

@@ -142,12 +142,13 @@ TEST(InstrumentMotion, AJumpLeavesNothingOfTheWay) {
 TEST(InstrumentMotion, CutsACubicThatLeavesItsWay) {
   const std::vector<Instrument> instruments = arm();
   InstrumentMotion motion(instruments);
-  const Vector3 start(0.0, 0.2, 0.3), target = start + 0.5 * kRadius * Vector3::UnitX();
+  const Vector3 start(0.0, 0.2, 0.3), target = start + 1.4 * kRadius * Vector3::UnitX();
   const double fast = 100.0 * 0.5 * kRadius / kMaxStep;
   const JointVelocities velocities{{fast * Vector3::UnitX()}, {-fast * Vector3::UnitX()}};
   motion.place(0, start);
   const int steps = motion.begin(kMaxStep, kMaxStep, {target}, 0, &velocities);
   ASSERT_FALSE(motion.jumped());
+  ASSERT_GE(steps, 50);
   for (int k = 1; k <= steps; ++k) {
     motion.moveTo(static_cast<double>(k) / steps);
     EXPECT_LE(motion.longestTravel(), 0.5 * kRadius) << k;
