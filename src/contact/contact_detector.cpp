@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "contact/conforming_gap.h"
+#include "contact/contact_direction.h"
 #include "contact/least_width.h"
 #include "contact/narrow_phase.h"
 #include "contact/shape/shape_union.h"
@@ -203,23 +203,21 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
     const MovingSurface& surface = (*implementation_->surfaces)[key.tissue];
     const Pose X_WS = X_WL.at(shape.instrument).at(shape.link) * shape.X_LS;
     const Vector3 p_W = pointOf(x, contact.nodes, contact.weights);
-    std::array<Vector3, 3> corners_S;
-    std::array<double, 3> distances;
     const auto inShape = [&](int node) -> Vector3 {
       return X_WS.linear().transpose() * (x.col(node) - X_WS.translation());
     };
-    for (int i = 0; i < 3; ++i) {
-      corners_S[i] = inShape(contact.nodes[i]);
-      distances[i] = shape.distance->at(corners_S[i]).distance;
-    }
-    const Vector3 p_S = X_WS.linear().transpose() * (p_W - X_WS.translation());
-    SignedDistance here = shape.distance->at(p_S);
-    here.distance = conformingGap(corners_S, distances, contact.weights, here.distance).gap;
-    const double groove = implementation_->deepestGroove(shape, X_WL[shape.instrument]);
     const auto normalOf = [&](int triangle) -> Vector3 {
       const Triangle& nodes = surface.triangles()[triangle];
       return triangleNormal(inShape(nodes[0]), inShape(nodes[1]), inShape(nodes[2]));
     };
+    TrianglePoints points;
+    for (int i = 0; i < 3; ++i) points.corners[i] = inShape(contact.nodes[i]);
+    surface.anyTriangleOf(key.feature, [&](int triangle) {
+      points.normal += normalOf(triangle);
+      return false;
+    });
+    SignedDistance here = keptContact(*shape.distance, points, contact.weights);
+    const double groove = implementation_->deepestGroove(shape, X_WL[shape.instrument]);
     const VertexContact vertex(*shape.distance, surface, key.feature[0], inShape, normalOf);
     const bool is_vertex = key.feature[1] < 0 && key.corner < 0;
     const Vector3 own = here.normal;

@@ -5,49 +5,11 @@
 #include <tuple>
 
 #include "contact/conforming_gap.h"
+#include "contact/contact_direction.h"
 #include "contact/tolerances.h"
 #include "contact/vertex_contact.h"
 
 namespace tissue_contact {
-namespace {
-
-/// Shortest generalised gradient that still means a direction of contact. The edge of a box gives at least 0.71, its
-/// corner 0.58; 0 is where opposite sides of the shape are equally near.
-constexpr double kShortestGradient = 0.3;
-
-/// A gradient whose part along its feature is longer than this share of it is not stationary: the search for the
-/// closest point ended early or met a part of a mesh that is not convex. The plain gradient is used then.
-constexpr double kStationary = 0.1;
-
-/// Projector onto the directions along a face or edge of a triangle; zero at a vertex.
-Matrix3 tangentOf(const TrianglePoints& points, const Vector3& weights) {
-  const int corners = static_cast<int>((weights.array() > 0.0).count());
-  if (corners == 1) return Matrix3::Zero();
-  if (corners == 3) return Matrix3::Identity() - points.normal * points.normal.transpose();
-  int opposite = 0;
-  weights.minCoeff(&opposite);
-  const Vector3 edge = (points.corners[(opposite + 2) % 3] - points.corners[(opposite + 1) % 3]).normalized();
-  return edge * edge.transpose();
-}
-
-struct Direction {
-  Vector3 normal = Vector3::Zero();  ///< zero: none
-  double gap = 0.0;
-};
-
-Direction contactDirection(const ClosestPoint& closest, const Matrix3& tangent) {
-  if (closest.gradients.count() == 0) return {};
-  const Vector3 gradient = stationaryGradient(closest.gradients, tangent);
-  const double length = gradient.norm();
-  if (!(length > kShortestGradient)) return {};
-  const Vector3 along = tangent * gradient;
-  if (along.norm() > kStationary * length) return {closest.gradients[0], closest.distance};
-  // Pushing the feature out along the normal shortens the penetration at the rate `length`.
-  return {(gradient - along).normalized(), closest.distance < 0.0 ? closest.distance / length : closest.distance};
-}
-
-}  // namespace
-
 void NarrowPhase::makeRoom(const MovingSurface& surface) {
   nodes_.resize(std::max(nodes_.size(), static_cast<std::size_t>(surface.nodeCount())));
   normals_.resize(std::max(normals_.size(), surface.triangles().size()));
@@ -201,18 +163,18 @@ void NarrowPhase::addClosest(int triangle, const TrianglePoints& points, double 
   }
   const SurfaceFeature feature = call_.surface->featureOf(triangle, weights);
   if (feature[1] < 0) return;  // a vertex: measureVertex() has it
-  Direction direction = contactDirection(closest, tangentOf(points, weights));
+  SignedDistance direction = contactDirection(closest, tangentOf(points, weights));
   if (!closest.beyond_rim) {
     const ConformingGap conforming =
         conformingGap(points.corners, vertexDistances(triangle), weights, closest.distance);
     if (conforming.fully) return;
-    direction.gap += conforming.gap - closest.distance;
+    direction.distance += conforming.gap - closest.distance;
   }
   if (call_.shape->hasFlatParts()) {
     const double lowest = std::min(flush_gap, lowestVertexGap(feature));
-    if (direction.gap >= lowest - kFlush * call_.shape->size()) return;
+    if (direction.distance >= lowest - kFlush * call_.shape->size()) return;
   }
-  add(triangle, weights, -1, direction.normal, direction.gap);
+  add(triangle, weights, -1, direction.normal, direction.distance);
 }
 
 /// Where the nearest point is held, the nearest that is not lies on the line where points begin to be: distances to a convex shape grow

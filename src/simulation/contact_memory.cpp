@@ -30,6 +30,8 @@ double distanceOf(const Contact& a, const Contact& b) {
   return most;
 }
 
+constexpr int kLeftOut = -1;  // a slot before all
+
 bool isOpen(const SolvedContact& contact) { return contact.state == ContactState::kOpen; }
 
 }  // namespace
@@ -52,13 +54,19 @@ void ContactMemory::addKeptPoints(const ContactDetector& detector, const std::ve
     // Tissue against tissue the pair's own feature is its point; without a feature, its mesh has changed there.
     if (probe.key.other_tissue >= 0 || probe.key.feature[0] < 0) continue;
     const auto fresh = std::lower_bound(contacts.begin(), contacts.end(), probe, keyBefore);
-    giveSlots(fresh != contacts.end() && fresh->key == probe.key ? &*fresh : nullptr, first, end);
+    const bool has_fresh = fresh != contacts.end() && fresh->key == probe.key;
+    const bool is_new = !giveSlots(has_fresh ? &*fresh : nullptr, first, end) && has_fresh;
     for (std::size_t old = first; old < end; ++old) {
       if (isOpen(remembered_[old]) || remembered_[old].contact.key.slot == 0) continue;
       Contact contact = remembered_[old].contact;
-      if (detector.measure(positions, X_WL, margins_m[contact.key.tissue], contact)) kept_.push_back(contact);
+      if (!detector.measure(positions, X_WL, margins_m[contact.key.tissue], contact)) continue;
+      const double way = is_new ? (contact.p_WC - fresh->p_WC).norm() : 0.0;
+      if (is_new && std::abs(contact.gap_m - fresh->gap_m) < kFlushSlope * way) fresh->key.slot = kLeftOut;
+      kept_.push_back(contact);
     }
   }
+  const auto is_left_out = [](const Contact& contact) { return contact.key.slot == kLeftOut; };
+  contacts.erase(std::remove_if(contacts.begin(), contacts.end(), is_left_out), contacts.end());
   contacts.insert(contacts.end(), kept_.begin(), kept_.end());
   std::sort(contacts.begin(), contacts.end(), keyBefore);
   remembered_.erase(std::remove_if(remembered_.begin(), remembered_.end(), isOpen), remembered_.end());
@@ -66,7 +74,7 @@ void ContactMemory::addKeptPoints(const ContactDetector& detector, const std::ve
             [](const SolvedContact& a, const SolvedContact& b) { return keyBefore(a.contact, b.contact); });
 }
 
-void ContactMemory::giveSlots(const Contact* fresh, std::size_t first, std::size_t end) {
+bool ContactMemory::giveSlots(const Contact* fresh, std::size_t first, std::size_t end) {
   std::array<bool, kKeptPoints + 1> used{};
   std::size_t continued = end;
   for (std::size_t old = first; old < end; ++old) {
@@ -94,6 +102,7 @@ void ContactMemory::giveSlots(const Contact* fresh, std::size_t first, std::size
       }
     }
   }
+  return continued < end;
 }
 
 void ContactMemory::recall(const std::vector<Contact>& contacts, const std::vector<double>& reach_m,

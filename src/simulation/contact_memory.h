@@ -26,7 +26,8 @@ class ContactMemory {
   void remember(const std::vector<SolvedContact>& contacts);
 
   /// Adds to the freshly detected contacts (sorted by key, slot 0) the remembered points that carried force and that no
-  /// fresh contact of the same feature is near to; keeps the order. At most kKeptPoints per feature.
+  /// fresh contact of the same feature is near to; keeps the order. At most kKeptPoints per feature. A fresh one as
+  /// deep as one of them goes: it would wander along a line of contact and cast a new point off in every step.
   /// @param margins_m per tissue: points with a larger gap are let go.
   void addKeptPoints(const ContactDetector& detector, const std::vector<NodalVectors>& positions,
                      const std::vector<std::vector<Pose>>& X_WL, const std::vector<double>& margins_m,
@@ -49,12 +50,17 @@ class ContactMemory {
   /// A fresh point nearer to an old one than this share of the feature's size continues it.
   static constexpr double kSamePoint = 0.02;
 
+  /// A fresh point is as deep as a kept one where their gaps differ by less than this share of the way between them.
+  /// On a line of contact they do, by what the solver leaves; on a ball they come as near only where they are one.
+  static constexpr double kFlushSlope = 1e-3;
+
  private:
   /// Slots of the remembered points [first, end) of one feature in the new step: 0 for the one that the fresh contact
   /// continues, others for those that stay beside it. Of several at the fresh point the nearest goes on; the rest
   /// become open: nobody inherits from them.
   /// @param fresh null: none was detected on the feature.
-  void giveSlots(const Contact* fresh, std::size_t first, std::size_t end);
+  /// @return whether one goes on at the fresh point.
+  bool giveSlots(const Contact* fresh, std::size_t first, std::size_t end);
   void inherit(std::size_t old, std::size_t contact, std::vector<SolvedContact>& inherited);
   void inheritNearest(const std::vector<double>& reach_m, std::vector<SolvedContact>& inherited);
 

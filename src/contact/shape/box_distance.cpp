@@ -32,6 +32,7 @@ class BoxDistance : public ShapeDistance {
   Vector3 halfExtents(const Matrix3& R_WS) const override { return R_WS.cwiseAbs() * half_; }
   SignedDistance at(const Vector3& p_S) const override;
   double toRidge(const Vector3& p_S) const override;
+  void gradientsNear(const Vector3& p_S, double reach, GradientSet& gradients) const override;
   bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const override;
   void foremostCorners(const Vector3& forward, const Eigen::AlignedBox3d& box,
                        std::vector<ShapeCorner>& corners) const override;
@@ -41,7 +42,6 @@ class BoxDistance : public ShapeDistance {
     return {index & 1 ? half_.x() : -half_.x(), index & 2 ? half_.y() : -half_.y(), index & 4 ? half_.z() : -half_.z()};
   }
   PlaneSet facePlanes(const TrianglePoints& triangle) const;
-  void addFaceNormals(const Vector3& p, ClosestPoint& result) const;
   void findBeyondFaces(const TrianglePoints& triangle, ClosestPoint& result) const;
   void offerEdgePairs(const TrianglePoints& triangle, const Vector3& from, const Vector3& to,
                       SoftMinimum& minimum) const;
@@ -95,7 +95,7 @@ bool BoxDistance::closest(const TrianglePoints& triangle, double margin, Closest
   const SignedDistance here = at(p);
   result.distance = here.distance;
   if (here.distance <= kTie * size_) {
-    addFaceNormals(p, result);
+    gradientsNear(p, kTie * size_, result.gradients);
   } else if (here.distance > minimum.value + kTouch * size_) {
     findBeyondFaces(triangle, result);
   } else {
@@ -104,14 +104,16 @@ bool BoxDistance::closest(const TrianglePoints& triangle, double margin, Closest
   return result.distance <= margin;
 }
 
-void BoxDistance::addFaceNormals(const Vector3& p, ClosestPoint& result) const {
+void BoxDistance::gradientsNear(const Vector3& p, double reach, GradientSet& gradients) const {
+  const SignedDistance here = at(p);
+  if (here.distance > reach) return gradients.add(here.normal);
   const Vector3 beyond = p.cwiseAbs() - half_;
-  const double active = beyond.maxCoeff() - 2.0 * kTie * size_;
+  const double active = beyond.maxCoeff() - 2.0 * reach;
   for (int axis = 0; axis < 3; ++axis) {
     if (beyond[axis] < active) continue;
-    result.gradients.add(side(p[axis]) * Vector3::Unit(axis));
+    gradients.add(side(p[axis]) * Vector3::Unit(axis));
     // In the middle of a plate both faces are equally near.
-    if (-std::abs(p[axis]) - half_[axis] >= active) result.gradients.add(-side(p[axis]) * Vector3::Unit(axis));
+    if (-std::abs(p[axis]) - half_[axis] >= active) gradients.add(-side(p[axis]) * Vector3::Unit(axis));
   }
 }
 

@@ -30,6 +30,7 @@ class CylinderDistance : public ShapeDistance {
     const double side = beyondSide(p_S), cap = beyondCap(p_S);
     return side > 0.0 && cap > 0.0 ? side + cap : std::abs(side - cap);
   }
+  void gradientsNear(const Vector3& p_S, double reach, GradientSet& gradients) const override;
   bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const override;
 
  private:
@@ -45,7 +46,6 @@ class CylinderDistance : public ShapeDistance {
   }
   void offerEdge(const TrianglePoints& triangle, int edge, bool sees_side, bool sees_cap, SoftMinimum& minimum) const;
   void offerInside(const TrianglePoints& triangle, SoftMinimum& minimum) const;
-  void addNormals(const Vector3& p, ClosestPoint& result) const;
   bool nearestInside(const TrianglePoints& triangle, Vector3& weights) const;
   double nearestOnEdge(const Vector3& a, const Vector3& d) const;
   void findBeyondRim(const TrianglePoints& triangle, ClosestPoint& result) const;
@@ -97,7 +97,7 @@ bool CylinderDistance::closest(const TrianglePoints& triangle, double margin, Cl
   const SignedDistance here = at(p);
   result.distance = here.distance;
   if (here.distance <= kTie * size_) {
-    addNormals(p, result);
+    gradientsNear(p, kTie * size_, result.gradients);
   } else if (here.distance > beyondPlanes(p) + kTouch * size_) {
     findBeyondRim(triangle, result);
   } else {
@@ -157,18 +157,20 @@ void CylinderDistance::offerInside(const TrianglePoints& triangle, SoftMinimum& 
   if (beyondPlanes(triangle.pointAt(middle)) < minimum.lowest() - kTie * size_) offer(triangle, middle, minimum);
 }
 
-void CylinderDistance::addNormals(const Vector3& p, ClosestPoint& result) const {
-  const double active = beyondPlanes(p) - 2.0 * kTie * size_;
+void CylinderDistance::gradientsNear(const Vector3& p, double reach, GradientSet& gradients) const {
+  const SignedDistance here = at(p);
+  if (here.distance > reach) return gradients.add(here.normal);
+  const double active = beyondPlanes(p) - 2.0 * reach;
   if (beyondSide(p) >= active) {
-    result.gradients.add(radialDirection(p));
-    if (beyondSide(p) + radius_ <= kTie * size_) {  // on the axis
-      result.gradients.add(-radialDirection(p));
-      result.gradients.add(Vector3::UnitZ().cross(radialDirection(p)));
-      result.gradients.add(radialDirection(p).cross(Vector3::UnitZ()));
+    gradients.add(radialDirection(p));
+    if (beyondSide(p) + radius_ <= reach) {  // on the axis
+      gradients.add(-radialDirection(p));
+      gradients.add(Vector3::UnitZ().cross(radialDirection(p)));
+      gradients.add(radialDirection(p).cross(Vector3::UnitZ()));
     }
   }
-  if (beyondCap(p) >= active) result.gradients.add(capNormal(p));
-  if (-std::abs(p.z()) - half_length_ >= active) result.gradients.add(-capNormal(p));
+  if (beyondCap(p) >= active) gradients.add(capNormal(p));
+  if (-std::abs(p.z()) - half_length_ >= active) gradients.add(-capNormal(p));
 }
 
 /// The point below the cylinder's foremost point towards the triangle's plane, if the triangle holds it. Where that is a

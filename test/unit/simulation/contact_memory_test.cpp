@@ -171,6 +171,32 @@ TEST_F(KeptPoints, AFreshPointAtTheSamePlaceContinuesTheOldOne) {
   EXPECT_EQ(inherited[0].force_on_tissue_n.z(), 1.0);
 }
 
+// On a line of contact the closest point is anywhere on it: it would leave a new point to keep in every step.
+TEST_F(KeptPoints, AFreshPointAsDeepAsAKeptOneIsLeftOut) {
+  const Contact kept = detectAt(0.0).at(0);
+  const auto besideAFresh = [&](double deeper_m) {
+    memory.remember({carrying(1.0, kept)});
+    Contact fresh = kept;
+    fresh.weights = Vector3(0.1, 0.4, 0.5);
+    fresh.p_WC += 0.3 * Vector3::UnitX();
+    fresh.gap_m -= deeper_m;
+    std::vector<Contact> contacts = {fresh};
+    memory.addKeptPoints(*detector, positions, X_WL, {0.1}, contacts);
+    return contacts;
+  };
+  const double level_m = 0.3 * ContactMemory::kFlushSlope;
+  for (const double share : {1.1, -1.1}) EXPECT_EQ(besideAFresh(share * level_m).size(), 2u);
+  for (const double share : {0.9, 0.0, -0.9}) {
+    const std::vector<Contact> contacts = besideAFresh(share * level_m);
+    ASSERT_EQ(contacts.size(), 1u);
+    EXPECT_EQ(contacts[0].weights, kept.weights);
+    EXPECT_EQ(contacts[0].key.slot, 1);
+    std::vector<SolvedContact> inherited;
+    recallWithin(0.0, memory, contacts, inherited);
+    EXPECT_EQ(inherited[0].force_on_tissue_n.z(), 1.0);
+  }
+}
+
 TEST_F(KeptPoints, PointsAreDroppedOnceFarOrWithoutForceAndNeverMoreThanTheBound) {
   memory.remember(carrying(1.0, detectAt(0.0)));
   EXPECT_EQ(detectAt(0.5).size(), 1u);  // old point 0.118 m away: beyond the margin
