@@ -212,10 +212,13 @@ bool ContactDetector::measure(const std::vector<NodalVectors>& positions, const 
     };
     TrianglePoints points;
     for (int i = 0; i < 3; ++i) points.corners[i] = inShape(contact.nodes[i]);
-    surface.anyTriangleOf(key.feature, [&](int triangle) {
-      points.normal += normalOf(triangle);
-      return false;
-    });
+    if (key.feature[1] >= 0) {
+      surface.anyTriangleOf(key.feature, [&](int triangle) {
+        points.normal += normalOf(triangle);
+        return false;
+      });
+      points.normal.normalize();
+    }
     SignedDistance here = keptContact(*shape.distance, points, contact.weights);
     const double groove = implementation_->deepestGroove(shape, X_WL[shape.instrument]);
     const VertexContact vertex(*shape.distance, surface, key.feature[0], inShape, normalOf);

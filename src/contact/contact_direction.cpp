@@ -52,15 +52,15 @@ SignedDistance keptContact(const ShapeDistance& shape, const TrianglePoints& poi
   const SignedDistance here = shape.at(p);
   const double bent = conformingGap(points.corners, distances, weights, here.distance).gap;
   SignedDistance plain = {bent, here.normal};
-  if (weights.maxCoeff() == 1.0) return plain;  // a vertex
+  const double reach = kNearRidge * shape.size();
+  const bool is_vertex = weights.maxCoeff() == 1.0;
+  if (is_vertex || here.distance > reach) return plain;
   GradientSet gradients;
-  shape.gradientsNear(p, kNearRidge * shape.size(), gradients);
+  shape.gradientsNear(p, reach, gradients);
   if (gradients.count() < 2) return plain;
   // Along an edge that lies on the ridge no normal has a part: the surface beside it decides.
-  const Vector3 n = points.normal.normalized();
-  TrianglePoints own = points;
-  own.normal = n;
-  const Matrix3 tangent = tangentOf(own, weights) + kBesideEdge * (Matrix3::Identity() - n * n.transpose());
+  const Vector3& n = points.normal;
+  const Matrix3 tangent = tangentOf(points, weights) + kBesideEdge * (Matrix3::Identity() - n * n.transpose());
   const Vector3 gradient = stationaryGradient(gradients, tangent);
   const double length = gradient.norm();
   if (!(length > kShortestGradient)) return plain;

@@ -19,7 +19,7 @@ SignedDistance contactDirection(const ClosestPoint& closest, const Matrix3& tang
 /// the ridge or on the other as round-off and the solver have it, and the faces' normals differ by a right angle: with the nearest face's
 /// a block between jaws smaller than its face was pushed up by their upper faces, and walked 5 um/s (box_jaws_test). So near a
 /// ridge the combination of the normals there counts that is most nearly perpendicular to the tissue; its gap is right to twice that nearness.
-/// @param points a triangle of the feature, and for normal the sum of those of all its triangles.
+/// @param points a triangle of the feature, and for normal the mean over all its triangles; of a vertex none is needed.
 SignedDistance keptContact(const ShapeDistance& shape, const TrianglePoints& points, const Vector3& weights);
 
 }  // namespace tissue_contact

@@ -10,6 +10,7 @@
 #include "contact/vertex_contact.h"
 
 namespace tissue_contact {
+
 void NarrowPhase::makeRoom(const MovingSurface& surface) {
   nodes_.resize(std::max(nodes_.size(), static_cast<std::size_t>(surface.nodeCount())));
   normals_.resize(std::max(normals_.size(), surface.triangles().size()));

@@ -1,6 +1,7 @@
 #include "simulation/contact_memory.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace tissue_contact {
@@ -28,6 +29,10 @@ double distanceOf(const Contact& a, const Contact& b) {
     if (node >= 0) most = std::max(most, std::abs(weightOf(a, node) - weightOf(b, node)));
   }
   return most;
+}
+
+bool areLevel(const Contact& a, const Contact& b) {
+  return std::abs(a.gap_m - b.gap_m) < ContactMemory::kFlushSlope * (a.p_WC - b.p_WC).norm();
 }
 
 constexpr int kLeftOut = -1;  // a slot before all
@@ -60,8 +65,7 @@ void ContactMemory::addKeptPoints(const ContactDetector& detector, const std::ve
       if (isOpen(remembered_[old]) || remembered_[old].contact.key.slot == 0) continue;
       Contact contact = remembered_[old].contact;
       if (!detector.measure(positions, X_WL, margins_m[contact.key.tissue], contact)) continue;
-      const double way = is_new ? (contact.p_WC - fresh->p_WC).norm() : 0.0;
-      if (is_new && std::abs(contact.gap_m - fresh->gap_m) < kFlushSlope * way) fresh->key.slot = kLeftOut;
+      if (is_new && areLevel(contact, *fresh)) fresh->key.slot = kLeftOut;
       kept_.push_back(contact);
     }
   }

@@ -105,8 +105,6 @@ bool BoxDistance::closest(const TrianglePoints& triangle, double margin, Closest
 }
 
 void BoxDistance::gradientsNear(const Vector3& p, double reach, GradientSet& gradients) const {
-  const SignedDistance here = at(p);
-  if (here.distance > reach) return gradients.add(here.normal);
   const Vector3 beyond = p.cwiseAbs() - half_;
   const double active = beyond.maxCoeff() - 2.0 * reach;
   for (int axis = 0; axis < 3; ++axis) {

@@ -158,8 +158,6 @@ void CylinderDistance::offerInside(const TrianglePoints& triangle, SoftMinimum& 
 }
 
 void CylinderDistance::gradientsNear(const Vector3& p, double reach, GradientSet& gradients) const {
-  const SignedDistance here = at(p);
-  if (here.distance > reach) return gradients.add(here.normal);
   const double active = beyondPlanes(p) - 2.0 * reach;
   if (beyondSide(p) >= active) {
     gradients.add(radialDirection(p));

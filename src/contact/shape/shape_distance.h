@@ -60,10 +60,9 @@ class ShapeDistance {
   /// At any distance, at some cost.
   virtual SignedDistance atAnyDistance(const Vector3& p_S) const { return at(p_S); }
 
-  /// The gradients about within `reach` of a point, m, where smooth parts meet at a ridge: more than one. Of a shape without ridges its own.
-  virtual void gradientsNear(const Vector3& p_S, double /*reach*/, GradientSet& gradients) const {
-    gradients.add(at(p_S).normal);
-  }
+  /// Adds the gradients of the smooth parts that are nearest, but for twice `reach`, to a point no farther outside than `reach`, m: more
+  /// than one beside a ridge. None of a shape without ridges.
+  virtual void gradientsNear(const Vector3& /*p_S*/, double /*reach*/, GradientSet& /*gradients*/) const {}
 
   /// The point of the triangle where the signed distance is least. False when that is certainly more than `margin`.
   virtual bool closest(const TrianglePoints& triangle, double margin, ClosestPoint& result) const = 0;

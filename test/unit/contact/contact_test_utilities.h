@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -41,6 +42,19 @@ class Random {
  private:
   std::mt19937 engine_;
 };
+
+struct EdgedTool {
+  const char* name;
+  std::unique_ptr<ShapeDistance> shape;
+};
+
+/// Each ends at x = +-.006 and z = +-.002, with edges along y there.
+inline std::vector<EdgedTool> edgedTools() {
+  std::vector<EdgedTool> all;
+  all.push_back({"box", makeBoxDistance({0.006, 0.004, 0.002})});
+  all.push_back({"cylinder", makeCylinderDistance(0.006, 0.002)});
+  return all;
+}
 
 struct Surface {
   NodalVectors nodes;

@@ -9,20 +9,7 @@ namespace kept_contact_test {
 
 constexpr double kSmall = 1e-9;  // m
 
-struct Tool {
-  const char* name;
-  std::unique_ptr<ShapeDistance> shape;
-};
-
-/// Each has an edge through x = .006, z = .002 that runs along y there.
-std::vector<Tool> tools() {
-  std::vector<Tool> all;
-  all.push_back({"box", makeBoxDistance({0.006, 0.004, 0.002})});
-  all.push_back({"cylinder", makeCylinderDistance(0.006, 0.002)});
-  return all;
-}
-
-/// At the middle of a triangle that looks along -outward, its middle beside the edge; so small that nothing bends its gap.
+/// At the middle of a triangle beside the edge through x = .006, z = .002. It looks along -outward, and is so small that nothing bends its gap.
 SignedDistance keptAt(const ShapeDistance& shape, double beyond_side, double beyond_cap, const Vector3& outward,
                       double y = 0.0) {
   const Vector3 middle(0.006 + beyond_side, y, 0.002 + beyond_cap), n = outward.normalized();
@@ -38,7 +25,7 @@ SignedDistance keptAt(const ShapeDistance& shape, double beyond_side, double bey
 
 // Sides and caps are a right angle apart, and round-off tells which is nearer.
 TEST(KeptContact, OnWhicheverSideOfAnEdgeAPointLiesItIsPressedSquareToTheTissue) {
-  for (const Tool& tool : tools()) {
+  for (const EdgedTool& tool : edgedTools()) {
     for (const Vector3& outward : {Vector3(1.0, 0.0, 0.2), Vector3(1.0, 0.0, 1.0), Vector3(0.1, 0.0, 1.0)}) {
       for (const double side : {-1e-7, -1e-9, 0.0, 1e-9, 1e-7}) {
         for (const double cap : {-1e-7, -1e-9, 0.0, 1e-9, 1e-7}) {
@@ -57,7 +44,7 @@ SignedDistance keptOnEdge(const ShapeDistance& shape, const Vector3& beyond, con
   const Vector3 middle = Vector3(0.006, 0.0, 0.002) + beyond, e = along.normalized();
   TrianglePoints points;
   points.corners = {middle - 1e-3 * e, middle + 1e-3 * e, middle + 1e-3 * e.cross(outward).normalized()};
-  points.normal = -2.0 * outward.normalized();
+  points.normal = -outward.normalized();
   return keptContact(shape, points, Vector3(0.5, 0.5, 0.0));
 }
 
@@ -82,7 +69,7 @@ TEST(KeptContact, AtACornerOfABoxItIsPressedSquareToTheTissueToo) {
 
 // Pushed out along a normal between two faces by the gap, a point has left both.
 TEST(KeptContact, TheGapIsTheWayOut) {
-  for (const Tool& tool : tools()) {
+  for (const EdgedTool& tool : edgedTools()) {
     const Vector3 p(0.006 - 1e-6, 0.0, 0.002 - 1e-6);
     const SignedDistance kept = keptAt(*tool.shape, -1e-6, -1e-6, Vector3(1.0, 0.0, 1.0));
     EXPECT_NEAR(kept.distance, -std::sqrt(2.0) * 1e-6, 1e-12) << tool.name;
@@ -92,7 +79,7 @@ TEST(KeptContact, TheGapIsTheWayOut) {
 
 // Tissue that faces neither side nor cap: the nearer in direction of both, and always the same.
 TEST(KeptContact, TissueThatAnEdgeDoesNotFaceIsPressedByTheFaceNearestToItsNormal) {
-  for (const Tool& tool : tools()) {
+  for (const EdgedTool& tool : edgedTools()) {
     for (const double side : {-1e-7, 1e-7}) {
       const SignedDistance kept = keptAt(*tool.shape, side, 0.0, Vector3(1.0, 0.0, -0.3));
       EXPECT_LT((kept.normal - Vector3::UnitX()).norm(), 1e-9) << tool.name << ' ' << side;
@@ -101,7 +88,7 @@ TEST(KeptContact, TissueThatAnEdgeDoesNotFaceIsPressedByTheFaceNearestToItsNorma
 }
 
 TEST(KeptContact, AwayFromEdgesItIsTheShapesOwn) {
-  for (const Tool& tool : tools()) {
+  for (const EdgedTool& tool : edgedTools()) {
     for (const auto& [side, cap] : {std::pair(-1e-6, -1e-3), std::pair(-1e-3, 1e-6), std::pair(3e-5, 4e-5)}) {
       const SignedDistance own = tool.shape->at(Vector3(0.006 + side, 0.0, 0.002 + cap));
       const SignedDistance kept = keptAt(*tool.shape, side, cap, Vector3(1.0, 0.0, 1.0));

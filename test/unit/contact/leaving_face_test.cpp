@@ -11,19 +11,6 @@ namespace leaving_face_test {
 constexpr double kEdge = 0.002;  // m, of the cells
 constexpr double kAbove = 1e-4;  // m, of the point above the lower face
 
-struct Tool {
-  const char* name;
-  std::unique_ptr<ShapeDistance> shape;
-};
-
-/// Each ends at x = .006 and z = -.002.
-std::vector<Tool> tools() {
-  std::vector<Tool> all;
-  all.push_back({"box", makeBoxDistance({0.006, 0.004, 0.002})});
-  all.push_back({"cylinder", makeCylinderDistance(0.006, 0.002)});
-  return all;
-}
-
 /// @param normals of the triangles around the vertex.
 SignedDistance leaveAt(const ShapeDistance& shape, const Vector3& p, const std::vector<Vector3>& normals,
                        double edge = kEdge) {
@@ -41,7 +28,7 @@ SignedDistance leave(const ShapeDistance& shape, double x, double above, const s
 }
 
 TEST(LeavingFace, AVertexBeforeTheSideIsLetUnderTheTool) {
-  for (const Tool& tool : tools()) {
+  for (const EdgedTool& tool : edgedTools()) {
     EXPECT_TRUE(std::isinf(leave(*tool.shape, 0.00601, kAbove, {Vector3::UnitZ()}).distance)) << tool.name;
     EXPECT_TRUE(std::isinf(leave(*tool.shape, 0.00601, kAbove, {Vector3(-0.3, 0.1, 1.0)}).distance)) << tool.name;
   }
@@ -49,7 +36,7 @@ TEST(LeavingFace, AVertexBeforeTheSideIsLetUnderTheTool) {
 
 // The gap goes on from 0, where the vertex comes in at the side, to the depth.
 TEST(LeavingFace, AVertexInsideTheSideIsPushedOutBelow) {
-  for (const Tool& tool : tools()) {
+  for (const EdgedTool& tool : edgedTools()) {
     for (const double inside : {1e-9, 1e-6, 2e-5, 9e-5, 9.9e-5}) {
       const SignedDistance left = leave(*tool.shape, 0.006 - inside, kAbove, {Vector3(-0.1, 0.05, 1.0)});
       EXPECT_LT((left.normal + Vector3::UnitZ()).norm(), 1e-12) << tool.name << " " << inside;
@@ -63,7 +50,7 @@ TEST(LeavingFace, AVertexInsideTheSideIsPushedOutBelow) {
 TEST(LeavingFace, AWallKeepsTheSideThatPushesIt) {
   const Vector3 up = Vector3::UnitZ();
   const Vector3 wall = -Vector3::UnitX();
-  for (const Tool& tool : tools()) {
+  for (const EdgedTool& tool : edgedTools()) {
     for (const double x : {0.00601, 0.00599}) {
       // The last two: the rim of a block, with more triangles above than beside.
       for (const auto& normals :
@@ -77,14 +64,14 @@ TEST(LeavingFace, AWallKeepsTheSideThatPushesIt) {
 }
 
 TEST(LeavingFace, AStepThatTheCellsCanShowIsOne) {
-  for (const Tool& tool : tools()) {
+  for (const EdgedTool& tool : edgedTools()) {
     const SignedDistance left = leave(*tool.shape, 0.00599, 0.6 * kEdge, {Vector3::UnitZ()});
     EXPECT_LT((left.normal - Vector3::UnitX()).norm(), 1e-12) << tool.name;
   }
 }
 
 TEST(LeavingFace, BelowTheToolNothingChanges) {
-  for (const Tool& tool : tools()) {
+  for (const EdgedTool& tool : edgedTools()) {
     const SignedDistance left = leave(*tool.shape, 0.003, 1e-5, {Vector3(-0.1, 0.05, 1.0)});
     EXPECT_LT((left.normal + Vector3::UnitZ()).norm(), 1e-12) << tool.name;
     EXPECT_NEAR(left.distance, -1e-5, 1e-15) << tool.name;
@@ -111,7 +98,7 @@ class Beside : public ShapesBeside {
 
 // Only where another shape is near the way below, not where there is one at all.
 TEST(LeavingFace, WhatClosesTheWayBelowKeepsTheSide) {
-  for (const Tool& tool : tools()) {
+  for (const EdgedTool& tool : edgedTools()) {
     for (const double x : {0.00601, 0.00599}) {
       const Beside near(true);
       const Beside far(false);

@@ -10,7 +10,7 @@
 namespace tissue_contact {
 namespace box_jaws_test {
 
-constexpr double kStep_s = 0.005, kWeight_n = 0.012 * 9.81;
+constexpr double kStep_s = 0.005, kWeight_n = 0.012 * 9.81, kSqueeze_m = 0.0016;
 
 std::string slideUrdf(const std::string& axis) {
   return "<robot name='slide'><link name='base'/><link name='tip'/><joint name='x' type='prismatic'><parent "
@@ -25,12 +25,12 @@ std::string boxOn(const std::string& name, const std::string& position_m, const 
          "}, contact_links: [{link: tip, shapes: [{box: {size_m: " + size_m + "}}]}]}\n";
 }
 
-/// 20 x 20 x 30 mm of 6 kPa, .118 N, on a floor; faces of 16 x 16 mm beside it, 5 mm apart from its own.
-Simulator blockBetweenJaws(const std::string& cells, const std::string& relaxation) {
+/// 20 x 20 x 30 mm of 6 kPa, .118 N, on a floor; faces of 16 x 16 mm stand .1 mm beside its own.
+Simulator blockBetweenJaws(const std::string& relaxation) {
   return makeSimulator(
-      "tissues:\n  - name: block\n    block: {size_m: [0.02, 0.02, 0.03], cells: " + cells +
-          "}\n    material: {youngs_modulus_pa: 6000, poissons_ratio: 0.3, density_kg_per_m3: 1000}\n    damping: "
-          "{stiffness_s: 0.003}\ngravity_m_per_s2: [0, 0, -9.81]\ninstruments:\n" +
+      "tissues:\n  - name: block\n    block: {size_m: [0.02, 0.02, 0.03], cells: [4, 4, 4]}\n"
+      "    material: {youngs_modulus_pa: 6000, poissons_ratio: 0.3, density_kg_per_m3: 1000}\n    damping: "
+      "{stiffness_s: 0.003}\ngravity_m_per_s2: [0, 0, -9.81]\ninstruments:\n" +
           boxOn("left", "[-0.0151, 0, 0.015]", "[0.01, 0.016, 0.016]") +
           boxOn("right", "[0.0151, 0, 0.015]", "[0.01, 0.016, 0.016]") +
           boxOn("floor", "[0, 0, -0.01]", "[0.2, 0.2, 0.02]") +
@@ -50,9 +50,8 @@ void advance(Simulator& simulator, double squeeze_m, double floor_m, int steps) 
 }
 
 /// Squeezed by 15 %, the floor taken away, for .5 s.
-Simulator heldBlock(const std::string& cells, const std::string& relaxation) {
-  constexpr double kSqueeze_m = 0.0016;
-  Simulator simulator = blockBetweenJaws(cells, relaxation);
+Simulator heldBlock(const std::string& relaxation) {
+  Simulator simulator = blockBetweenJaws(relaxation);
   for (int k = 1; k <= 40; ++k) advance(simulator, k / 40.0 * kSqueeze_m, 0.0, 1);
   advance(simulator, kSqueeze_m, -0.05, 100);
   return simulator;
@@ -61,12 +60,12 @@ Simulator heldBlock(const std::string& cells, const std::string& relaxation) {
 // It walked up by 19 um in the first second and a half, 4 um/s after that, while what carries it swung.
 TEST(BoxJaws, AFreeBlockHangsStill) {
   for (const std::string relaxation : {"cholesky", "gauss_seidel"}) {
-    Simulator simulator = heldBlock("[4, 4, 4]", relaxation);
+    Simulator simulator = heldBlock(relaxation);
     const auto height = [&] { return simulator.positions(0).row(2).mean(); };
     const double before = height();
     double least = 1.0, most = 0.0;
     for (int k = 0; k < 200; ++k) {
-      advance(simulator, 0.0016, -0.05, 1);
+      advance(simulator, kSqueeze_m, -0.05, 1);
       const double squeeze = -simulator.wrench(0).force.x();
       least = std::min(least, squeeze);
       most = std::max(most, squeeze);
