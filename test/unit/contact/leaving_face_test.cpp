@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "contact_test_utilities.h"
 
 namespace tissue_contact::contact_test {
@@ -126,13 +128,14 @@ TEST(LeavingFace, WhatIsRoundHasNoEdges) {
   const auto ball = makeSphereDistance(0.005);
   const auto rod = makeCylinderDistance(0.005, 0.02);
   for (const ShapeDistance* const shape : {ball.get(), rod.get()}) {
-    for (double angle = 0.0; angle < 1.6; angle += 0.02) {
+    for (int degrees = 0; degrees <= 90; ++degrees) {
+      const double angle = degrees * M_PI / 180.0;
       for (const double out : {0.0052, 0.00499}) {
         const Vector3 p(out * std::sin(angle), -out * std::cos(angle), 0.0);
         const SignedDistance here = shape->at(p);
         const SignedDistance left = leaveAt(*shape, p, {Vector3::UnitY()}, 0.01);
-        EXPECT_EQ(left.distance, here.distance) << angle;
-        EXPECT_EQ(left.normal, here.normal) << angle;
+        EXPECT_EQ(left.distance, here.distance) << degrees;
+        EXPECT_EQ(left.normal, here.normal) << degrees;
       }
     }
   }
